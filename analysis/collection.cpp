@@ -1,6 +1,7 @@
 #include "analysis/collection.hpp"
 
 #include "analysis/collection_records.hpp"
+#include "analysis/sealed_sessions.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
@@ -55,15 +56,19 @@ void finish(SessionRecord& record) {
 
 }  // namespace
 
-Collection load_collection(const store::StudyStore& store) {
+Collection load_collection(const store::StudyStore& store, const design::StudyKey* key) {
   const std::vector<store::SessionRow> rows = store.sessions();
   std::map<int, SessionRecord> records = empty_records(rows);
   Collection collection;
   collection.prescription = prescription_from_json(store.commitment().configuration);
+  std::map<int, SecretKey> keys;
+  if (key != nullptr) keys = participant_keys(store, *key);
   const auto add = [&](const store::Event& event) {
     const auto record = records.find(session_named_by(event));
     if (record == records.end() || record->second.row.withdrawn) return;
-    add_to_record(event, record->second);
+    const auto own = keys.find(event.session);
+    const bool has_more = own != keys.end() && is_partly_sealed(event.kind);
+    add_to_record(has_more ? whole_event(event, own->second).event : event, record->second);
     if (event.kind != store::EventKind::trace_stored) return;
     if (const auto servo = servo_trial_of(event)) collection.servo_trials.push_back(*servo);
   };

@@ -1,8 +1,8 @@
-/// \file How a study was collected: the facts about its sessions that are stored in clear and that
-/// a results section must state. They reveal nothing about outcomes, so they may be shown at any
-/// time.
+/// \file How a study was collected: the facts about its sessions that a results section must state.
+/// They reveal nothing about outcomes, so they may be shown at any time.
 #pragma once
 
+#include "protocols/design/study_key.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <optional>
@@ -11,7 +11,8 @@
 
 namespace touchtrial::analysis {
 
-/// A deviation from the protocol: its code (docs/data-dictionary.md) and a description.
+/// A deviation from the protocol: its code (docs/data-dictionary.md) and a description, which is
+/// empty without the key if it was recorded during the session.
 struct Deviation {
   std::string code;
   std::string text;
@@ -21,8 +22,8 @@ struct Deviation {
 struct PracticeRecord {
   int rounds = 0;
   int presentations = 0;
-  int correct = 0;
-  bool passed = true;  ///< whether there is no deviation `practice-not-passed`
+  std::optional<int> correct;  ///< known with the key alone
+  bool passed = true;          ///< whether there is no deviation `practice-not-passed`
 };
 
 /// One session. A withdrawn session has only its number and state.
@@ -32,6 +33,7 @@ struct SessionRecord {
   std::optional<store::StationRecord> station;  ///< only for sessions in real time
   std::string opened_utc;                       ///< ISO 8601; empty for simulated sessions
   std::optional<PracticeRecord> practice;
+  std::optional<store::AnswerSummary> answers;  ///< of a session that has ended with answers
   std::vector<Deviation> deviations;  ///< including those noted later; duplicates appear once
   std::string exclusion_reason;
   std::string replacement_reason;
@@ -87,7 +89,10 @@ struct Collection {
 /// \throws StoreError if the configuration does not have the form that this program writes
 [[nodiscard]] Prescription prescription_from_json(const std::string& configuration);
 
-/// Reads the clear part of every session's events, but neither traces nor sealed parts.
-[[nodiscard]] Collection load_collection(const store::StudyStore& store);
+/// Reads how every session was collected, but neither schedules, answers nor traces.
+/// \param key  opens what is sealed of practice and deviations; null: those parts are missing
+/// \throws VerificationError, naming the event, if one does not open
+[[nodiscard]] Collection load_collection(const store::StudyStore& store,
+                                         const design::StudyKey* key = nullptr);
 
 }  // namespace touchtrial::analysis

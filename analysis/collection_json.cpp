@@ -45,10 +45,20 @@ std::string name_of(store::SessionState state) {
 
 Json practice_json(const std::optional<PracticeRecord>& practice) {
   if (!practice) return nullptr;
-  return {{"rounds", practice->rounds},
-          {"presentations", practice->presentations},
-          {"correct", practice->correct},
-          {"passed", practice->passed}};
+  Json object{{"rounds", practice->rounds}, {"presentations", practice->presentations}};
+  object["correct"] = nullptr;
+  if (practice->correct) object["correct"] = *practice->correct;
+  object["passed"] = practice->passed;
+  return object;
+}
+
+Json answers_json(const std::optional<store::AnswerSummary>& answers) {
+  if (!answers) return nullptr;
+  return {{"n", answers->n},
+          {"different", answers->different},
+          {"largest_share", figure_json(answers->largest_share)},
+          {"longest_run", answers->longest_run},
+          {"median_s", figure_json(answers->median_s)}};
 }
 
 Json session_json(const SessionRecord& session) {
@@ -61,6 +71,7 @@ Json session_json(const SessionRecord& session) {
   object["device"] = session.row.device;
   object["device_serial"] = session.device_serial;
   object["practice"] = practice_json(session.practice);
+  object["answers"] = answers_json(session.answers);
   object["exclusion_reason"] = session.exclusion_reason;
   object["replacement_reason"] = session.replacement_reason;
   object["stop_reason"] = session.stop_reason;

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::array kKinds = {store::EventKind::opened,   store::EventKind::practised,
                                store::EventKind::deviated, store::EventKind::stopped,
-                               store::EventKind::resumed,  store::EventKind::trace_stored};
+                               store::EventKind::resumed,  store::EventKind::trace_stored,
+                               store::EventKind::closed};
 
 void add_opening(const store::Event& event, SessionRecord& session) {
   store::SessionOpening opening = store::opening_from_json(event.body);
@@ -24,7 +25,8 @@ void add_practice(const store::PracticeBody& practised, SessionRecord& session) 
   PracticeRecord& practice = *session.practice;
   practice.rounds = std::max(practice.rounds, practised.round);
   ++practice.presentations;
-  if (practised.correct) ++practice.correct;
+  if (practised.correct)
+    practice.correct = practice.correct.value_or(0) + (*practised.correct ? 1 : 0);
 }
 
 void add_deviation(const std::string& code, const std::string& text, SessionRecord& session) {
@@ -38,6 +40,10 @@ void add_deviation(const std::string& code, const std::string& text, SessionReco
 
 std::span<const store::EventKind> kinds_in_sessions() {
   return kKinds;
+}
+
+bool is_partly_sealed(store::EventKind kind) {
+  return kind == store::EventKind::practised || kind == store::EventKind::deviated;
 }
 
 void add_to_record(const store::Event& event, SessionRecord& session) {
@@ -67,6 +73,9 @@ void add_to_record(const store::Event& event, SessionRecord& session) {
     case store::EventKind::resumed:
       // A session that was only paused does not count as resumed.
       if (store::resumed_from_json(event.body).after == "program-ended") ++session.resumed;
+      return;
+    case store::EventKind::closed:
+      session.answers = store::closed_from_json(event.body).answers;
       return;
     default:
       return;

@@ -10,8 +10,11 @@ namespace touchtrial::analysis {
 /// The kinds of events on sessions' chains that describe how the sessions were collected.
 [[nodiscard]] std::span<const store::EventKind> kinds_in_sessions();
 
+/// Whether a part of what `add_to_record` takes from events of this kind is sealed.
+[[nodiscard]] bool is_partly_sealed(store::EventKind kind);
+
 /// Adds the facts from one event to a session's record.
-/// \param event  an event of the session's chain or of the file's chain
+/// \param event  an event of the session's chain, stored or opened, or of the file's chain
 /// \param session  record of the session that the event is about
 void add_to_record(const store::Event& event, SessionRecord& session);
 

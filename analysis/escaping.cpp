@@ -1,5 +1,7 @@
 #include "analysis/escaping.hpp"
 
+#include "core/errors.hpp"
+
 #include <cstdint>
 #include <map>
 #include <string_view>
@@ -8,11 +10,6 @@
 
 namespace touchtrial::analysis {
 namespace {
-
-bool is_control(char c) {
-  const auto code = static_cast<unsigned char>(c);
-  return code < 0x20 || code == 0x7f;
-}
 
 /// Characters with a LaTeX command of their own.
 const std::map<std::uint32_t, const char*>& named_signs() {
@@ -113,7 +110,7 @@ bool is_printed(std::uint32_t code) {
 std::string xml_escaped(const std::string& text) {
   std::string safe;
   safe.reserve(text.size());
-  for (const char c : text) {
+  for (const char c : one_line(text)) {
     switch (c) {
       case '&':
         safe += "&amp;";
@@ -131,7 +128,7 @@ std::string xml_escaped(const std::string& text) {
         safe += "&#39;";
         break;
       default:
-        safe += is_control(c) ? ' ' : c;
+        safe += c;
     }
   }
   return safe;
@@ -140,9 +137,9 @@ std::string xml_escaped(const std::string& text) {
 std::string markdown_escaped(const std::string& text) {
   constexpr std::string_view kMarkup = "\\`*_{}[]<>#|~&!$^";
   std::string safe;
-  for (const char c : text) {
+  for (const char c : one_line(text)) {
     if (kMarkup.find(c) != std::string_view::npos) safe += '\\';
-    safe += is_control(c) ? ' ' : c;
+    safe += c;
   }
   return safe;
 }

@@ -38,8 +38,6 @@ Outcomes labelled(const store::StudyStore& store, const design::Study& study) {
   outcomes.design = study;
   outcomes.simulated = commitment.simulated;
   outcomes.pilot = commitment.pilot;
-  outcomes.collection = load_collection(store);
-  outcomes.visual = outcomes.collection.visual;
   outcomes.state = store.state();
   for (const design::StudyClass& one : study.classes) {
     outcomes.classes.push_back(one.label);
@@ -120,6 +118,8 @@ Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& k
   }
   require_whole(store);
   require_sealed_ends(store, key);
+  outcomes.collection = load_collection(store, &key);
+  outcomes.visual = outcomes.collection.visual;
   std::map<int, SessionOutcome> sessions;
   for (const store::SessionRow& row : store.sessions()) {
     if (!outcomes.state.shows(row.session)) {
@@ -131,9 +131,9 @@ Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& k
   }
   const auto schedules = open_schedules(store, key);
   const auto measures = open_measures(store, key);
-  for (const store::TrialRow& row : store.trials()) {
+  for (const store::TrialRow& row : open_trials(store, key)) {
     const auto schedule = schedules.find(row.session);
-    if (schedule == schedules.end()) continue;  // withdrawn
+    if (schedule == schedules.end()) continue;  // without an opening
     if (!outcomes.state.shows(row.session)) continue;
     TrialOutcome trial = outcome_of(row, sessions[row.session], schedule->second, key.study);
     const auto measured = measures.find({row.session, row.trial});

@@ -5,6 +5,7 @@
 #include "analysis/statistics/confusion.hpp"
 #include "analysis/text_figures.hpp"
 #include "analysis/text_table.hpp"
+#include "analysis/verification/clock_notes.hpp"
 
 #include <algorithm>
 #include <set>
@@ -70,17 +71,11 @@ void count_answer(const store::TrialRow& trial, TrialQuality& quality) {
   ++quality.presented;
   if (trial.state == store::TrialState::timed_out) ++quality.no_response;
   if (trial.state == store::TrialState::interrupted) ++quality.interrupted;
-  if (trial.state != store::TrialState::answered || !trial.position) return;
-  ++quality.answered;
-  if (trial.first_position && trial.first_position != trial.position) ++quality.changed;
-  const int position = *trial.position;
-  if (position >= 0 && position < static_cast<int>(quality.by_position.size())) {
-    ++quality.by_position[position];
-  }
+  if (trial.state == store::TrialState::answered) ++quality.answered;
 }
 
 void count_trace(const store::TrialRow& trial, TrialQuality& quality) {
-  if (trial.samples == 0) return;
+  if (trial.seconds == 0) return;
   ++quality.with_trace;
   if (trial.valid) ++quality.valid;
   quality.overruns += trial.overruns;
@@ -103,7 +98,6 @@ QualityReport make_quality(const store::StudyStore& store) {
   report.state = store.state();
   report.simulated = commitment.simulated;
   report.pilot = commitment.pilot;
-  report.quality.by_position.resize(static_cast<std::size_t>(std::max(0, commitment.positions)));
   std::set<int> withdrawn;
   for (const store::SessionRow& session : store.sessions()) {
     count_session(session, commitment, report.sessions);
@@ -119,6 +113,7 @@ QualityReport make_quality(const store::StudyStore& store) {
   report.collection = load_collection(store);
   report.servo = servo_quality(report.collection);
   report.visual = report.collection.visual;
+  report.notes = clock_notes(store);
   return report;
 }
 
@@ -149,10 +144,10 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
                         {"stopped", sessions.stopped},     {"excluded", sessions.excluded},
                         {"replaced", sessions.replaced},   {"withdrawn", sessions.withdrawn},
                         {"pilot", sessions.pilot}};
-  object["responses"] = {
-      {"presented", quality.presented},     {"answered", quality.answered},
-      {"changed", quality.changed},         {"no_response", quality.no_response},
-      {"interrupted", quality.interrupted}, {"by_position", quality.by_position}};
+  object["responses"] = {{"presented", quality.presented},
+                         {"answered", quality.answered},
+                         {"no_response", quality.no_response},
+                         {"interrupted", quality.interrupted}};
   object["validity"] = {
       {"trials", quality.with_trace},
       {"valid", quality.valid},
@@ -163,6 +158,7 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
   if (report.servo) put_real_time(object["servo"], *report.servo);
   if (report.visual) object["visual"] = true;
   object["collection"] = collection_object(report.collection);
+  if (!report.notes.empty()) object["notes"] = report.notes;
   return object;
 }
 
@@ -183,28 +179,25 @@ std::string sessions_text(const QualityReport& report) {
   return heading("sessions", report.simulated) + table.text();
 }
 
-std::string positions_text(const QualityReport& report) {
-  std::vector<std::string> header{"position"};
-  std::vector<std::string> answers{"answers"};
-  std::vector<std::string> shares{"share"};
-  const TrialQuality& quality = report.quality;
-  for (std::size_t i = 0; i < quality.by_position.size(); ++i) {
-    header.push_back(std::to_string(i + 1));
-    answers.push_back(std::to_string(quality.by_position[i]));
-    shares.push_back(percent(percentage(quality.by_position[i], quality.answered), 1));
+/// How answers are spread, by session: somebody who always presses one key shows here.
+std::string answers_text(const QualityReport& report) {
+  TextTable table({"session", "answers", "different", "largest share", "longest run", "median"});
+  for (const SessionRecord& session : report.collection.sessions) {
+    if (!session.answers) continue;
+    const store::AnswerSummary& answers = *session.answers;
+    table.add({std::to_string(session.row.session), std::to_string(answers.n),
+               std::to_string(answers.different), percent(100.0 * answers.largest_share, 1),
+               std::to_string(answers.longest_run), fmt::format("{:.1f} s", answers.median_s)});
   }
-  TextTable table(header);
-  table.add(answers);
-  table.add(shares);
-  return heading("answers by the picture's position", report.simulated) + table.text();
+  return heading("answers by session", report.simulated) + table.text();
 }
 
 std::string health_text(const QualityReport& report) {
   const TrialQuality& quality = report.quality;
   std::string text = heading("trials", report.simulated);
-  text += fmt::format("  presented {}, answered {} ({} changed), no response {}, interrupted {}\n",
-                      quality.presented, quality.answered, quality.changed, quality.no_response,
-                      quality.interrupted);
+  text +=
+      fmt::format("  presented {}, answered {}, no response {}, interrupted {}\n",
+                  quality.presented, quality.answered, quality.no_response, quality.interrupted);
   text += fmt::format("  valid {} of {} with a trace ({})\n", quality.valid, quality.with_trace,
                       percent_of({quality.with_trace, quality.valid}));
   text += fmt::format("  servo overruns {} in {}", quality.overruns,
@@ -249,7 +242,8 @@ std::string quality_text(const QualityReport& report) {
   }
   text += sessions_text(report) + health_text(report);
   if (report.servo) text += servo_text(report);
-  text += positions_text(report);
+  text += answers_text(report);
+  for (const std::string& note : report.notes) text += wrapped("", "Note: " + note);
   if (report.simulated) text += '\n' + simulated_line(report.simulated);
   return text;
 }

@@ -29,10 +29,8 @@ struct SessionCounts {
 struct TrialQuality {
   int presented = 0;
   int answered = 0;
-  int no_response = 0;           ///< time ran out
-  int interrupted = 0;           ///< interrupted and not yet repeated
-  int changed = 0;               ///< answers that were changed before they were given
-  std::vector<int> by_position;  ///< answers by position in the layout, to reveal a position bias
+  int no_response = 0;  ///< time ran out
+  int interrupted = 0;  ///< interrupted and not yet repeated
   int with_trace = 0;
   int valid = 0;              ///< trials with a trace that are valid by the study's rule
   std::int64_t overruns = 0;  ///< servo ticks that came late
@@ -64,6 +62,7 @@ struct QualityReport {
   std::optional<ServoQuality> servo;  ///< empty if no session was in real time
   bool visual = false;                ///< textures were seen on a screen, not felt
   Collection collection;              ///< participant flow, deviations, stations
+  std::vector<std::string> notes{};   ///< where a clock went back, see clock_notes
 };
 
 /// "collecting", "closed" or "unblinded"

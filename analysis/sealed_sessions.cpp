@@ -3,9 +3,12 @@
 #include "core/errors.hpp"
 #include "protocols/store/payload_json.hpp"
 
+#include <exception>
+#include <map>
 #include <vector>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 namespace touchtrial::analysis {
 namespace {
@@ -14,15 +17,16 @@ std::string place_of(const store::Event& event) {
   return fmt::format("session {}, event {}", event.session, event.sequence);
 }
 
-/// Calls `visit` with each event of a kind and its secret text, for all sessions that have a key.
+/// Calls `visit` with each event of a kind, opened, and its secret text, for all sessions that have
+/// a key.
 template <typename Visit>
 void for_each_secret(const store::StudyStore& store, const design::StudyKey& key,
                      store::EventKind kind, Visit visit) {
   const std::map<int, SecretKey> keys = participant_keys(store, key);
-  store.for_each(kind, [&](const store::Event& event) {
-    const auto own = keys.find(event.session);
+  store.for_each(kind, [&](const store::Event& stored) {
+    const auto own = keys.find(stored.session);
     if (own == keys.end()) return;
-    const std::string secret = opened_part(event, own->second);
+    const auto [event, secret] = whole_event(stored, own->second);
     try {
       visit(event, secret);
     } catch (const StoreError& error) {
@@ -30,6 +34,27 @@ void for_each_secret(const store::StudyStore& store, const design::StudyKey& key
     }
   });
 }
+
+/// The events of a session, and what they come to.
+struct WaitingSession {
+  SecretKey own{};
+  std::vector<store::Event> events;
+  store::DerivedRows rows;
+  std::exception_ptr fault;
+
+  /// Keeps an error instead of throwing it, so that the first session's is reported, whichever
+  /// thread finds one first.
+  void open() noexcept {
+    try {
+      for (const store::Event& event : events) store::fold(rows, whole_event(event, own).event);
+    } catch (const StoreError& error) {
+      fault = std::make_exception_ptr(VerificationError(error.what()));
+    } catch (...) {
+      fault = std::current_exception();
+    }
+    events.clear();
+  }
+};
 
 }  // namespace
 
@@ -79,13 +104,30 @@ std::map<int, SecretKey> participant_keys(const store::StudyStore& store,
   return keys;
 }
 
-std::string opened_part(const store::Event& event, const SecretKey& own) {
-  std::optional<std::string> text = store::unsealed(event, own);
-  if (!text) {
-    throw VerificationError(place_of(event) +
-                            ": the sealed part does not open; restore a backup of the database");
+store::OpenedEvent whole_event(const store::Event& event, const SecretKey& own) {
+  std::optional<store::OpenedEvent> opened = store::opened_event(event, own);
+  if (!opened) {
+    throw VerificationError(
+        place_of(event) +
+        ": the sealed part does not open: the event is damaged, or was made anew "
+        "without the key; restore a backup of the database");
   }
-  return *std::move(text);
+  return *std::move(opened);
+}
+
+std::vector<store::TrialRow> open_trials(const store::StudyStore& store,
+                                         const design::StudyKey& key) {
+  std::vector<WaitingSession> sessions;
+  for (const auto& [session, own] : participant_keys(store, key)) {
+    sessions.push_back({.own = own, .events = store.events(session), .rows = {}, .fault = {}});
+  }
+  tbb::parallel_for(std::size_t{0}, sessions.size(), [&](std::size_t i) { sessions[i].open(); });
+  std::vector<store::TrialRow> trials;
+  for (const WaitingSession& session : sessions) {
+    if (session.fault) std::rethrow_exception(session.fault);
+    for (const auto& [id, row] : session.rows.trials) trials.push_back(row);
+  }
+  return trials;
 }
 
 void require_sealed_ends(const store::StudyStore& store, const design::StudyKey& key) {

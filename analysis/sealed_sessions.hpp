@@ -1,5 +1,5 @@
-/// \file Opens the sealed parts of a database with the study key: participants' keys, schedules and
-/// measures.
+/// \file Opens the sealed parts of a database with the study key: participants' keys, events,
+/// schedules, answers and measures.
 #pragma once
 
 #include "protocols/design/study_key.hpp"
@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace touchtrial::analysis {
 
@@ -29,10 +30,15 @@ void require_key_of(const store::StudyStore& store, const design::StudyKey& key)
 [[nodiscard]] std::map<int, SecretKey> participant_keys(const store::StudyStore& store,
                                                         const design::StudyKey& key);
 
-/// The text of an event's sealed part.
+/// A session's event as it was recorded.
 /// \param own  the participant's key
 /// \throws VerificationError, naming the event, if it does not open
-[[nodiscard]] std::string opened_part(const store::Event& event, const SecretKey& own);
+[[nodiscard]] store::OpenedEvent whole_event(const store::Event& event, const SecretKey& own);
+
+/// The trials of all sessions that are not withdrawn, with answers and times, by session and trial.
+/// \throws VerificationError, naming the event, if one does not open or cannot follow those before
+[[nodiscard]] std::vector<store::TrialRow> open_trials(const store::StudyStore& store,
+                                                       const design::StudyKey& key);
 
 /// Checks the chain of every session that has ended and is not withdrawn against the end that was
 /// sealed with it. Somebody without the key can rebuild a chain, but cannot seal its end.

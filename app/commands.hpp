@@ -37,7 +37,8 @@ void add_verify_command(CLI::App& program, Action& action);
 void add_report_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);
 void add_fit_command(CLI::App& program, Action& action);
-/// consent, exclude, replace, withdraw, note, close, unblind, migrate.
+void add_consent_command(CLI::App& program, Action& action);
+/// exclude, replace, withdraw, note, close, unblind, migrate.
 void add_record_commands(CLI::App& program, Action& action);
 void add_merge_command(CLI::App& program, Action& action);
 void add_power_command(CLI::App& program, Action& action);

@@ -1,6 +1,7 @@
 #include "app/console.hpp"
 
 #include "core/errors.hpp"
+#include "core/printable.hpp"
 
 #include <cstdio>
 
@@ -25,7 +26,8 @@ void draw_bar(const std::string& what, int done, int of) {
 
 }  // namespace
 
-void print(const std::string& text) {
+void print(const std::string& given) {
+  const std::string text = printable(given);
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
   if (!written || std::fflush(stdout) != 0) {
     throw FileError("standard output: cannot be written; check the disk or the pipe");

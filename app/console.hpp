@@ -9,7 +9,7 @@
 
 namespace touchtrial::app {
 
-/// Prints to standard output.
+/// Prints to standard output, as core/printable.hpp shows it.
 /// \throws FileError if that fails (a full disk, a closed pipe)
 void print(const std::string& text);
 

@@ -8,13 +8,17 @@
 #include "protocols/store/damage.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -33,6 +37,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_simulate_command(program, action);
   add_plan_command(program, action);
   add_run_command(program, action);
+  add_consent_command(program, action);
   add_record_commands(program, action);
   add_sync_command(program, action);
   add_verify_command(program, action);
@@ -49,10 +54,25 @@ int complain(int code, const std::string& message) noexcept {
   return code;
 }
 
+/// The message of a warning on one line, without what a terminal would obey.
+class CleanMessage final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm& /*time*/,
+              spdlog::memory_buf_t& line) override {
+    const std::string text = one_line(std::string(message.payload.data(), message.payload.size()));
+    line.append(text.data(), text.data() + text.size());
+  }
+  [[nodiscard]] std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<CleanMessage>();
+  }
+};
+
 /// Sends warnings to standard error: standard output holds results only.
 void set_up_log() {
   auto logger = spdlog::stderr_color_mt("touchtrial");
-  logger->set_pattern("touchtrial: %^%l%$: %v");
+  auto formatter = std::make_unique<spdlog::pattern_formatter>();
+  formatter->add_flag<CleanMessage>('*').set_pattern("touchtrial: %^%l%$: %*");
+  logger->set_formatter(std::move(formatter));
   spdlog::set_default_logger(logger);
 }
 
@@ -78,7 +98,15 @@ std::string command_so_far(const CLI::App& program) {
   return words;
 }
 
+/// A write past the limit of a file's size, or to a pipe that nobody reads, then fails like any
+/// other, and what was begun ends in order.
+void let_writes_fail() {
+  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
+  static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
+}
+
 int parse_and_run(int argc, char** argv) {
+  let_writes_fail();
   set_up_log();
   registration::register_protocols();
   engine::use_measured_plans(engine::user_cache_folder());

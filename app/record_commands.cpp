@@ -1,5 +1,5 @@
-// Commands that record something beside the sessions: consent, exclude, replace, withdraw, note,
-// close and unblind; and migrate, which brings an older database up to date.
+// Commands that record something beside the sessions: exclude, replace, withdraw, note, close and
+// unblind; and migrate, which brings an older database up to date.
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
@@ -8,15 +8,12 @@
 #include "protocols/store/personal_data.hpp"
 #include "protocols/store/study_store.hpp"
 
-#include <chrono>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
-#include <fmt/chrono.h>
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
@@ -26,39 +23,6 @@ namespace fs = std::filesystem;
 
 store::StudyStore opened(const fs::path& database) {
   return store::StudyStore::open(database, store::StudyStore::Access::read_write);
-}
-
-// Consent, apart from everything that is analysed.
-
-struct ConsentArguments {
-  fs::path database;
-  store::PersonalRecord record;
-  int age = -1;  ///< -1: not given
-  bool reads_contact = false;
-};
-
-std::string contact_from_input() {
-  std::string line;
-  if (!std::getline(std::cin, line)) {
-    throw UsageError("consent: --contact reads a line from standard input, which has none");
-  }
-  return line;
-}
-
-int record_consent(const ConsentArguments& arguments) {
-  store::PersonalRecord record = arguments.record;
-  if (record.participant.empty() || record.consent_version.empty()) {
-    throw UsageError("consent: --participant and --version must not be empty");
-  }
-  if (arguments.age >= 0) record.age = arguments.age;
-  if (arguments.reads_contact) record.contact = contact_from_input();
-  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
-  record.consented_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
-  const fs::path path = store::personal_data_path(arguments.database);
-  store::PersonalData(path).put(record);
-  print(fmt::format("{}: consent of participant {} to version {} recorded\n", path.string(),
-                    record.participant, record.consent_version));
-  return 0;
 }
 
 // Participants. None of these commands reads a key.
@@ -129,7 +93,13 @@ int note(const PeopleArguments& arguments) {
 
 constexpr const char* kOtherCopies =
     "destroy every other copy of the database too (backups, snapshots, files that were sent): the "
-    "participant's data can still be read in them\n";
+    "participant's data can still be read in them\n"
+    "if the database was pushed to a server, run `touchtrial sync` now: until then the key is "
+    "there, "
+    "and in the server's backups\n";
+/// Goes into the withdrawal's event.
+constexpr const char* kNotErased =
+    " [not erased by this: other copies and backups; the key on a server, until the next sync]";
 
 /// Removes personal data even if an interrupted withdrawal destroyed the key before.
 bool remove_person(const PeopleArguments& arguments) {
@@ -137,22 +107,59 @@ bool remove_person(const PeopleArguments& arguments) {
   return is_there(path) && store::PersonalData(path).remove(arguments.participant);
 }
 
-int withdraw(const PeopleArguments& arguments) {
-  store::StudyStore store = opened(arguments.database);
+std::vector<int> not_withdrawn(const store::StudyStore& store, const std::string& participant) {
   std::vector<int> sessions;
-  const std::vector<store::SessionRow> rows = store.sessions_of(arguments.participant);
-  for (const store::SessionRow& row : rows) {
+  for (const store::SessionRow& row : store.sessions_of(participant)) {
     if (!row.withdrawn) sessions.push_back(row.session);
   }
+  return sessions;
+}
+
+/// Destroys the keys of these sessions, and what an earlier call left of keys in the log.
+/// \return what is left of the keys, and the remedy; empty if nothing is
+/// \throws StoreError if the withdrawal was not recorded
+std::string destroy_keys(store::StudyStore& store, const std::vector<int>& sessions,
+                         const PeopleArguments& arguments) {
+  try {
+    store.withdraw(sessions, utc_now(),
+                   arguments.reason.empty() ? "" : arguments.reason + kNotErased);
+  } catch (const StoreError& error) {
+    if (!not_withdrawn(store, arguments.participant).empty()) throw;
+    return error.what();
+  }
+  return "";
+}
+
+int withdraw(const PeopleArguments& arguments) {
+  std::error_code none;
+  const auto log_size = fs::file_size(arguments.database.string() + "-wal", none);
+  const bool had_log = !none && log_size > 0;  // an earlier withdrawal may have left its key there
+  if (arguments.reason.empty()) {
+    throw StoreError(place_of(arguments) +
+                     ": a withdrawal needs a reason, which is recorded; give one with --reason");
+  }
+  store::StudyStore store = opened(arguments.database);
+  const bool has_session = !store.sessions_of(arguments.participant).empty();
+  const std::vector<int> sessions = not_withdrawn(store, arguments.participant);
   // The key first: a fault of the file of personal data must not prevent a withdrawal.
-  if (!sessions.empty()) store.withdraw(sessions, utc_now(), arguments.reason);
-  const bool removed = remove_person(arguments);
-  if (rows.empty() && removed) {
+  std::string left = has_session ? destroy_keys(store, sessions, arguments) : "";
+  bool removed = false;
+  try {
+    removed = remove_person(arguments);
+  } catch (const Error& error) {
+    left += (left.empty() ? "" : "; ") + std::string("the personal data are not removed yet: ") +
+            error.what();
+  }
+  if (!left.empty()) {
+    throw StoreError(one_line(place_of(arguments) + ": not everything is erased yet: " + left +
+                              "; then run the same command again"));
+  }
+  if (!has_session && removed) {
     print(place_of(arguments) + ": had no session; the personal data are removed\n");
     return 0;
   }
-  if (rows.empty()) static_cast<void>(sessions_of(store, arguments));  // throws
-  if (sessions.empty() && !removed) {
+  if (!has_session) static_cast<void>(sessions_of(store, arguments));  // throws
+  if (sessions.empty() && !removed && !had_log) {
     throw StoreError(one_line(place_of(arguments) + " has already withdrawn"));
   }
   print(place_of(arguments) +
@@ -211,24 +218,6 @@ int migrate(const fs::path& database) {
   static_cast<void>(opened(database));
   print(database.string() + ": is up to date\n");
   return 0;
-}
-
-void add_consent_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<ConsentArguments>();
-  CLI::App* command = program.add_subcommand(
-      "consent", "Record a participant's consent and demographics, in DB.personal only");
-  add_database_argument(*command, arguments->database,
-                        "Database of the study; it need not exist yet")
-      ->check(place_validator());
-  command->add_option("--participant", arguments->record.participant, "Id, for instance P07")
-      ->required();
-  command->add_option("--version", arguments->record.consent_version, "Version that was signed")
-      ->required();
-  command->add_option("--age", arguments->age, "Years")->check(CLI::Range(0, 130));
-  command->add_option("--gender", arguments->record.gender, "In the participant's own words");
-  command->add_flag("--contact", arguments->reads_contact,
-                    "Read the participant's contact details, one line, from standard input");
-  command->callback([=, &action] { action = [=] { return record_consent(*arguments); }; });
 }
 
 struct PeopleCommand {
@@ -301,7 +290,6 @@ void add_migrate_command(CLI::App& program, Action& action) {
 }  // namespace
 
 void add_record_commands(CLI::App& program, Action& action) {
-  add_consent_command(program, action);
   add_people_commands(program, action);
   add_close_command(program, action);
   add_unblind_command(program, action);

@@ -62,6 +62,8 @@ json station_json(const StationSummary& summary) {
           {"cut_short", sessions_json(report.cut_short)},
           {"chain_events", report.chain_events},
           {"ahead", report.ahead},
+          {"keys_destroyed", report.keys_destroyed},
+          {"keys_wiped", report.keys_wiped},
           {"keys_restored", report.keys_restored},
           {"reconnections", report.reconnections}};
 }
@@ -117,6 +119,17 @@ std::string station_text(const StationSummary& summary, bool dry_run) {
         "{}: is an older copy: the server has {} more events of its file chain; do not record in "
         "it any more\n",
         summary.file, report.ahead);
+  }
+  if (report.keys_destroyed > 0) {
+    text += fmt::format(
+        "{}: destroyed {} key{} of participants who withdrew{}; destroy the server's backups and "
+        "WAL "
+        "archives from before too\n",
+        summary.file, report.keys_destroyed, report.keys_destroyed == 1 ? "" : "s",
+        report.keys_wiped
+            ? ""
+            : ", whose bytes stay in the table's file until the owner runs VACUUM FULL "
+              "participant_keys");
   }
   if (report.keys_restored > 0) {
     text +=

@@ -51,8 +51,8 @@ class VerificationError : public Error {
 };
 
 /// Makes a text safe for a message and for JSON, whatever file name or value it contains.
-/// \return `text` on one line of UTF-8: control characters become spaces, and bytes that are not
-///   UTF-8 become `\xNN`
+/// \return `text` on one line of UTF-8 (core/printable.hpp): ASCII's control characters become
+///   spaces, other controls `\uNNNN`, and bytes that are not UTF-8 `\xNN`
 [[nodiscard]] std::string one_line(const std::string& text);
 
 }  // namespace touchtrial

@@ -91,19 +91,35 @@ class PlaceTracker {
   std::vector<Level> levels_;
 };
 
-[[noreturn]] void refuse_grammar(std::string_view text, const std::string& source,
-                                 const json::parse_error& error) {
-  const std::size_t at = std::min(error.byte > 0 ? error.byte - 1 : 0, text.size());
+/// \param at  the byte, from 0
+[[noreturn]] void refuse_byte(std::string_view text, std::size_t at, const std::string& source,
+                              const std::string& what) {
   const std::string_view before = text.substr(0, at);
   const auto line = std::count(before.begin(), before.end(), '\n') + 1;
   const std::size_t column = at - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+  throw StudyError(one_line(source + ": line " + std::to_string(line) + ", column " +
+                            std::to_string(column) + ": " + what));
+}
+
+[[noreturn]] void refuse_grammar(std::string_view text, const std::string& source,
+                                 const json::parse_error& error) {
+  const std::size_t at = std::min(error.byte > 0 ? error.byte - 1 : 0, text.size());
   // The library's message without its prefix and without the bytes that it last read.
   std::string what = error.what();
   what.erase(0, std::min(what.find("syntax error"), what.size()));
   what = what.substr(0, what.find("; last read"));
-  throw StudyError(one_line(source + ": line " + std::to_string(line) + ", column " +
-                            std::to_string(column) + ": " + (what.empty() ? "is not JSON" : what) +
-                            "; give plain JSON, without comments or trailing commas"));
+  refuse_byte(text, at, source,
+              (what.empty() ? "is not JSON" : what) +
+                  "; give plain JSON, without comments or trailing commas");
+}
+
+/// The parser takes a zero byte for the end of the text, and ignores what follows.
+void refuse_zero_bytes(std::string_view text, const std::string& source) {
+  const std::size_t at = text.find('\0');
+  if (at == std::string_view::npos) return;
+  refuse_byte(text, at, source,
+              "is a zero byte, which no JSON text has; remove it and what is behind it, or write "
+              "the file anew");
 }
 
 /// The value as a whole number, limited to 64 bits; nothing if it is not a whole number.
@@ -168,6 +184,7 @@ struct JsonValue::Node {
 };
 
 JsonValue parse_strict_json(std::string_view text, const std::string& source) {
+  refuse_zero_bytes(text, source);
   PlaceTracker tracker(source);
   const auto follow = [&tracker](int /*depth*/, json::parse_event_t event, json& parsed) {
     tracker.follow(event, parsed);

@@ -100,7 +100,7 @@ class JsonObject {
 };
 
 /// Parses plain JSON (RFC 8259). Besides errors of grammar, it refuses a key that appears twice in
-/// an object, nesting deeper than kMaxJsonDepth, and numbers that exceed a double.
+/// an object, nesting deeper than kMaxJsonDepth, numbers that exceed a double, and zero bytes.
 /// \param source  the file's name, for messages
 /// \return the whole document
 /// \throws StudyError with line and column, or with the JSON pointer

@@ -1,14 +1,19 @@
 #include "analysis/exports/data_table.hpp"
 
+#include "core/printable.hpp"
+#include "core/text.hpp"
+
 #include <algorithm>
 #include <stdexcept>
+#include <string_view>
 
 #include <fmt/format.h>
 
 namespace touchtrial::analysis {
 namespace {
 
-std::string csv_field(const std::string& text) {
+std::string csv_field(const std::string& cell) {
+  const std::string text = harmless_cell(cell);
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string field = "\"";
   for (const char c : text) {
@@ -21,7 +26,7 @@ std::string csv_field(const std::string& text) {
 constexpr const char* kMissingTsv = "n/a";
 
 std::string tsv_field(const std::string& text) {
-  std::string field = text.empty() ? kMissingTsv : text;
+  std::string field = text.empty() ? kMissingTsv : harmless_cell(text);
   std::replace_if(
       field.begin(), field.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
   return field;
@@ -74,6 +79,13 @@ std::string seconds_text(std::chrono::nanoseconds time) {
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
   return text;
+}
+
+std::string harmless_cell(const std::string& text) {
+  const std::string shown = printable(text);
+  const bool is_formula =
+      !text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
+  return is_formula && !number_in<double>(text) ? "'" + shown : shown;
 }
 
 std::string csv_text(const DataTable& table) {

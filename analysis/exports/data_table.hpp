@@ -24,11 +24,16 @@ struct DataTable {
 /// The exact time in seconds, with a decimal point and as many decimals as the nanoseconds need.
 [[nodiscard]] std::string seconds_text(std::chrono::nanoseconds time);
 
+/// A text of a person for a cell that a spreadsheet may open. Source: OWASP, "CSV Injection".
+/// \return `text` as core/printable.hpp shows it; with an apostrophe before it if it begins with =,
+///   +, -, @, a tab or a carriage return, which would make it a formula, and is not a number
+[[nodiscard]] std::string harmless_cell(const std::string& text);
+
 /// CSV as in RFC 4180, except that each line ends with a single line feed. The text is UTF-8
-/// without a byte order mark and begins with a header. A text that contains a comma, a quote or a
-/// line end is quoted. Numbers have a decimal point and the fewest digits that read back the same.
-/// A missing value is an empty field.
-/// \throws std::invalid_argument if a row and the header differ in length
+/// without a byte order mark and begins with a header. Texts are harmless cells. A text that
+/// contains a comma, a quote or a line end is quoted. Numbers have a decimal point and the fewest
+/// digits that read back the same. A missing value is an empty field. \throws std::invalid_argument
+/// if a row and the header differ in length
 [[nodiscard]] std::string csv_text(const DataTable& table);
 
 /// The table in the form of BIDS: tab-separated UTF-8 without a byte order mark, with line feeds

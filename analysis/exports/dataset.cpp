@@ -192,8 +192,9 @@ std::string about_study(const DatasetSource& study) {
               ? "Participants who withdrew are not in it. A trial enters the report where "
                 "`counted` is 1: its session was completed and not excluded, it is scored, and it "
                 "ended. A trial without a response counts as wrong.\n\n"
-              : "Exported before unblinding: what was presented and answered is sealed, and "
-                "practice, lead-ins and catch trials cannot be told from scored trials.\n\n";
+              : "Exported before unblinding: what was presented and answered, and when, is "
+                "sealed, and practice, lead-ins and catch trials cannot be told from scored "
+                "trials.\n\n";
   return text;
 }
 

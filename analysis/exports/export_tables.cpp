@@ -54,9 +54,15 @@ constexpr std::array kKinds = {store::EventKind::participant_noted,
                                store::EventKind::resumed};
 
 /// The detail of an interruption. Empty for other events, and for interruptions in virtual time.
-store::InterruptionDetail detail_of(const store::Event& event, const SecretKey& own) {
-  if (event.kind != store::EventKind::interrupted || event.sealed.empty()) return {};
-  return store::interruption_from_json(opened_part(event, own));
+store::InterruptionDetail detail_of(const store::OpenedEvent& opened) {
+  if (opened.event.kind != store::EventKind::interrupted || opened.secret.empty()) return {};
+  return store::interruption_from_json(opened.secret);
+}
+
+/// Events of the file's chain have no sealed part.
+store::OpenedEvent whole(const store::Event& event, const SecretKey& own) {
+  if (belongs_to_file_chain(event.kind)) return {.event = event, .secret = {}};
+  return whole_event(event, own);
 }
 
 int session_of(const store::Event& event) {
@@ -132,12 +138,14 @@ std::vector<std::filesystem::path> export_events(const store::StudyStore& store,
                    "device_fault", "flight", "simulated"},
                   {}};
   std::vector<ExportFile> files;
-  store.for_each_of(kKinds, [&](const store::Event& event) {
-    const auto session = shown.find(session_of(event));
-    const auto own = keys.find(session_of(event));
+  store.for_each_of(kKinds, [&](const store::Event& stored) {
+    const auto session = shown.find(session_of(stored));
+    const auto own = keys.find(session_of(stored));
     if (session == shown.end() || own == keys.end()) return;
     const store::SessionRow& row = *session->second;
-    store::InterruptionDetail detail = detail_of(event, own->second);
+    const store::OpenedEvent opened = whole(stored, own->second);
+    const store::Event& event = opened.event;
+    store::InterruptionDetail detail = detail_of(opened);
     std::string flight;
     if (detail.ticks > 0) {
       flight = fmt::format("{}flight_{}_{}.csv", row.simulated ? "SIMULATED_" : "", row.session,

@@ -36,7 +36,12 @@ DataCell station_number(const SessionRecord& record) {
 constexpr RecordColumn kRecordColumns[] = {
     {"practice_rounds", practised<&PracticeRecord::rounds>},
     {"practice_presentations", practised<&PracticeRecord::presentations>},
-    {"practice_correct", practised<&PracticeRecord::correct>, true},
+    {"practice_correct",
+     [](const SessionRecord& record) -> DataCell {
+       if (!record.practice || !record.practice->correct) return std::monostate{};
+       return std::int64_t{*record.practice->correct};
+     },
+     true},
     {"practice_passed",
      [](const SessionRecord& record) -> DataCell {
        if (!record.practice) return std::monostate{};

@@ -92,7 +92,7 @@ DataCell limited_ticks_of(const TrialView& trial) {
 /// The verdict of the validity rule, which judges the trace; missing without a trace. Before
 /// unblinding, the verdict of the part of the rule that is in clear.
 DataCell validity_of(const TrialView& trial) {
-  if (trial.row.samples == 0) return std::monostate{};
+  if (trial.row.seconds == 0) return std::monostate{};
   return flag(trial.outcome != nullptr ? trial.outcome->valid() : trial.row.valid);
 }
 
@@ -106,31 +106,31 @@ constexpr std::array<TrialColumn, 32> kTrialColumns{{
     {"exemplar", true, exemplar_of},
     {"response", true, response_of},
     {"correct", true, correctness_of},
-    {"confidence", false, number_of<&store::TrialRow::confidence>},
-    {"reaction_time_s", false,
+    {"confidence", true, number_of<&store::TrialRow::confidence>},
+    {"reaction_time_s", true,
      [](const TrialView& t) { return time_between(t.row.presented_at, t.row.answered_at); }},
-    {"from_contact_s", false,
+    {"from_contact_s", true,
      [](const TrialView& t) { return time_between(t.row.contact_at, t.row.answered_at); }},
     {"contact_s", false, measured<&store::TrialMeasures::contact_s>},
     {"path_mm", false, measured<&store::TrialMeasures::path_mm>},
     {"force_rms_n", false, measured<&store::TrialMeasures::force_rms_n>},
     {"saturated_share", false, measured<&store::TrialMeasures::saturated_share>},
     {"valid", false, validity_of},
-    {"presented_at_s", false, [](const TrialView& t) -> DataCell { return t.row.presented_at; }},
+    {"presented_at_s", true, [](const TrialView& t) -> DataCell { return t.row.presented_at; }},
     {"simulated", false, [](const TrialView& t) { return flag(t.simulated); }},
     {"counted", true, [](const TrialView& t) { return flag(t.outcome->counted); }},
     {"kind", true, kind_of},
     {"state", false, state_of},
     {"explorations", false,
      [](const TrialView& t) -> DataCell { return std::int64_t{t.row.explorations}; }},
-    {"first_contact_s", false,
+    {"first_contact_s", true,
      [](const TrialView& t) { return time_between(t.row.presented_at, t.row.contact_at); }},
     {"position", true, number_of<&store::TrialRow::position>},
     {"first_position", true, number_of<&store::TrialRow::first_position>},
     {"valid_in_clear", false, [](const TrialView& t) { return flag(t.row.valid); }},
     {"within_limits", true, limits_of},
     {"limited_ticks", true, limited_ticks_of},
-    {"samples", false, [](const TrialView& t) -> DataCell { return t.row.samples; }},
+    {"samples", true, [](const TrialView& t) -> DataCell { return t.row.samples; }},
     {"sampling_hz", false, [](const TrialView& t) -> DataCell { return t.row.rate_hz; }},
     {"overruns", false, [](const TrialView& t) -> DataCell { return t.row.overruns; }},
 }};

@@ -40,8 +40,8 @@ struct TrialColumn {
 /// outcomes, the rows are the scored trials, whether or not their session counts
 /// (participants_table tells). Without outcomes, the rows are all presented trials, because the
 /// seal also covers which of them were practice or lead-ins. The table then has no columns about
-/// stimuli and answers, and the columns that could tell stimuli apart by how they felt (contact_s,
-/// path_mm, force_rms_n, saturated_share) are empty.
+/// stimuli, answers and times, and the columns that could tell stimuli apart by how they felt
+/// (contact_s, path_mm, force_rms_n, saturated_share) are empty.
 [[nodiscard]] DataTable trials_table(const store::StudyStore& store,
                                      const std::optional<Outcomes>& outcomes);
 

@@ -149,7 +149,9 @@ std::string remark_of(const SessionRecord& one) {
 
 std::string practice_of(const SessionRecord& one) {
   if (!one.practice) return kNoFigure;
-  return fmt::format("{} of {} in {}{}", one.practice->correct, one.practice->presentations,
+  const std::string correct =
+      one.practice->correct ? fmt::format("{} of ", *one.practice->correct) : "";
+  return fmt::format("{}{} in {}{}", correct, one.practice->presentations,
                      counted(one.practice->rounds, "round"),
                      one.practice->passed ? "" : ", not passed");
 }

@@ -36,30 +36,38 @@ Table trials_table(const TrialQuality& quality) {
   };
   add("presented", quality.presented, quality.presented);
   add("answered", quality.answered, quality.presented);
-  add("answer changed before it was given", quality.changed, quality.answered);
   add("no response: time ran out", quality.no_response, quality.presented);
   add("interrupted, and not repeated yet", quality.interrupted, quality.presented);
   add("with a trace", quality.with_trace, quality.presented);
   add("valid by the study's rule, as far as it is in clear", quality.valid, quality.with_trace);
   add("with servo ticks that came late", quality.with_overruns, quality.with_trace);
   table.notes = {
-      {"Shares: of presented trials; of changed answers, of answers; of validity and "
-       "late ticks, of trials with a trace."}};
+      {"Shares: of presented trials; of validity and late ticks, of trials with a trace."}};
   return table;
 }
 
-Table positions_table(const TrialQuality& quality) {
-  Table table{"answers-by-position",
-              "Answers by the picture's place in the layout",
-              {{"place", Align::left}, {"answers"}, {"share"}}};
-  for (std::size_t i = 0; i < quality.by_position.size(); ++i) {
-    const auto share = percentage(quality.by_position[i], quality.answered);
-    table.rows.push_back({std::to_string(i + 1), std::to_string(quality.by_position[i]),
-                          share ? plain_figure(share, 1) + "%" : kNoFigure});
+Table answers_table(const Collection& collection) {
+  Table table{"answers-by-session",
+              "How answers are spread in the sessions that have ended",
+              {{"session", Align::left},
+               {"answers"},
+               {"different"},
+               {"largest share"},
+               {"longest run"},
+               {"median time (s)"}}};
+  for (const SessionRecord& session : collection.sessions) {
+    if (!session.answers) continue;
+    const store::AnswerSummary& answers = *session.answers;
+    table.rows.push_back({std::to_string(session.row.session), std::to_string(answers.n),
+                          std::to_string(answers.different),
+                          plain_figure(100.0 * answers.largest_share, 1) + "%",
+                          std::to_string(answers.longest_run), plain_figure(answers.median_s, 1)});
   }
   table.notes = {
-      {"Layouts differ between participants, so a place does not stand for a texture: unequal "
-       "shares here show a bias of hand or habit."}};
+      {"Different: pictures that were answered. Largest share: of the picture answered most. "
+       "Longest run: answers in a row that name one picture. Median time: from the moment the "
+       "plane can be felt to the answer. Somebody who always presses one key shows here; what is "
+       "right does not."}};
   return table;
 }
 
@@ -113,7 +121,7 @@ Document quality_document(const QualityReport& report, const Collection& collect
                         "Sessions and trials",
                         {sessions_table(report.sessions), trials_table(report.quality)}},
                        participants_section(collection),
-                       {"answers", "Answers by place", {positions_table(report.quality)}},
+                       {"answers", "Answers by session", {answers_table(collection)}},
                        servo_section(report, collection)};
   document.colophon = fmt::format("{}touchtrial {}, {}, event {} of the file's chain",
                                   simulated_line(report.simulated), provenance.program_version,

@@ -138,7 +138,7 @@ void SessionCourse::take_up(const store::Event& event) {
 }
 
 void SessionCourse::close(const store::Event& event) const {
-  if (!store::completion_from_json(event.body)) return;
+  if (!store::closed_from_json(event.body).complete) return;
   if (is_stopped_) fail(event, "the session is complete, but was stopped");
   if (course_.block_to_restart()) {
     fail(event, fmt::format("the session is complete, but block {} was not restarted",

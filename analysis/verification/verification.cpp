@@ -3,13 +3,16 @@
 #include "analysis/outcomes.hpp"
 #include "analysis/sealed_sessions.hpp"
 #include "analysis/text_figures.hpp"
+#include "analysis/verification/clock_notes.hpp"
 #include "analysis/verification/session_course.hpp"
 #include "core/errors.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -73,7 +76,12 @@ SessionCourse course_of(const store::StudyStore& store, const design::StudyKey& 
       session.pilot || session.simulated ? design::Draws::rehearsal : design::Draws::people;
   try {
     SessionCourse course(key.study, key.draw_of(session.enrolment, draws));
-    for (const store::Event& event : store.events(session.session)) course.follow(event);
+    const std::optional<SecretKey> own = participant_key(store, key, session);
+    for (const store::Event& event : store.events(session.session)) {
+      // How long a session was away is sealed; what else matters here is not.
+      const bool has_more = own && event.kind == store::EventKind::resumed;
+      course.follow(has_more ? whole_event(event, *own).event : event);
+    }
     return course;
   } catch (const UsageError& error) {  // StudyError too
     throw VerificationError(fmt::format("session {}: the study has no order for enrolment {}: {}",
@@ -98,10 +106,10 @@ std::string check_schedule(const store::StudyStore& store, const design::StudyKe
                      schedules.size(), presentations);
 }
 
-std::string check_responses(const store::StudyStore& store) {
+std::string check_responses(const store::StudyStore& store, const design::StudyKey& key) {
   const int positions = store.commitment().positions;
   int responses = 0;
-  for (const store::TrialRow& row : store.trials()) {
+  for (const store::TrialRow& row : open_trials(store, key)) {
     for (const std::optional<int>& position : {row.position, row.first_position}) {
       if (!position || (*position >= 0 && *position < positions)) continue;
       throw VerificationError(fmt::format("session {}, trial {}: answers position {} of {}",
@@ -112,36 +120,37 @@ std::string check_responses(const store::StudyStore& store) {
   return fmt::format("{} answers within the {} pictures", responses, positions);
 }
 
-bool has_sealed_part(const store::Event& event) {
-  return event.kind == store::EventKind::opened || event.kind == store::EventKind::trace_stored ||
-         event.kind == store::EventKind::closed || !event.sealed.empty();
-}
-
 std::string check_payloads(const store::StudyStore& store, const design::StudyKey& key) {
-  int opened = 0;
+  int parts = 0;
   for (const auto& [session, own] : participant_keys(store, key)) {
-    for (const store::Event& event : store.events(session)) {
-      if (!has_sealed_part(event)) continue;
-      static_cast<void>(opened_part(event, own));
-      ++opened;
+    std::chrono::nanoseconds last{0};
+    for (const store::Event& stored : store.events(session)) {
+      const store::Event event = whole_event(stored, own).event;
+      if (event.at < last) {
+        throw VerificationError(
+            fmt::format("session {}, event {}: its time is before that of the event before",
+                        session, event.sequence));
+      }
+      last = event.at;
+      ++parts;
     }
   }
   require_sealed_ends(store, key);
-  return fmt::format("{} sealed parts of events, the ends of chains among them", opened);
+  return fmt::format("{} sealed parts of events, the ends of chains among them", parts);
 }
 
 void check_trace(const store::StudyStore& store, const store::Event& event, const SecretKey& own) {
-  const store::TraceBody body = store::trace_body_from_json(event.body);
+  const store::TraceBody body = store::trace_body_from_json(whole_event(event, own).event.body);
   const auto box = store.sealed_trace(event.session, body.trial);
   const auto fail = [&](const std::string& what) {
     throw VerificationError(
         fmt::format("session {}, trial {}: the trace {}", event.session, body.trial, what));
   };
   if (!box) return fail("is missing");
-  const auto samples = static_cast<std::size_t>(body.samples);
-  const auto trace = store::unsealed_trace(*box, own, samples);
+  const auto trace = store::unsealed_trace(*box, own);
   if (!trace) return fail("does not open");
-  if (trace->samples.size() != samples) fail("has another number of samples than its event says");
+  if (trace->samples.size() != static_cast<std::size_t>(body.samples))
+    fail("has another number of samples than its event says");
 }
 
 std::string check_traces(const store::StudyStore& store, const design::StudyKey& key) {
@@ -246,6 +255,7 @@ Verification verify_study(const store::StudyStore& store, const design::StudyKey
   try {
     verification.head = store.file_head();
     verification.simulated = store.commitment().simulated;
+    verification.notes = clock_notes(store);
   } catch (const StoreError&) {
     // The first check reports what is wrong with the file's chain.
   }
@@ -259,7 +269,7 @@ Verification verify_study(const store::StudyStore& store, const design::StudyKey
   with_key("seal", check_seal);
   with_key("configuration", check_configuration);
   with_key("schedule", check_schedule);
-  verification.checks.push_back(done("responses", [&] { return check_responses(store); }));
+  with_key("responses", check_responses);
   with_key("payloads", check_payloads);
   with_key("traces", check_traces);
   verification.checks.push_back(pack == nullptr ? left("pack", "pack") : done("pack", [&] {

@@ -26,6 +26,8 @@ struct Verification {
   std::vector<Check> checks;
   /// The end of the file's chain. A copy kept elsewhere can show that nothing was cut off.
   std::optional<store::ChainHead> head;
+  /// What is worth knowing and no fault: where a clock went back.
+  std::vector<std::string> notes{};
 
   /// Whether no check failed. A check that was not made does not count as failed.
   [[nodiscard]] bool holds() const noexcept;

@@ -40,6 +40,7 @@ std::string verification_json(const Verification& verification) {
     object["checks"].push_back(
         {{"name", check.name}, {"state", name_of(check.state)}, {"detail", check.detail}});
   }
+  object["notes"] = verification.notes;
   return json_text(object);
 }
 
@@ -52,6 +53,7 @@ std::string verification_text(const Verification& verification) {
     text += fmt::format("{:<13}  {} events, head {}\n", "file's chain", verification.head->length,
                         to_hex(verification.head->hash));
   }
+  for (const std::string& note : verification.notes) text += fmt::format("note: {}\n", note);
   return text + unmade_line(verification);
 }
 

@@ -108,14 +108,41 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study,
   return entered;
 }
 
-/// The time since the session's last event.
-nanoseconds away(const store::StudyStore& store, const store::SessionRow& row,
-                 const store::Event& last) {
-  nanoseconds opened{};
+/// An open session as it is stored, opened with the station's copy of its key.
+struct KeptSession {
+  SecretKey key{};
+  std::string schedule;  ///< JSON
+  std::vector<store::Event> events;
+  nanoseconds away{};  ///< since its last event
+};
+
+/// \throws StoreError if this station does not hold the session's key
+KeptSession kept_session(const RunOptions& options, const RunStudy& study,
+                         const store::StudyStore& store, const store::SessionRow& row) {
+  const auto refuse = [&] {
+    throw StoreError(
+        fmt::format("{}: session {} does not open with this station's file; give the file of the "
+                    "station that began it, with --station-file",
+                    options.database.string(), row.session));
+  };
+  const auto kept = store.kept_key(row.session);
+  const auto key =
+      kept ? store::kept_participant_key(study.key.station.secret, row.own_session, *kept)
+           : std::nullopt;
+  if (!key) refuse();
+  KeptSession session{.key = *key, .schedule = {}, .events = {}};
+  for (const store::Event& stored : store.events(row.session)) {
+    auto opened = store::opened_event(stored, *key);
+    if (!opened) refuse();
+    if (stored.sequence == 0) session.schedule = std::move(opened->secret);
+    session.events.push_back(std::move(opened->event));
+  }
+  nanoseconds began{};
   store.for_each(store::EventKind::session_opened, [&](const store::Event& event) {
-    if (store::session_opened_from_json(event.body).session == row.session) opened = event.at;
+    if (store::session_opened_from_json(event.body).session == row.session) began = event.at;
   });
-  return std::max(nanoseconds{}, utc_now() - opened - last.at);
+  session.away = std::max(nanoseconds{}, utc_now() - began - session.events.back().at);
+  return session;
 }
 
 std::string standing(const store::StudyStore& store, const store::SessionRow& row,
@@ -126,26 +153,13 @@ std::string standing(const store::StudyStore& store, const store::SessionRow& ro
                      minutes / 60, minutes % 60);
 }
 
-session::Session restored(const RunOptions& options, const RunStudy& study,
-                          const store::StudyStore& store, const store::SessionRow& row,
-                          store::EventSink& sink) {
-  const std::vector<store::Event> events = store.events(row.session);
-  const auto kept = store.kept_key(row.session);
-  const auto key =
-      kept ? store::kept_participant_key(study.key.station.secret, row.own_session, *kept)
-           : std::nullopt;
-  const auto secret = key ? store::unsealed(events.front(), *key) : std::nullopt;
-  if (!secret) {
-    throw StoreError(
-        fmt::format("{}: session {} does not open with this station's file; give the file of the "
-                    "station that began it, with --station-file",
-                    options.database.string(), row.session));
-  }
+session::Session restored(const RunOptions& options, const RunStudy& study, const KeptSession& kept,
+                          const store::SessionRow& row, store::EventSink& sink) {
   session::Session session(
-      design::schedule_from_json(*secret, study.key), study.key.study.trials,
-      store::SessionRecorder(row.session, *key, sink),
+      design::schedule_from_json(kept.schedule, study.key), study.key.study.trials,
+      store::SessionRecorder(row.session, kept.key, sink),
       block_restart_of(study.key, study.key.draw_of(row.enrolment, draws_of(options))));
-  session.restore(events);
+  session.restore(kept.events);
   return session;
 }
 
@@ -155,19 +169,19 @@ nanoseconds time_after(const RunOptions& options, nanoseconds last, nanoseconds 
 }
 
 EnteredSession resumed_session(const RunOptions& options, const RunStudy& study,
-                               store::StudyStore& store, const store::SessionRow& row,
-                               nanoseconds away) {
+                               store::StudyStore& store, const KeptSession& kept,
+                               const store::SessionRow& row) {
   EnteredSession entered;
   entered.number = row.session;
   entered.enrolment = row.enrolment;
   entered.draw = study.key.draw_of(row.enrolment, draws_of(options));
   entered.sink = store.continue_session(row.session);
   entered.session =
-      std::make_unique<session::Session>(restored(options, study, store, row, *entered.sink));
+      std::make_unique<session::Session>(restored(options, study, kept, row, *entered.sink));
   session::Session& session = *entered.session;
-  entered.clock = time_after(options, session.last(), away);
+  entered.clock = time_after(options, session.last(), kept.away);
   session.take_up(entered.clock, {.after = "program-ended",
-                                  .away_s = std::chrono::duration<double>(away).count(),
+                                  .away_s = std::chrono::duration<double>(kept.away).count(),
                                   .program_version = std::string(program_version())});
   return entered;
 }
@@ -213,9 +227,9 @@ void record_other_station(EnteredSession& entered, const store::SessionOpening& 
 
 /// Ends the session in its present state.
 void give_up(const RunOptions& options, const RunStudy& study, store::StudyStore& store,
-             const store::SessionRow& row) {
+             const KeptSession& kept, const store::SessionRow& row) {
   const std::unique_ptr<store::EventSink> sink = store.continue_session(row.session);
-  session::Session session = restored(options, study, store, row, *sink);
+  session::Session session = restored(options, study, kept, row, *sink);
   if (session.accepts(session::SessionInput::stop)) session.stop(session.last(), "restarted");
   session.close(session.last());
 }
@@ -240,24 +254,23 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
         options.database.string(), row.participant, row.session,
         row.state == store::SessionState::completed ? "complete" : "stopped"));
   }
-  const nanoseconds gone = away(store, row, store.last_event(row.session).value());
-  const std::string stands = standing(store, row, gone);
+  const KeptSession kept = kept_session(options, study, store, row);
+  const std::string stands = standing(store, row, kept.away);
   if (options.on_existing == OnExisting::refuse) {
     throw StoreError(fmt::format(
         "{}: {}; continue with --on-existing resume, or start again with --on-existing restart",
         options.database.string(), stands));
   }
   if (options.on_existing == OnExisting::restart) {
-    give_up(options, study, store, row);
+    give_up(options, study, store, kept, row);
     return begin_anew(options, study, store, row, describe);
   }
-  require_young(options, study, stands, gone);
+  require_young(options, study, stands, kept.away);
   store::SessionOpening now;
   describe(now);
-  const store::SessionOpening then =
-      store::opening_from_json(store.events(row.session).front().body);
+  const store::SessionOpening then = store::opening_from_json(kept.events.front().body);
   require_same_kind(options, row, then, now);
-  EnteredSession entered = resumed_session(options, study, store, row, gone);
+  EnteredSession entered = resumed_session(options, study, store, kept, row);
   record_other_station(entered, then, now);
   return entered;
 }

@@ -3,9 +3,11 @@
 
 #include "core/bytes.hpp"
 #include "core/errors.hpp"
+#include "protocols/collect/answer_watch.hpp"
 #include "protocols/collect/server_address.hpp"
 #include "protocols/store/damage.hpp"
 
+#include <exception>
 #include <map>
 #include <memory>
 #include <string>
@@ -35,12 +37,66 @@ class Contention : public StoreError {
 }
 [[nodiscard]] Bytes bytes_of(const pqxx::field& field);
 
+/// A transaction whose answers are watched. Rolls back unless it was committed.
+class ServerWork {
+ public:
+  ServerWork(pqxx::connection& connection, AnswerWatch& watch) : watch_(watch), work_(connection) {}
+  ~ServerWork() {
+    if (committed_) return;
+    try {
+      const AnswerWatch::Waiting waiting(watch_);
+      work_.abort();
+    } catch (const std::exception&) {
+      // The connection is gone, and the transaction with it.
+    }
+  }
+  ServerWork(const ServerWork&) = delete;
+  ServerWork& operator=(const ServerWork&) = delete;
+
+  template <typename... Arguments>
+  auto exec(Arguments&&... arguments) {
+    const AnswerWatch::Waiting waiting(watch_);
+    return work_.exec(std::forward<Arguments>(arguments)...);
+  }
+  template <typename... Arguments>
+  auto exec1(Arguments&&... arguments) {
+    const AnswerWatch::Waiting waiting(watch_);
+    return work_.exec1(std::forward<Arguments>(arguments)...);
+  }
+  template <typename... Arguments>
+  auto exec_params(Arguments&&... arguments) {
+    const AnswerWatch::Waiting waiting(watch_);
+    return work_.exec_params(std::forward<Arguments>(arguments)...);
+  }
+  template <typename... Arguments>
+  auto exec_params0(Arguments&&... arguments) {
+    const AnswerWatch::Waiting waiting(watch_);
+    return work_.exec_params0(std::forward<Arguments>(arguments)...);
+  }
+  template <typename... Arguments>
+  auto exec_params1(Arguments&&... arguments) {
+    const AnswerWatch::Waiting waiting(watch_);
+    return work_.exec_params1(std::forward<Arguments>(arguments)...);
+  }
+  void commit() {
+    const AnswerWatch::Waiting waiting(watch_);
+    committed_ = true;  // or ended otherwise, if this throws
+    work_.commit();
+  }
+
+ private:
+  AnswerWatch& watch_;
+  pqxx::work work_;
+  bool committed_ = false;
+};
+
 /// Not to be shared between threads.
 class ServerConnection {
  public:
   /// \throws LostConnection if the server cannot be reached or is starting up
-  /// \throws StoreError if it is there and refuses (password, database, version, encoding)
-  explicit ServerConnection(const ServerAddress& address);
+  /// \throws StoreError if it is there and refuses (password, database, version, encoding), does
+  ///   not prove its name, or passes the limits
+  explicit ServerConnection(const ServerAddress& address, const AnswerLimits& limits = {});
 
   [[nodiscard]] const ServerAddress& address() const noexcept { return address_; }
 
@@ -52,7 +108,7 @@ class ServerConnection {
   template <typename Work>
   auto change(Work&& work) {
     return translated([&] {
-      pqxx::work transaction(connection_);
+      ServerWork transaction(connection_, watch_);
       // A program that hangs must not keep others waiting forever.
       transaction.exec("SET LOCAL idle_in_transaction_session_timeout = '5min'");
       if constexpr (std::is_void_v<decltype(work(transaction))>) {
@@ -70,18 +126,19 @@ class ServerConnection {
   template <typename Work>
   auto look(Work&& work) {
     return translated([&] {
-      const std::unique_ptr<pqxx::work> transaction = begin_look();
+      const std::unique_ptr<ServerWork> transaction = begin_look();
       return work(*transaction);
     });
   }
 
   /// A transaction that sees this moment as long as it lives, and changes nothing. Use it inside
   /// `translated`; it must not outlive the connection.
-  [[nodiscard]] std::unique_ptr<pqxx::work> begin_look();
+  [[nodiscard]] std::unique_ptr<ServerWork> begin_look();
 
   /// Rewrites the table of keys, so that deleted keys are no longer in its file. Only the table's
   /// owner may do that; for everybody else this does nothing.
-  void wipe_deleted_keys() noexcept;
+  /// \return whether it was done
+  bool wipe_deleted_keys() noexcept;
 
   /// \throws StoreError "<address>: <text>"
   [[noreturn]] void refuse(const std::string& text) const;
@@ -112,6 +169,7 @@ class ServerConnection {
   ServerAddress address_;
   std::map<int, std::string> places_;
   pqxx::connection connection_;
+  AnswerWatch watch_;
 };
 
 }  // namespace touchtrial::collect

@@ -17,9 +17,10 @@ namespace {
 
 /// Roughly how much is sent to the server or fetched from it at a time, in bytes.
 constexpr std::size_t kBatch = 8U << 20U;
-/// No event or trace of ours is nearly as large.
-constexpr std::int64_t kLargestEvent = 64 << 20;
-constexpr std::int64_t kLargestTrace = 512 << 20;
+/// No event or trace of ours is nearly as large. As text, bytes travel in twice their number, and
+/// stay below the limit of an answer (answer_watch.hpp).
+constexpr std::int64_t kLargestEvent = 16 << 20;
+constexpr std::int64_t kLargestTrace = 24 << 20;
 
 /// A column of many rows as one parameter of a statement, in PostgreSQL's text form of arrays:
 /// "{1,NULL,\"text\"}", to be cast to the column's type in SQL.
@@ -90,7 +91,7 @@ std::string insertion_sql(store::Table table) {
 /// Sends rows of a table, a batch at a time.
 class RowBatch {
  public:
-  RowBatch(pqxx::work& work, store::Table table)
+  RowBatch(ServerWork& work, store::Table table)
       : work_(work), table_(table), columns_(store::table_definition(table).columns.size()) {}
 
   /// The values of a row, in the order of the table's columns.
@@ -119,7 +120,7 @@ class RowBatch {
     if (size > kBatch) send();
   }
 
-  pqxx::work& work_;
+  ServerWork& work_;
   store::Table table_;
   std::vector<ServerArray> columns_;
 };
@@ -128,7 +129,7 @@ class RowBatch {
 /// be twice as long.
 class TraceBatch {
  public:
-  TraceBatch(pqxx::work& work, int session) : work_(work), session_(session) {}
+  TraceBatch(ServerWork& work, int session) : work_(work), session_(session) {}
 
   void add(int trial, const Bytes& box) {
     if (!boxes_.empty() && boxes_.size() + box.size() > kBatch) send();
@@ -150,7 +151,7 @@ class TraceBatch {
   }
 
  private:
-  pqxx::work& work_;
+  ServerWork& work_;
   int session_;
   Bytes boxes_;
   ServerArray trials_, starts_, lengths_;
@@ -174,7 +175,7 @@ store::Event event_of(const pqxx::row& row, int session) {
           .hash = store::stored_hash(bytes_of(row[6]), session, sequence)};
 }
 
-void refuse_large_events(pqxx::work& work, int session) {
+void refuse_large_events(ServerWork& work, int session) {
   const pqxx::result found = work.exec_params(
       "SELECT sequence FROM events WHERE session = $1 AND octet_length(kind) + "
       "octet_length(body) + octet_length(sealed) + octet_length(previous) + octet_length(hash) > "
@@ -187,7 +188,7 @@ void refuse_large_events(pqxx::work& work, int session) {
 
 }  // namespace
 
-void insert_events(pqxx::work& work, int session, std::span<const store::Event> events) {
+void insert_events(ServerWork& work, int session, std::span<const store::Event> events) {
   RowBatch batch(work, store::Table::events);
   for (const store::Event& event : events) {
     batch.add(session, event.sequence, store::name_of(event.kind), event.at.count(), event.body,
@@ -196,37 +197,34 @@ void insert_events(pqxx::work& work, int session, std::span<const store::Event> 
   batch.send();
 }
 
-void insert_traces(pqxx::work& work, int session, StationFile& station, int own_session) {
+void insert_traces(ServerWork& work, int session, StationFile& station, int own_session) {
   TraceBatch batch(work, session);
   station.for_each_trace(own_session, [&](int trial, const Bytes& box) { batch.add(trial, box); });
   batch.send();
 }
 
-void insert_key(pqxx::work& work, int session, const Bytes& wrapped) {
+void insert_key(ServerWork& work, int session, const Bytes& wrapped) {
   work.exec_params0("INSERT INTO participant_keys(session, wrapped) VALUES($1, $2)", session,
                     binary(wrapped));
 }
 
-void insert_session(pqxx::work& work, const store::SessionRow& row) {
+void insert_session(ServerWork& work, const store::SessionRow& row) {
   RowBatch batch(work, store::Table::sessions);
   batch.add(store::session_cells(row, store::OwnNumber::always));
   batch.send();
 }
 
-void insert_trials(pqxx::work& work, int session, const store::DerivedRows& rows) {
+void insert_trials(ServerWork& work, int session, const store::DerivedRows& rows) {
   RowBatch trials(work, store::Table::trials);
-  RowBatch responses(work, store::Table::responses);
   for (const auto& [id, own] : rows.trials) {
     store::TrialRow row = own;
     row.session = session;
     trials.add(store::trial_cells(row));
-    if (row.position) responses.add(store::response_cells(row));
   }
   trials.send();
-  responses.send();
 }
 
-std::vector<store::Event> read_events(pqxx::work& work, int session, std::int64_t first) {
+std::vector<store::Event> read_events(ServerWork& work, int session, std::int64_t first) {
   refuse_large_events(work, session);
   const pqxx::result rows = work.exec_params(
       "SELECT sequence, kind, at_ns, body, sealed, previous, hash, own_session FROM events "
@@ -238,7 +236,7 @@ std::vector<store::Event> read_events(pqxx::work& work, int session, std::int64_
   return events;
 }
 
-std::optional<Bytes> read_key(pqxx::work& work, int session) {
+std::optional<Bytes> read_key(ServerWork& work, int session) {
   const pqxx::result rows = work.exec_params(
       "SELECT wrapped FROM participant_keys WHERE session = $1 AND octet_length(wrapped) < 4096",
       session);
@@ -246,7 +244,7 @@ std::optional<Bytes> read_key(pqxx::work& work, int session) {
   return bytes_of(rows[0][0]);
 }
 
-std::optional<Bytes> read_trace(pqxx::work& work, int session, int trial) {
+std::optional<Bytes> read_trace(ServerWork& work, int session, int trial) {
   const pqxx::result rows = work.exec_params(
       "SELECT box FROM traces WHERE session = $1 AND trial = $2 AND octet_length(box) <= $3",
       session, trial, kLargestTrace);
@@ -254,7 +252,7 @@ std::optional<Bytes> read_trace(pqxx::work& work, int session, int trial) {
   return bytes_of(rows[0][0]);
 }
 
-std::vector<TrialRange> trace_batches(pqxx::work& work, int session) {
+std::vector<TrialRange> trace_batches(ServerWork& work, int session) {
   std::vector<TrialRange> batches;
   std::int64_t bytes = 0;
   for (const pqxx::row& row : work.exec_params(
@@ -274,7 +272,7 @@ std::vector<TrialRange> trace_batches(pqxx::work& work, int session) {
   return batches;
 }
 
-std::vector<std::pair<int, Bytes>> read_traces(pqxx::work& work, int session,
+std::vector<std::pair<int, Bytes>> read_traces(ServerWork& work, int session,
                                                const TrialRange& trials) {
   std::vector<std::pair<int, Bytes>> traces;
   for (const pqxx::row& row : work.exec_params(
@@ -286,7 +284,7 @@ std::vector<std::pair<int, Bytes>> read_traces(pqxx::work& work, int session,
   return traces;
 }
 
-std::map<std::int64_t, Bytes> trace_digests(pqxx::work& work, int session) {
+std::map<std::int64_t, Bytes> trace_digests(ServerWork& work, int session) {
   std::map<std::int64_t, Bytes> digests;
   for (const pqxx::row& row :
        work.exec_params("SELECT trial, sha256(box) FROM traces WHERE session = $1", session)) {

@@ -16,23 +16,23 @@
 namespace touchtrial::collect {
 
 /// \param session  the number on the server; -1, -2, ... for a station's file chain
-void insert_events(pqxx::work& work, int session, std::span<const store::Event> events);
+void insert_events(ServerWork& work, int session, std::span<const store::Event> events);
 /// Inserts all traces of a session, a few megabytes at a time.
-void insert_traces(pqxx::work& work, int session, StationFile& station, int own_session);
-void insert_key(pqxx::work& work, int session, const Bytes& wrapped);
+void insert_traces(ServerWork& work, int session, StationFile& station, int own_session);
+void insert_key(ServerWork& work, int session, const Bytes& wrapped);
 /// \param row  row.session is the number on the server
-void insert_session(pqxx::work& work, const store::SessionRow& row);
-/// Inserts rows of trials and responses.
+void insert_session(ServerWork& work, const store::SessionRow& row);
+/// Inserts rows of trials.
 /// \param rows  by own numbers
-void insert_trials(pqxx::work& work, int session, const store::DerivedRows& rows);
+void insert_trials(ServerWork& work, int session, const store::DerivedRows& rows);
 
 /// Events as the station wrote them: with the session's own number, 0 for a file chain.
 /// \param first  the least sequence
 /// \throws EventFault, by the number on the server, if a row is no event or absurdly large
-[[nodiscard]] std::vector<store::Event> read_events(pqxx::work& work, int session,
+[[nodiscard]] std::vector<store::Event> read_events(ServerWork& work, int session,
                                                     std::int64_t first = 0);
-[[nodiscard]] std::optional<Bytes> read_key(pqxx::work& work, int session);
-[[nodiscard]] std::optional<Bytes> read_trace(pqxx::work& work, int session, int trial);
+[[nodiscard]] std::optional<Bytes> read_key(ServerWork& work, int session);
+[[nodiscard]] std::optional<Bytes> read_trace(ServerWork& work, int session, int trial);
 
 /// Trials from the first to the last.
 struct TrialRange {
@@ -41,11 +41,11 @@ struct TrialRange {
 };
 /// Cuts a session's traces into batches of a few megabytes.
 /// \throws EventFault if a trace is absurdly large
-[[nodiscard]] std::vector<TrialRange> trace_batches(pqxx::work& work, int session);
+[[nodiscard]] std::vector<TrialRange> trace_batches(ServerWork& work, int session);
 /// Trial and trace, by trial.
-[[nodiscard]] std::vector<std::pair<int, Bytes>> read_traces(pqxx::work& work, int session,
+[[nodiscard]] std::vector<std::pair<int, Bytes>> read_traces(ServerWork& work, int session,
                                                              const TrialRange& trials);
 /// SHA-256 of every trace of a session, by trial, as the server has it.
-[[nodiscard]] std::map<std::int64_t, Bytes> trace_digests(pqxx::work& work, int session);
+[[nodiscard]] std::map<std::int64_t, Bytes> trace_digests(ServerWork& work, int session);
 
 }  // namespace touchtrial::collect

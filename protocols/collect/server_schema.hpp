@@ -14,7 +14,7 @@ namespace touchtrial::collect {
 inline constexpr store::TypeNames kServerTypes = {"BIGINT", "DOUBLE PRECISION", "TEXT", "BYTEA"};
 
 /// One step forward. It runs inside a transaction.
-using ServerMigration = void (*)(pqxx::work&);
+using ServerMigration = void (*)(ServerWork&);
 
 /// server_migrations()[i] makes version kOldestSchemaVersion + i + 1 of the one before it.
 [[nodiscard]] std::span<const ServerMigration> server_migrations();

@@ -32,7 +32,7 @@ class Snapshot {
 
  private:
   ServerConnection server_;
-  std::unique_ptr<pqxx::work> look_;  // destroyed before the connection
+  std::unique_ptr<ServerWork> look_;  // destroyed before the connection
 };
 
 class ServerStation final : public StationFile {
@@ -49,12 +49,12 @@ class ServerStation final : public StationFile {
 
   std::vector<store::Event> file_chain() override {
     return snapshot_->ask(
-        [&](pqxx::work& work) { return read_events(work, chain_number(station_)); });
+        [&](ServerWork& work) { return read_events(work, chain_number(station_)); });
   }
 
   std::vector<store::Event> events(int own_session) override {
     return ask_about(own_session,
-                     [](pqxx::work& work, int session) { return read_events(work, session); });
+                     [](ServerWork& work, int session) { return read_events(work, session); });
   }
 
   std::optional<Bytes> wrapped_key(int own_session) override {
@@ -62,7 +62,7 @@ class ServerStation final : public StationFile {
   }
 
   std::optional<Bytes> trace(int own_session, int trial) override {
-    return ask_about(own_session, [&](pqxx::work& work, int session) {
+    return ask_about(own_session, [&](ServerWork& work, int session) {
       return read_trace(work, session, trial);
     });
   }
@@ -70,7 +70,7 @@ class ServerStation final : public StationFile {
   void for_each_trace(int own_session,
                       const std::function<void(int, const Bytes&)>& visit) override {
     for (const TrialRange& batch : ask_about(own_session, trace_batches)) {
-      const auto traces = ask_about(own_session, [&](pqxx::work& work, int session) {
+      const auto traces = ask_about(own_session, [&](ServerWork& work, int session) {
         return read_traces(work, session, batch);
       });
       // Outside `ask`: errors of `visit` are not the server's.
@@ -82,10 +82,10 @@ class ServerStation final : public StationFile {
   /// What `read` gets for a session by its number on the server; nothing if there is none.
   template <typename Read>
   auto ask_about(int own_session, Read read)
-      -> decltype(read(std::declval<pqxx::work&>(), own_session)) {
+      -> decltype(read(std::declval<ServerWork&>(), own_session)) {
     const auto found = sessions_.find(own_session);
     if (found == sessions_.end()) return {};
-    return snapshot_->ask([&](pqxx::work& work) { return read(work, found->second); });
+    return snapshot_->ask([&](ServerWork& work) { return read(work, found->second); });
   }
 
   std::shared_ptr<Snapshot> snapshot_;
@@ -95,7 +95,7 @@ class ServerStation final : public StationFile {
 };
 
 /// Refuses rows that belong to nothing that was pushed. No other check would find them.
-void refuse_strays(pqxx::work& work, const ServerConnection& server) {
+void refuse_strays(ServerWork& work, const ServerConnection& server) {
   for (const char* const table : {"events", "traces", "participant_keys"}) {
     const pqxx::result strays = work.exec(
         "SELECT e.session FROM (SELECT DISTINCT session FROM " + std::string(table) +
@@ -109,7 +109,7 @@ void refuse_strays(pqxx::work& work, const ServerConnection& server) {
 }
 
 std::map<int, std::unique_ptr<ServerStation>> named_stations(
-    pqxx::work& work, const std::shared_ptr<Snapshot>& snapshot) {
+    ServerWork& work, const std::shared_ptr<Snapshot>& snapshot) {
   std::map<int, std::unique_ptr<ServerStation>> stations;
   std::map<int, std::string> places;
   // Rows of stations without a chain and sessions are left out: any station's role can write them.
@@ -139,9 +139,9 @@ std::map<int, std::unique_ptr<ServerStation>> named_stations(
 /// The station's number on the server, and the session's own number.
 using Place = std::pair<int, int>;
 
-/// \param tables  whose columns the row has, one table after the other
-store::Cells row_cells(const pqxx::row& row, std::initializer_list<store::Table> tables) {
-  return store::cells_of(tables, [&](int column, store::ColumnType type) -> store::Cell {
+/// \param table  whose columns the row has
+store::Cells row_cells(const pqxx::row& row, store::Table table) {
+  return store::cells_of(table, [&](int column, store::ColumnType type) -> store::Cell {
     const pqxx::field field = row[static_cast<pqxx::row::size_type>(column)];
     if (field.is_null()) return {};
     if (type == store::ColumnType::integer) return field.as<std::int64_t>();
@@ -153,7 +153,7 @@ store::Cells row_cells(const pqxx::row& row, std::initializer_list<store::Table>
 /// Holds the derived tables on a server against a study that was collected from its events.
 class DerivedCheck {
  public:
-  DerivedCheck(pqxx::work& work, const ServerConnection& server, const store::StudyStore& collected)
+  DerivedCheck(ServerWork& work, const ServerConnection& server, const store::StudyStore& collected)
       : work_(work), server_(server) {
     std::map<int, int> stations;  // on the server, by the number in the collected study
     for (int station = 1; station <= collected.stations(); ++station) {
@@ -170,7 +170,6 @@ class DerivedCheck {
     }
     for (const store::TrialRow& row : collected.trials()) {
       trials_[{places[row.session], row.trial}] = row;
-      responses_ += row.answered_at ? 1 : 0;
     }
   }
 
@@ -178,19 +177,13 @@ class DerivedCheck {
   void run() {
     check_sessions();
     check_trials();
-    if (work_.exec1("SELECT count(*) FROM responses")[0].as<int>() != responses_) {
-      throw store::DamagedStore(
-          server_.address().shown() +
-          ": table responses holds rows without a trial; restore the database from "
-          "a backup");
-    }
   }
 
  private:
   void check_sessions() {
     for (const pqxx::row& row :
          work_.exec("SELECT " + store::column_list(store::Table::sessions) + " FROM sessions")) {
-      store::SessionRow there = store::session_row(row_cells(row, {store::Table::sessions}));
+      store::SessionRow there = store::session_row(row_cells(row, store::Table::sessions));
       const Place place(there.station, there.own_session);
       places_[there.session] = place;
       const auto expected = sessions_.extract(place);
@@ -203,15 +196,12 @@ class DerivedCheck {
 
   void check_trials() {
     for (const pqxx::row& row :
-         work_.exec("SELECT " + store::column_list(store::Table::trials, "t.") + ", " +
-                    store::column_list(store::Table::responses, "r.") +
-                    " FROM trials t LEFT JOIN responses r USING(session, trial)")) {
-      store::TrialRow there =
-          store::trial_row(row_cells(row, {store::Table::trials, store::Table::responses}));
+         work_.exec("SELECT " + store::column_list(store::Table::trials) + " FROM trials")) {
+      store::TrialRow there = store::trial_row(row_cells(row, store::Table::trials));
       const Place place = places_[there.session];
       const auto expected = trials_.extract({place, there.trial});
       if (!expected.empty()) there.session = expected.mapped().session;
-      if (expected.empty() || expected.mapped() != there) refuse("trials or responses", place);
+      if (expected.empty() || expected.mapped() != there) refuse("trials", place);
     }
     if (!trials_.empty()) refuse("trials", trials_.begin()->first.first);
   }
@@ -223,12 +213,11 @@ class DerivedCheck {
                               " disagrees with the events; restore the database from a backup");
   }
 
-  pqxx::work& work_;
+  ServerWork& work_;
   const ServerConnection& server_;
   std::map<int, Place> places_;  ///< by the session's number on the server
   std::map<Place, store::SessionRow> sessions_;
   std::map<std::pair<Place, int>, store::TrialRow> trials_;
-  int responses_ = 0;
 };
 
 }  // namespace
@@ -238,10 +227,10 @@ Stations stations_of_server(const ServerAddress& address, DerivedTables* derived
   if (derived != nullptr) {
     *derived = [snapshot](const store::StudyStore& collected) {
       snapshot->ask(
-          [&](pqxx::work& work) { DerivedCheck(work, snapshot->server(), collected).run(); });
+          [&](ServerWork& work) { DerivedCheck(work, snapshot->server(), collected).run(); });
     };
   }
-  return snapshot->ask([&](pqxx::work& work) {
+  return snapshot->ask([&](ServerWork& work) {
     refuse_strays(work, snapshot->server());
     Stations stations;
     for (auto& [number, station] : named_stations(work, snapshot)) {

@@ -20,7 +20,7 @@ struct Holder {
   int enrolment = 0;
 };
 
-std::optional<Holder> holder_of(pqxx::work& work, const store::SessionRow& row) {
+std::optional<Holder> holder_of(ServerWork& work, const store::SessionRow& row) {
   const pqxx::result found = work.exec_params(
       "SELECT s.session, coalesce(s.own_session, s.session), s.station, t.name, s.participant, "
       "s.enrolment FROM sessions s JOIN stations t USING(station) WHERE s.replaced_by IS NULL "
@@ -49,7 +49,7 @@ auto parsed_from(int session, const std::string& body, Parse parse) {
 }
 
 /// "opened 2026-01-05T10:00:00Z on falcon 1234", from the session's first event on the server.
-std::string opening_of(pqxx::work& work, int session) {
+std::string opening_of(ServerWork& work, int session) {
   const pqxx::result found = work.exec_params(
       "SELECT body FROM events WHERE session = $1 AND sequence = 0 AND octet_length(body) < 65536",
       session);
@@ -161,7 +161,7 @@ class ArrivedSession {
 };
 
 /// \throws DamagedStore if this very session is there
-void refuse_if_cut_off(pqxx::work& work, const ServerConnection& server,
+void refuse_if_cut_off(ServerWork& work, const ServerConnection& server,
                        const store::SessionRow& row) {
   const pqxx::result found =
       work.exec_params("SELECT 1 FROM sessions WHERE station = $1 AND own_session = $2",
@@ -175,7 +175,7 @@ void refuse_if_cut_off(pqxx::work& work, const ServerConnection& server,
 }
 
 /// \throws StoreError if another session has its participant or enrolment number
-void refuse_if_taken(pqxx::work& work, const ServerConnection& server,
+void refuse_if_taken(ServerWork& work, const ServerConnection& server,
                      const store::SessionRow& row) {
   if (!row.replaced_by.empty()) return;
   const std::optional<Holder> holder = holder_of(work, row);
@@ -197,33 +197,45 @@ void refuse_if_taken(pqxx::work& work, const ServerConnection& server,
 
 }  // namespace
 
-void lock_station(pqxx::work& work, const Digest& identity) {
-  work.exec_params(
-      "SELECT pg_advisory_xact_lock(hashtextextended('touchtrial ' || current_schema() || $1, 0))",
-      to_hex(identity));
+int server_session(const ServerConnection& server, int station, int own_session) {
+  constexpr int kMostSessions = 100'000;
+  constexpr int kMostStations = 20'000;
+  if (own_session < 1 || own_session > kMostSessions || station < 1 || station > kMostStations) {
+    server.refuse("has no number for session " + std::to_string(own_session) + " of station " +
+                  std::to_string(station) + "; use another database");
+  }
+  return (station - 1) * kMostSessions + own_session;
 }
 
-std::optional<int> find_station(pqxx::work& work, const Digest& identity) {
+void lock_station(ServerWork& work, const Digest& identity) {
+  work.exec_params("SELECT touchtrial_lock_station($1)", binary(identity));
+}
+
+std::optional<int> find_station(ServerWork& work, const Digest& identity) {
   const pqxx::result found =
       work.exec_params("SELECT station FROM stations WHERE identity = $1", binary(identity));
   if (found.empty()) return std::nullopt;
   return found[0][0].as<int>();
 }
 
-int register_station(pqxx::work& work, const ServerConnection& server, const Digest& identity,
+int register_station(ServerWork& work, const ServerConnection& server, const Digest& identity,
                      const std::string& name, const store::Event& commitment) {
-  // Two first stations of two studies come one after the other.
-  work.exec("SELECT pg_advisory_xact_lock(hashtextextended('touchtrial ' || current_schema(), 0))");
   refuse_other_study(work, server, commitment);
-  return work
-      .exec_params1(
-          "INSERT INTO stations(station, identity, name) SELECT coalesce(max(station), 0) + 1, $1, "
-          "$2 FROM stations RETURNING station",
-          binary(identity), name)[0]
-      .as<int>();
+  const int station = work.exec1("SELECT touchtrial_next_station()")[0].as<int>();
+  const pqxx::result other =
+      work.exec_params("SELECT name FROM stations WHERE station = $1", station);
+  if (!other.empty()) {
+    server.refuse("this role is station " + std::to_string(station) + " (" +
+                  one_line(other[0][0].as<std::string>()) +
+                  "), whose file is another; have the owner admit a role of its own for this file "
+                  "(touchtrial_admit)");
+  }
+  work.exec_params0("INSERT INTO stations(station, identity, name) VALUES($1, $2, $3)", station,
+                    binary(identity), name);
+  return station;
 }
 
-void refuse_other_study(pqxx::work& work, const ServerConnection& server,
+void refuse_other_study(ServerWork& work, const ServerConnection& server,
                         const store::Event& commitment) {
   const pqxx::result found = work.exec(
       "SELECT body, session FROM events WHERE session < 0 AND sequence = 0 ORDER BY session DESC "
@@ -237,7 +249,7 @@ void refuse_other_study(pqxx::work& work, const ServerConnection& server,
                 "); give each its own database (createdb)");
 }
 
-store::ChainHead chain_head(pqxx::work& work, int station) {
+store::ChainHead chain_head(ServerWork& work, int station) {
   const pqxx::result found = work.exec_params(
       "SELECT sequence, hash FROM events WHERE session = $1 ORDER BY sequence DESC LIMIT 1",
       chain_number(station));
@@ -247,7 +259,7 @@ store::ChainHead chain_head(pqxx::work& work, int station) {
           .hash = store::stored_hash(bytes_of(found[0][1]), chain_number(station), last)};
 }
 
-std::optional<std::int64_t> parting(pqxx::work& work, int station,
+std::optional<std::int64_t> parting(ServerWork& work, int station,
                                     std::span<const store::Event> file_chain) {
   const pqxx::result hashes = work.exec_params(
       "SELECT sequence, hash FROM events WHERE session = $1 AND sequence < $2 ORDER BY sequence",
@@ -261,13 +273,13 @@ std::optional<std::int64_t> parting(pqxx::work& work, int station,
   return std::nullopt;
 }
 
-void refuse_if_there_or_taken(pqxx::work& work, const ServerConnection& server,
+void refuse_if_there_or_taken(ServerWork& work, const ServerConnection& server,
                               const store::SessionRow& row) {
   refuse_if_cut_off(work, server, row);
   refuse_if_taken(work, server, row);
 }
 
-bool update_session(pqxx::work& work, int station, int own_session,
+bool update_session(ServerWork& work, int station, int own_session,
                     const store::SessionOnFile& course, std::int64_t end) {
   const auto holds = [&](const std::optional<std::int64_t>& at) { return at && *at < end; };
   work.exec_params0(
@@ -276,14 +288,14 @@ bool update_session(pqxx::work& work, int station, int own_session,
       station, own_session, int{holds(course.excluded_at)}, int{holds(course.withdrawn_at)},
       holds(course.replaced_at) ? course.replaced_by : std::string());
   if (!holds(course.withdrawn_at)) return false;
-  const pqxx::result removed = work.exec_params(
-      "DELETE FROM participant_keys WHERE session IN "
-      "(SELECT session FROM sessions WHERE station = $1 AND own_session = $2)",
+  const pqxx::result destroyed = work.exec_params(
+      "SELECT coalesce(sum(touchtrial_destroy_key(session)), 0) FROM sessions "
+      "WHERE station = $1 AND own_session = $2",
       station, own_session);
-  return removed.affected_rows() > 0;
+  return destroyed[0][0].as<int>() > 0;
 }
 
-std::vector<KeyThere> keys_of_station(pqxx::work& work, int station) {
+std::vector<KeyThere> keys_of_station(ServerWork& work, int station) {
   std::vector<KeyThere> keys;
   for (const pqxx::row& row :
        work.exec_params("SELECT s.session, s.own_session, coalesce(sha256(k.wrapped), '') FROM "
@@ -296,7 +308,7 @@ std::vector<KeyThere> keys_of_station(pqxx::work& work, int station) {
   return keys;
 }
 
-void check_session_arrival(pqxx::work& work, const ServerConnection& server, int session,
+void check_session_arrival(ServerWork& work, const ServerConnection& server, int session,
                            int own_session, const store::SessionOnFile& course,
                            const store::StudyCommitment& commitment,
                            const std::optional<BoxKeys>& investigator, bool has_key) {
@@ -310,7 +322,7 @@ void check_session_arrival(pqxx::work& work, const ServerConnection& server, int
   if (investigator && wrapped) arrived.check_sealed_end(*wrapped, *investigator, events);
 }
 
-void check_chain_arrival(pqxx::work& work, const ServerConnection& server, int station,
+void check_chain_arrival(ServerWork& work, const ServerConnection& server, int station,
                          std::span<const store::Event> file_chain, std::int64_t first) {
   const std::vector<store::Event> tail = read_events(work, chain_number(station), first);
   store::ChainLink chain =

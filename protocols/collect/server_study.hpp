@@ -19,35 +19,41 @@ namespace touchtrial::collect {
   return -station;
 }
 
+/// The number of a station's session on the server. It follows from the session's own, so that no
+/// station can take another's number or use them up. The schema's touchtrial_station_of agrees.
+/// \throws StoreError if there are more than 100,000 sessions or 20,000 stations
+[[nodiscard]] int server_session(const ServerConnection& server, int station, int own_session);
+
 /// Until the transaction ends, nobody else changes this station.
-void lock_station(pqxx::work& work, const Digest& identity);
-[[nodiscard]] std::optional<int> find_station(pqxx::work& work, const Digest& identity);
+/// \throws StoreError if the role is neither a station of the study nor its owner
+void lock_station(ServerWork& work, const Digest& identity);
+[[nodiscard]] std::optional<int> find_station(ServerWork& work, const Digest& identity);
 /// \param commitment  first event of its file chain
-/// \throws StoreError if the server has another study
-[[nodiscard]] int register_station(pqxx::work& work, const ServerConnection& server,
+/// \throws StoreError if the server has another study, or the role is another station
+[[nodiscard]] int register_station(ServerWork& work, const ServerConnection& server,
                                    const Digest& identity, const std::string& name,
                                    const store::Event& commitment);
 /// \throws StoreError if the server has another study
-void refuse_other_study(pqxx::work& work, const ServerConnection& server,
+void refuse_other_study(ServerWork& work, const ServerConnection& server,
                         const store::Event& commitment);
 
-[[nodiscard]] store::ChainHead chain_head(pqxx::work& work, int station);
+[[nodiscard]] store::ChainHead chain_head(ServerWork& work, int station);
 /// The sequence of the first event that differs in the server's copy of a chain; nothing if one of
 /// the two chains begins with the other.
-[[nodiscard]] std::optional<std::int64_t> parting(pqxx::work& work, int station,
+[[nodiscard]] std::optional<std::int64_t> parting(ServerWork& work, int station,
                                                   std::span<const store::Event> file_chain);
 
 /// \pre the station's file chain on the server ends before this session does
 /// \throws DamagedStore if the server has the session: it then lost the end of the chain
 /// \throws StoreError, naming the other session, if the participant or enrolment number is taken by
 ///   a session that nobody replaced
-void refuse_if_there_or_taken(pqxx::work& work, const ServerConnection& server,
+void refuse_if_there_or_taken(ServerWork& work, const ServerConnection& server,
                               const store::SessionRow& row);
 
 /// Brings a stored session up to date with the chain up to `end`: exclusion, replacement,
 /// withdrawal, which destroys its key.
 /// \return whether a key was destroyed
-bool update_session(pqxx::work& work, int station, int own_session,
+bool update_session(ServerWork& work, int station, int own_session,
                     const store::SessionOnFile& course, std::int64_t end);
 
 /// The key of a stored session that was not withdrawn on the server.
@@ -56,7 +62,7 @@ struct KeyThere {
   int own_session = 0;
   Bytes digest;  ///< SHA-256 of the wrapped key; empty: it is gone
 };
-[[nodiscard]] std::vector<KeyThere> keys_of_station(pqxx::work& work, int station);
+[[nodiscard]] std::vector<KeyThere> keys_of_station(ServerWork& work, int station);
 
 /// Reads an arrived session back, in the transaction that brought it, and checks: every hash,
 /// length and head as the file chain says, study and seal those of the commitment, traces those
@@ -64,7 +70,7 @@ struct KeyThere {
 /// \param investigator  the investigator's keys, if known: the session's sealed end is then opened
 /// as well \param has_key  whether the session's key must be there \throws StoreError naming what
 /// does not hold
-void check_session_arrival(pqxx::work& work, const ServerConnection& server, int session,
+void check_session_arrival(ServerWork& work, const ServerConnection& server, int session,
                            int own_session, const store::SessionOnFile& course,
                            const store::StudyCommitment& commitment,
                            const std::optional<BoxKeys>& investigator, bool has_key);
@@ -74,7 +80,7 @@ void check_session_arrival(pqxx::work& work, const ServerConnection& server, int
 /// \param file_chain  the station's chain up to where it has been pushed
 /// \param first  sequence from which on it was pushed now
 /// \throws StoreError
-void check_chain_arrival(pqxx::work& work, const ServerConnection& server, int station,
+void check_chain_arrival(ServerWork& work, const ServerConnection& server, int station,
                          std::span<const store::Event> file_chain, std::int64_t first);
 
 }  // namespace touchtrial::collect

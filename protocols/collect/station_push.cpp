@@ -107,7 +107,7 @@ class StationPush {
       sent_.reset();
     }
     restore_keys();
-    if (key_destroyed_) server_->wipe_deleted_keys();
+    if (report_.keys_destroyed > 0) report_.keys_wiped = server_->wipe_deleted_keys();
   }
 
   void look_only() {
@@ -120,7 +120,7 @@ class StationPush {
       for (const int session : segment.sessions) report_.pushed.push_back(named(session));
       report_.chain_events += segment.end - segment.first;
       if (!has_tables) continue;
-      server_->look([&](pqxx::work& work) {
+      server_->look([&](ServerWork& work) {
         for (const int session : segment.sessions) {
           const store::DerivedRows rows = folded(station_.events(session));
           static_cast<void>(checked_row(work, rows, report_.station, session, segment.end));
@@ -144,7 +144,7 @@ class StationPush {
   /// How much of the file chain the server has.
   /// \throws StoreError if it has another one
   [[nodiscard]] std::int64_t stored_length() {
-    return server_->look([&](pqxx::work& work) -> std::int64_t {
+    return server_->look([&](ServerWork& work) -> std::int64_t {
       refuse_other_study(work, *server_, chain_.front());
       if (chain_.size() < 2) return 0;
       const std::optional<int> station = find_station(work, identity());
@@ -154,7 +154,7 @@ class StationPush {
     });
   }
 
-  [[nodiscard]] std::int64_t length_there(pqxx::work& work, int station) const {
+  [[nodiscard]] std::int64_t length_there(ServerWork& work, int station) const {
     const store::ChainHead head = chain_head(work, station);
     const auto here = static_cast<std::int64_t>(chain_.size());
     if (const auto parted = parting(work, station, chain_)) {
@@ -185,7 +185,8 @@ class StationPush {
   }
 
   void push(const ChainSegment& segment) {
-    server_->change([&](pqxx::work& work) {
+    report_.keys_destroyed += server_->change([&](ServerWork& work) {
+      int keys_destroyed = 0;
       lock_station(work, identity());
       const int station = station_number(work);
       if (chain_head(work, station).length != segment.first) {
@@ -194,7 +195,7 @@ class StationPush {
       for (const auto& [session, course] : courses_) {
         const bool is_there = course.closed_at && *course.closed_at < segment.first;
         if (is_there && is_decided_between(course, segment.first, segment.end)) {
-          key_destroyed_ |= update_session(work, station, session, course, segment.end);
+          keys_destroyed += update_session(work, station, session, course, segment.end) ? 1 : 0;
         }
       }
       for (const int session : segment.sessions) push_session(work, station, session, segment.end);
@@ -203,14 +204,15 @@ class StationPush {
                     chain.subspan(static_cast<std::size_t>(segment.first)));
       check_chain_arrival(work, *server_, station, chain, segment.first);
       report_.station = station;
+      return keys_destroyed;
     });
   }
 
-  // Any station's role can delete any key. The session's own station brings it back.
+  // The owner's role can delete any key. The session's own station brings it back.
   void restore_keys() {
     // An older copy of the file does not know who has withdrawn since.
     if (report_.station == 0 || report_.ahead > 0) return;
-    const int restored = server_->change([&](pqxx::work& work) {
+    const int restored = server_->change([&](ServerWork& work) {
       int count = 0;
       lock_station(work, identity());
       for (const KeyThere& there : keys_of_station(work, report_.station)) {
@@ -222,7 +224,7 @@ class StationPush {
         }
         const std::optional<Bytes> key = station_.wrapped_key(there.own_session);
         if (!key) continue;
-        work.exec_params0("DELETE FROM participant_keys WHERE session = $1", there.session);
+        work.exec_params("SELECT touchtrial_destroy_key($1)", there.session);
         insert_key(work, there.session, *key);
         ++count;
       }
@@ -231,18 +233,18 @@ class StationPush {
     report_.keys_restored += restored;
   }
 
-  [[nodiscard]] int station_number(pqxx::work& work) {
+  [[nodiscard]] int station_number(ServerWork& work) {
     if (const std::optional<int> known = find_station(work, identity())) return *known;
     return register_station(work, *server_, identity(),
                             one_line(std::filesystem::path(station_.name()).filename().string()),
                             chain_.front());
   }
 
-  void push_session(pqxx::work& work, int station, int session, std::int64_t end) {
+  void push_session(ServerWork& work, int station, int session, std::int64_t end) {
     const std::vector<store::Event> events = station_.events(session);
     const store::DerivedRows rows = folded(events);
     store::SessionRow row = checked_row(work, rows, station, session, end);
-    row.session = work.exec1("SELECT nextval('session_numbers')")[0].as<int>();
+    row.session = server_session(*server_, station, session);
     insert_session(work, row);
     insert_events(work, row.session, events);
     const std::optional<Bytes> key = row.withdrawn ? std::nullopt : station_.wrapped_key(session);
@@ -255,7 +257,7 @@ class StationPush {
 
   /// The session's row as the chain up to `end` has it.
   /// \throws StoreError if something on the server stands in its way
-  [[nodiscard]] store::SessionRow checked_row(pqxx::work& work, const store::DerivedRows& rows,
+  [[nodiscard]] store::SessionRow checked_row(ServerWork& work, const store::DerivedRows& rows,
                                               int station, int session, std::int64_t end) const {
     const auto found = rows.sessions.find(session);
     if (found == rows.sessions.end()) {
@@ -291,7 +293,6 @@ class StationPush {
   std::unique_ptr<ServerConnection> server_;
   bool was_connected_ = false;
   bool planned_ = false;
-  bool key_destroyed_ = false;
   int to_push_ = 0;
   std::optional<ChainSegment> sent_;  ///< sent without an answer so far
   int done_ = 0;                      ///< transactions; after progress, failures count from 0 again
@@ -324,7 +325,7 @@ void push_station(StationFile& station, const ServerAddress& server, const PushO
 std::vector<EnrolledSession> sessions_on_server(const ServerAddress& address) {
   ServerConnection server(address);
   if (!server_version(server)) return {};
-  return server.look([&](pqxx::work& work) {
+  return server.look([&](ServerWork& work) {
     std::vector<EnrolledSession> sessions;
     for (const pqxx::row& row : work.exec(
              "SELECT s.station, s.enrolment, s.state, s.excluded = 0 AND s.withdrawn = 0 AND "

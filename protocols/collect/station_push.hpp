@@ -35,7 +35,9 @@ struct PushReport {
   std::int64_t chain_events = 0;  ///< events of the file chain that this push added
   std::int64_t ahead = 0;         ///< events that the server has beyond this file, an older copy
   int reconnections = 0;          ///< attempts after the connection was lost
-  int keys_restored = 0;  ///< keys of earlier sessions that were deleted or changed on the server
+  int keys_destroyed = 0;         ///< keys of participants who withdrew
+  bool keys_wiped = false;  ///< whether the destroyed keys are no longer in the table's file either
+  int keys_restored = 0;    ///< keys of earlier sessions that were deleted or changed on the server
 };
 
 struct PushOptions {

@@ -47,7 +47,8 @@ class ModelForce final : public device::ForceSource {
 [[nodiscard]] std::chrono::nanoseconds time_of_tick(std::int64_t tick, double rate_hz) noexcept;
 
 /// Height above the plane, mm, at which the stylus counts as landed. A height, because the place
-/// and time at which a force begins depend on the texture, and first contacts are stored in clear.
+/// and time at which a force begins depend on the texture, and whether there was a first contact is
+/// stored in clear.
 inline constexpr double kLandingHeightMm = 3.0;
 
 /// Turns the servo's samples into an evenly sampled trace. Where ticks are missing, because the

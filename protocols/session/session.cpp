@@ -135,6 +135,7 @@ void Session::present(Time at) {
 }
 
 void Session::begin_presentation(Time at) noexcept {
+  presented_at_ = at;
   had_contact_ = false;
   was_timed_out_ = false;
   evidence_.reset();
@@ -201,7 +202,12 @@ void Session::confirm(Time at, std::optional<int> confidence) {
   require(Input::confirm, at);
   recorder_.answered(at, {current()->trial, answer_->position, answer_->first_position, confidence},
                      evidence_);
+  note_answer(at, answer_->position);
   finish_presentation(at);
+}
+
+void Session::note_answer(Time at, int position) {
+  answers_.push_back({position, at - presented_at_});
 }
 
 void Session::finish_presentation(Time at) {
@@ -290,7 +296,7 @@ void Session::stop(Time at, const std::string& reason) {
 
 void Session::close(Time at) {
   require(Input::close, at);
-  recorder_.closed(at, phase_ == Phase::finished);
+  recorder_.closed(at, phase_ == Phase::finished, summary_of(answers_));
   move_to(Phase::closed, at);
 }
 

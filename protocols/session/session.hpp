@@ -3,6 +3,7 @@
 #pragma once
 
 #include "protocols/design/course.hpp"
+#include "protocols/session/answer_summary.hpp"
 #include "protocols/store/session_recorder.hpp"
 
 #include <chrono>
@@ -88,6 +89,7 @@ class Session {
 
   /// Brings a fresh session to the state that its stored events left; the recorder continues after
   /// the last one. Records nothing.
+  /// \param events  opened (store::opened_event)
   /// \throws StoreError if the events cannot be those of such a session
   void restore(std::span<const store::Event> events);
   /// Takes the session up after the program that ran it ended: interrupts the current presentation,
@@ -181,6 +183,7 @@ class Session {
   void move_to(SessionPhase phase, Time at) noexcept;
   void begin_presentation(Time at) noexcept;
   void finish_presentation(Time at);
+  void note_answer(Time at, int position);
   /// Takes the current presentation off, as the study's on_interruption has it.
   void give_up_presentation(Time at);
   /// Draws, records and begins a block anew, if the course waits for it.
@@ -201,11 +204,13 @@ class Session {
   SessionPhase phase_ = SessionPhase::fresh;
   SessionPhase before_pause_ = SessionPhase::ready;
   Time last_{};
+  Time presented_at_{};
   bool had_contact_ = false;
   bool was_timed_out_ = false;
   std::optional<store::TrialEvidence> evidence_;
   std::optional<Answer> answer_;
   SessionRemarks remarks_;
+  std::vector<GivenAnswer> answers_;
   int begun_ = 0;
   int done_since_break_ = 0;
 };

@@ -70,10 +70,14 @@ bool Session::follow_trial(const store::Event& event) {
         phase_ = Phase::answering;
       }
       return true;
-    case store::EventKind::answered:
+    case store::EventKind::answered: {
       require_current();
+      const std::optional<int> position = store::answer_from_json(event.body).position;
+      if (!position) refuse(event, "is not opened");
+      note_answer(event.at, *position);
       finish_presentation(event.at);
       return true;
+    }
     case store::EventKind::interrupted:
       require_current();
       give_up_presentation(event.at);

@@ -56,10 +56,11 @@ struct SessionParts {
 /// Runs a session that was opened or taken up again until it is closed or left: the opening stages
 /// that are not done yet, the trials, and the closing questions.
 ///
-/// Nothing stored in clear depends on what is presented, except answers and the validity of trials.
-/// An answer is acknowledged once it is durable. A presentation that ends in a fault or a comfort
-/// stop is recorded as interrupted, and the study decides whether it is repeated; the session is
-/// then paused until the device supply is ready again. The session is stopped when the supply gives
+/// Nothing stored in clear depends on what is presented, except whether trials are valid by the
+/// rule's clear part, and how answers are spread (store::AnswerSummary). An answer is acknowledged
+/// once it is durable. A presentation that ends in a fault or a comfort stop is recorded as
+/// interrupted, and the study decides whether it is repeated; the session is then paused until the
+/// device supply is ready again. The session is stopped when the supply gives
 /// up, the experimenter aborts it, or interruptions outnumber its trials. It is left open when the
 /// experimenter leaves it, or a signal asked the program to end (StopOnSignals::asked). No force is
 /// on when this returns or throws.

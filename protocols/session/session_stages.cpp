@@ -134,7 +134,7 @@ PracticeProgress progress_of(const std::vector<store::PracticeBody>& practised,
   for (const store::PracticeBody& one : practised) {
     if (one.round > progress.round) progress = {.round = one.round};
     ++progress.done;
-    progress.correct += one.correct ? 1 : 0;
+    progress.correct += one.correct.value_or(false) ? 1 : 0;
   }
   progress.passed = progress.correct >= plan.criterion;
   if (!progress.passed && progress.done >= a_round) progress = {.round = progress.round + 1};
@@ -201,7 +201,7 @@ bool PracticeRun::run_round(int round) {
     if (!done) continue;
     desk_.session().practise(desk_.now(), *done);
     desk_.enter("practice", true);
-    if (!desk_.attend(FeedbackStep{done->position, position}) && !desk_.goes_on()) return false;
+    if (!desk_.attend(FeedbackStep{*done->position, position}) && !desk_.goes_on()) return false;
   }
   return true;
 }

@@ -28,8 +28,8 @@ struct ValidityRule {
 
 struct TrialFindings {
   store::TrialMeasures measures;
-  /// Follows from the number of samples and the time of landing, which are in clear as well, so
-  /// that it reveals nothing more.
+  /// Follows from the number of samples and the time of landing, which forces do not bend; it alone
+  /// of them is in clear.
   bool long_enough = false;
 
   /// Whether the whole rule is met, except that no tick in contact may be missing.

@@ -91,7 +91,6 @@ ChainLink ChainLink::after(const Event& last) {
   ChainLink link(last.session, last.own_session());
   link.length_ = last.sequence + 1;
   link.head_ = last.hash;
-  link.last_at_ = last.at;
   return link;
 }
 
@@ -111,8 +110,7 @@ std::optional<std::string> ChainLink::broken_by(const Event& next) const {
   if (belongs_to_file_chain(next.kind) != (session_ <= 0)) {
     return "an event of kind '" + std::string(name_of(next.kind)) + "' does not belong here";
   }
-  // The file's chain is stamped by the wall clock, which may be set back.
-  if (session_ > 0 && next.at < last_at_) return "the time is before that of the event before";
+  if (session_ > 0 && next.at.count() != 0) return "the time of the event is not sealed";
   return std::nullopt;
 }
 
@@ -122,7 +120,6 @@ void ChainLink::extend(const Event& next) {
   }
   ++length_;
   head_ = next.hash;
-  last_at_ = next.at;
 }
 
 }  // namespace touchtrial::store

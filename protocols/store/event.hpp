@@ -55,24 +55,30 @@ enum class EventKind {
 /// Whether events of this kind stand on the file's chain; all others stand on a session's.
 [[nodiscard]] bool belongs_to_file_chain(EventKind kind);
 
-/// One event. Anybody can read `body`, which says nothing about stimuli; `sealed` is ciphertext
-/// under the participant's key.
+/// One event. Anybody can read `body`, which says nothing about stimuli and answers; `sealed` is
+/// ciphertext under the participant's key: a session's event has there its time and the rest of its
+/// body. `opened_event` (sealing.hpp) returns the event as it was recorded.
 struct Event {
   int session = 0;            ///< 0: the file's chain; from 1: a session;
                               ///< -1, -2, ...: the file chain of a collected station
   std::int64_t sequence = 0;  ///< place in its chain, from 0
   EventKind kind{};
-  std::chrono::nanoseconds at{};  ///< session: since its opening, monotonic; file: UTC since 1970
-  std::string body;               ///< compact JSON object with sorted keys
-  Bytes sealed;                   ///< empty if the event has no secret part
-  Digest previous{};              ///< hash of the event before; zeros for the first
-  Digest hash{};                  ///< event_hash of this one
+  /// File's chain: UTC since 1970. Session: 0 as stored; opened, the time since its opening.
+  std::chrono::nanoseconds at{};
+  std::string body;   ///< compact JSON object with sorted keys
+  Bytes sealed;       ///< empty on the file's chain, and in an event that was opened
+  Digest previous{};  ///< hash of the event before; zeros for the first
+  Digest hash{};      ///< event_hash of this one
   /// In a collected database: the session's number in the station's file. Empty if it is the same.
   std::optional<int> renumbered_from{};
 
   /// The session's number in the file that it was recorded in. Hash and sealed part are bound to
   /// it.
   [[nodiscard]] int own_session() const noexcept { return renumbered_from.value_or(session); }
+  /// When it happened, if that can be read: not in a session's event as it is stored.
+  [[nodiscard]] std::optional<std::chrono::nanoseconds> time() const {
+    return sealed.empty() ? std::optional(at) : std::nullopt;
+  }
 };
 
 /// SHA-256 over own_session() and all other members, ciphertext included.
@@ -111,7 +117,6 @@ class ChainLink {
   int own_session_;
   std::int64_t length_ = 0;
   Digest head_{};
-  std::chrono::nanoseconds last_at_{0};
 };
 
 }  // namespace touchtrial::store

@@ -53,15 +53,17 @@ void present_trial(DerivedRows& rows, const Event& event) {
     // After an interruption a trial may be presented anew; a response or a trace settles it.
     const TrialRow& row = before->second;
     refuse_if_voided(row, event);
-    if (row.position) refuse_trial(event, body.trial, "is presented again after its answer");
-    if (row.samples > 0) refuse_trial(event, body.trial, "is presented again after its trace");
+    if (row.state == TrialState::answered) {
+      refuse_trial(event, body.trial, "is presented again after its answer");
+    }
+    if (row.seconds > 0) refuse_trial(event, body.trial, "is presented again after its trace");
   }
   TrialRow row;
   row.session = event.session;
   row.trial = body.trial;
   row.block = body.block;
   row.state = TrialState::presented;
-  row.presented_at = event.at;
+  row.presented_at = event.time().value_or(row.presented_at);
   rows.trials[id] = row;
 }
 
@@ -83,14 +85,14 @@ TrialRow& waiting_row(DerivedRows& rows, const Event& event, int trial) {
 void touch_plane(DerivedRows& rows, const Event& event) {
   const int trial = body_of(event, trial_from_json).trial;
   TrialRow& row = waiting_row(rows, event, trial);
-  if (!row.contact_at) row.contact_at = event.at;
+  if (!row.contact_at) row.contact_at = event.time();
 }
 
 void answer_trial(DerivedRows& rows, const Event& event) {
   const AnswerBody body = body_of(event, answer_from_json);
   TrialRow& row = waiting_row(rows, event, body.trial);
   row.state = TrialState::answered;
-  row.answered_at = event.at;
+  row.answered_at = event.time();
   row.position = body.position;
   row.first_position = body.first_position;
   row.confidence = body.confidence;
@@ -106,6 +108,7 @@ void measure_trial(DerivedRows& rows, const Event& event) {
   TrialRow& row = presented_row(rows, event, body.trial);
   row.valid = body.valid;
   row.overruns = body.overruns;
+  row.seconds = body.seconds;
   row.samples = body.samples;
   row.rate_hz = body.rate_hz;
 }
@@ -133,7 +136,7 @@ void restart_block(DerivedRows& rows, const Event& event) {
 }
 
 void close_session(DerivedRows& rows, const Event& event) {
-  const bool complete = body_of(event, completion_from_json);
+  const bool complete = body_of(event, closed_from_json).complete;
   open_row(rows, event).state = complete ? SessionState::completed : SessionState::stopped;
 }
 

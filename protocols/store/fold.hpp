@@ -1,5 +1,6 @@
-/// \file What events come to: the rows of sessions, trials and responses. One function makes them,
-/// as events arrive, when a session is added whole, and when the tables are verified.
+/// \file What events come to: the rows of sessions and trials. One function makes them, as events
+/// arrive, when a session is added whole, when the tables are verified, and, with answers and
+/// times, from events that were opened (OpenedEvent).
 #pragma once
 
 #include "protocols/store/event.hpp"
@@ -45,24 +46,27 @@ struct TrialRow {
   int trial = 0;  ///< from 1
   int block = 0;
   TrialState state{};
+  bool valid = true;
+  std::int64_t overruns = 0;
+  int seconds = 0;  ///< of the trace, rounded up; 0: there is none
+  double rate_hz = 0.0;
+  int explorations = 1;  ///< of the last presentation
+
+  // From opened events alone; else 0 and empty, as in the tables.
   std::chrono::nanoseconds presented_at{};
   std::optional<std::chrono::nanoseconds> contact_at;
   std::optional<std::chrono::nanoseconds> answered_at;
   std::optional<int> position;  ///< in the participant's layout; empty: no response
   std::optional<int> first_position;
   std::optional<int> confidence;
-  bool valid = true;
-  std::int64_t overruns = 0;
   std::int64_t samples = 0;
-  double rate_hz = 0.0;
-  int explorations = 1;  ///< of the last presentation
 
   friend bool operator==(const TrialRow&, const TrialRow&) = default;
 };
 
 using TrialId = std::pair<int, int>;  ///< session, trial
 
-/// Some or all derived rows. A TrialRow holds a row of trials and, if answered, one of responses.
+/// Some or all derived rows.
 struct DerivedRows {
   std::map<int, SessionRow> sessions;
   std::map<TrialId, TrialRow> trials;
@@ -84,9 +88,10 @@ struct FoldScope {
 /// \throws EventFault if the event's body cannot be read
 [[nodiscard]] FoldScope scope_of(const Event& event);
 
-/// Brings `rows` up to date with one more event. Sessions may be folded in any order, the events of
-/// each session in theirs, and the file's chain after the sessions that it names.
-/// \throws EventFault if the event's body cannot be read, or the event cannot follow those before;
+/// Brings `rows` up to date with one more event, stored or opened. Sessions may be folded in any
+/// order, the events of each session in theirs, and the file's chain after the sessions that it
+/// names. \throws EventFault if the event's body cannot be read, or the event cannot follow those
+/// before;
 ///   `rows` are then as they were
 void fold(DerivedRows& rows, const Event& event);
 

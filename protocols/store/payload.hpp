@@ -105,32 +105,36 @@ struct SessionOpening {
   std::optional<StationRecord> station{};  ///< real time only
 };
 
-/// `answered`: positions are indices into the participant's layout of pictures, from 0.
+// Of some bodies only a part is in clear (split_body). What their members are in an event that is
+// not opened is said with each.
+
+/// `answered`: positions are indices into the participant's layout of pictures, from 0. Only the
+/// trial is in clear; the other members are then empty.
 struct AnswerBody {
   int trial = 0;
-  int position = 0;
+  std::optional<int> position;
   std::optional<int> first_position;  ///< the answer before a change, if it was changed
   std::optional<int> confidence;
 };
 
 /// `practised`: one presentation of a practice round, of a texture that is not in the study.
 struct PracticeBody {
-  int round = 0;         ///< from 1
-  int presentation = 0;  ///< in the round, from 1
-  int position = 0;      ///< answered, in the practice's own layout
-  bool correct = false;
+  int round = 0;                ///< from 1
+  int presentation = 0;         ///< in the round, from 1
+  std::optional<int> position;  ///< answered, in the practice's own layout; sealed
+  std::optional<bool> correct;  ///< sealed
 };
 
 /// `deviated`, and `participant-noted` where `code` is not empty.
 struct DeviationBody {
   std::string code;  ///< for instance "no-masking-noise"; see docs/data-dictionary.md
-  std::string text;  ///< in the experimenter's words; may be empty
+  std::string text;  ///< in the experimenter's words; may be empty; sealed in `deviated`
 };
 
 /// `resumed`.
 struct ResumedBody {
   std::string after;              ///< "pause", or "program-ended"
-  double away_s = 0.0;            ///< since the last event before
+  double away_s = 0.0;            ///< since the last event before; sealed: 0 if not opened
   std::string program_version{};  ///< after the program ended
 };
 
@@ -164,12 +168,14 @@ struct ServoHealth {
 /// `trace-stored`: the servo's health in clear; the sealed part (TrialMeasures) says what was felt.
 struct TraceBody {
   int trial = 0;
-  std::int64_t samples = 0;
+  std::int64_t samples = 0;  ///< sealed: 0 if not opened
+  int seconds = 0;           ///< of the trace, rounded up
   double rate_hz = 0.0;
   std::int64_t overruns = 0;
   bool valid = true;  ///< by the clear part of the validity rule; the other part is sealed
   Digest trace{};     ///< SHA-256 of the stored (encrypted) trace
   /// Samples of each exploration, if the participant explored again; they add up to `samples`.
+  /// Sealed: empty if not opened.
   std::vector<std::int64_t> explorations{};
   std::optional<ServoHealth> servo{};  ///< real time only
 };
@@ -195,6 +201,24 @@ struct InterruptionDetail {
   std::string flight;        ///< CSV, one row a tick under a row of names; may be empty
 
   friend bool operator==(const InterruptionDetail&, const InterruptionDetail&) = default;
+};
+
+/// How a participant answered in one session, over all answered presentations: shows in clear
+/// whether somebody presses one key, and nothing of what was right.
+struct AnswerSummary {
+  int n = 0;                   ///< answers, from 1
+  int different = 0;           ///< positions that were answered
+  double largest_share = 0.0;  ///< of the most frequent position, in (0, 1]
+  int longest_run = 0;         ///< answers at one position in a row
+  double median_s = 0.0;       ///< from plane-on to the answer, to tenths of a second
+
+  friend bool operator==(const AnswerSummary&, const AnswerSummary&) = default;
+};
+
+/// `closed`.
+struct ClosedBody {
+  bool complete = false;                   ///< whether the schedule was finished
+  std::optional<AnswerSummary> answers{};  ///< empty: no answers
 };
 
 /// Sealed part of `closed`: the chain before it. Nobody without the key can give another chain this

@@ -84,6 +84,12 @@ class BodyReader {
   void if_any(const char* key, Value& value, Least... least) const {
     if (object_.contains(key)) (*this)(key, value, least...);
   }
+  /// A member that is sealed: left as it is if the key is absent, as it is before the event is
+  /// opened.
+  template <typename Value>
+  void sealed(const char* key, Value& value) const {
+    if_any(key, value);
+  }
   /// An object within this one, or nothing if the key is absent. Its errors name both keys.
   template <typename Part>
   void part(const char* key, std::optional<Part>& value) const {
@@ -147,6 +153,10 @@ class BodyWriter {
   template <typename Value>
   void if_any(const char* key, const Value& value, int /*least*/ = 0) {
     if (value != Value{}) (*this)(key, value);
+  }
+  template <typename Value>
+  void sealed(const char* key, const Value& value) {
+    (*this)(key, value);
   }
   template <typename Part>
   void part(const char* key, const std::optional<Part>& value) {

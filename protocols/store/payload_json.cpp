@@ -93,13 +93,13 @@ void members(Io& io, In<Io, PracticeBody>& body) {
 template <typename Io>
 void members(Io& io, In<Io, DeviationBody>& body) {
   io("code", body.code);
-  io("text", body.text);
+  io.sealed("text", body.text);
 }
 
 template <typename Io>
 void members(Io& io, In<Io, ResumedBody>& body) {
   io("after", body.after);
-  io("away_s", body.away_s);
+  io.sealed("away_s", body.away_s);
   io("program_version", body.program_version);
 }
 
@@ -117,7 +117,8 @@ void members(Io& io, In<Io, ServoHealth>& body) {
 template <typename Io>
 void members(Io& io, In<Io, TraceBody>& body) {
   io("trial", body.trial, 1);
-  io("samples", body.samples);
+  io.sealed("samples", body.samples);
+  io("seconds", body.seconds);
   io("rate_hz", body.rate_hz);
   io("overruns", body.overruns);
   io("valid", body.valid);
@@ -142,6 +143,21 @@ void members(Io& io, In<Io, InterruptionDetail>& body) {
   io("device_fault", body.device_fault);
   io("ticks", body.ticks);
   io("flight", body.flight);
+}
+
+template <typename Io>
+void members(Io& io, In<Io, AnswerSummary>& body) {
+  io("n", body.n, 1);
+  io("different", body.different, 1);
+  io("largest_share", body.largest_share);
+  io("longest_run", body.longest_run, 1);
+  io("median_s", body.median_s);
+}
+
+template <typename Io>
+void members(Io& io, In<Io, ClosedBody>& body) {
+  io("complete", body.complete);
+  io.part("answers", body.answers);
 }
 
 template <typename Io>
@@ -235,6 +251,7 @@ template std::string to_json(const ResumedBody&);
 template std::string to_json(const TraceBody&);
 template std::string to_json(const TrialMeasures&);
 template std::string to_json(const InterruptionDetail&);
+template std::string to_json(const ClosedBody&);
 template std::string to_json(const ChainEnd&);
 template std::string to_json(const SessionOpenedBody&);
 template std::string to_json(const SessionClosedBody&);
@@ -251,6 +268,7 @@ template DeviationBody from_json(const std::string&);
 template ResumedBody from_json(const std::string&);
 template TraceBody from_json(const std::string&);
 template InterruptionDetail from_json(const std::string&);
+template ClosedBody from_json(const std::string&);
 template ChainEnd from_json(const std::string&);
 template SessionOpenedBody from_json(const std::string&);
 template SessionClosedBody from_json(const std::string&);
@@ -290,14 +308,6 @@ std::string remark_to_json(const std::string& text) {
 
 std::string remark_from_json(const std::string& text) {
   return member_of<std::string>(text, "text");
-}
-
-std::string completion_to_json(bool complete) {
-  return compact({{"complete", complete}});
-}
-
-bool completion_from_json(const std::string& text) {
-  return member_of<bool>(text, "complete");
 }
 
 int session_from_json(const std::string& text) {

@@ -19,7 +19,6 @@ template <typename Body>
 [[nodiscard]] std::string trial_to_json(int trial);
 [[nodiscard]] std::string block_to_json(int block, int first_trial);
 [[nodiscard]] std::string remark_to_json(const std::string& text);
-[[nodiscard]] std::string completion_to_json(bool complete);
 
 /// The body of a station's event as a collected study holds it: `session` is the session's number
 /// there, and nothing else changes.
@@ -40,6 +39,7 @@ inline constexpr auto* deviation_from_json = &from_json<DeviationBody>;
 inline constexpr auto* resumed_from_json = &from_json<ResumedBody>;
 inline constexpr auto* trace_body_from_json = &from_json<TraceBody>;
 inline constexpr auto* interruption_from_json = &from_json<InterruptionDetail>;
+inline constexpr auto* closed_from_json = &from_json<ClosedBody>;
 inline constexpr auto* chain_end_from_json = &from_json<ChainEnd>;
 inline constexpr auto* session_opened_from_json = &from_json<SessionOpenedBody>;
 inline constexpr auto* session_closed_from_json = &from_json<SessionClosedBody>;
@@ -52,7 +52,6 @@ inline constexpr auto* trial_from_json = &from_json<TrialBody>;
 inline constexpr auto* block_from_json = &from_json<BlockBody>;
 [[nodiscard]] TrialMeasures measures_from_json(const std::string& text);
 [[nodiscard]] std::string remark_from_json(const std::string& text);
-[[nodiscard]] bool completion_from_json(const std::string& text);
 /// The number of the session that a body on the file's chain is about.
 [[nodiscard]] int session_from_json(const std::string& text);
 

@@ -73,9 +73,9 @@ std::string insertion_or_change(Table table) {
   return insertion(table) + " ON CONFLICT(" + key + ") DO UPDATE SET " + changes;
 }
 
-/// \param tables  whose columns the row has, one table after the other
-Cells row_cells(const Query& row, std::initializer_list<Table> tables) {
-  return cells_of(tables, [&](int column, ColumnType type) -> Cell {
+/// \param table  whose columns the row has
+Cells row_cells(const Query& row, Table table) {
+  return cells_of(table, [&](int column, ColumnType type) -> Cell {
     if (row.is_null(column)) return {};
     if (type == ColumnType::integer) return row.integer(column);
     if (type == ColumnType::real) return row.real(column);
@@ -89,7 +89,7 @@ void visit_sessions(const Database& database, std::int64_t first, std::int64_t l
                                  " FROM sessions WHERE session BETWEEN ? AND ? ORDER BY session";
   Query query = database.query(sql.c_str());
   query.bind(first).bind(last);
-  while (query.step()) visit(session_row(row_cells(query, {Table::sessions})));
+  while (query.step()) visit(session_row(row_cells(query, Table::sessions)));
 }
 
 /// From the first trial id to the last, in both members.
@@ -97,12 +97,12 @@ void visit_trials(const Database& database, std::pair<std::int64_t, std::int64_t
                   std::pair<std::int64_t, std::int64_t> last,
                   const std::function<void(const TrialRow&)>& visit) {
   static const std::string sql =
-      "SELECT " + column_list(Table::trials, "t.") + ", " + column_list(Table::responses, "r.") +
-      " FROM trials t LEFT JOIN responses r USING(session, trial) WHERE t.session BETWEEN ? AND ? "
-      "AND t.trial BETWEEN ? AND ? ORDER BY t.session, t.trial";
+      "SELECT " + column_list(Table::trials) +
+      " FROM trials WHERE session BETWEEN ? AND ? AND trial BETWEEN ? AND ? "
+      "ORDER BY session, trial";
   Query query = database.query(sql.c_str());
   query.bind(first.first).bind(last.first).bind(first.second).bind(last.second);
-  while (query.step()) visit(trial_row(row_cells(query, {Table::trials, Table::responses})));
+  while (query.step()) visit(trial_row(row_cells(query, Table::trials)));
 }
 
 void write(const Database& database, const std::string& sql, const Cells& cells) {
@@ -119,9 +119,6 @@ void write_session(const Database& database, const SessionRow& row) {
 void write_trial(const Database& database, const TrialRow& row) {
   static const std::string sql = insertion_or_change(Table::trials);
   write(database, sql, trial_cells(row));
-  // An answer is final, so that a response is only ever added.
-  static const std::string addition = insertion(Table::responses) + " ON CONFLICT DO NOTHING";
-  if (row.position) write(database, addition, response_cells(row));
 }
 
 }  // namespace

@@ -1,6 +1,10 @@
 #include "protocols/store/sealing.hpp"
 
+#include "protocols/store/body_parts.hpp"
+
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 namespace touchtrial::store {
 namespace {
@@ -26,11 +30,30 @@ std::string participant_key_context(int own_session) {
 
 std::string event_context(const Event& event) {
   return "event|" + std::to_string(event.own_session()) + "|" + std::to_string(event.sequence) +
-         "|" + std::string(name_of(event.kind));
+         "|" + std::string(name_of(event.kind)) + "|" + to_hex(event.previous) + "|" + event.body;
 }
 
 std::string trace_context(int own_session, int trial) {
   return "trace|" + std::to_string(own_session) + "|" + std::to_string(trial);
+}
+
+// The sealed part of an event: its time, the length of the hidden part of its body, that part, and
+// the secret text. Numbers have their lowest byte first.
+
+constexpr std::size_t kTimeSize = 8;
+constexpr std::size_t kLengthSize = 4;
+constexpr std::size_t kBeforeTexts = kTimeSize + kLengthSize;
+
+void put_number(Bytes& bytes, std::uint64_t number, std::size_t size) {
+  for (std::size_t i = 0; i < size; ++i) {
+    bytes.push_back(static_cast<std::uint8_t>(number >> (8U * i)));
+  }
+}
+
+std::uint64_t number_in(ByteView bytes) {
+  std::uint64_t number = 0;
+  for (std::size_t i = bytes.size(); i > 0; --i) number = (number << 8U) | bytes[i - 1];
+  return number;
 }
 
 }  // namespace
@@ -58,15 +81,47 @@ std::optional<SecretKey> kept_participant_key(const SecretKey& station_secret, i
                          kWrapPadding));
 }
 
-Bytes seal_text(const Event& event, const SecretKey& participant_key, const std::string& text,
-                std::size_t padding) {
-  return seal(participant_key, event_context(event), bytes_of(text), padding);
+Event sealed_event(Event event, const std::string& secret, const SecretKey& participant_key,
+                   std::size_t padding) {
+  BodyParts parts = split_body(event.kind, event.body);
+  Bytes plain;
+  put_number(plain, static_cast<std::uint64_t>(event.at.count()), kTimeSize);
+  put_number(plain, parts.hidden.size(), kLengthSize);
+  for (const std::string& text : {parts.hidden, secret}) {
+    plain.insert(plain.end(), text.begin(), text.end());
+  }
+  event.at = {};
+  event.body = std::move(parts.clear);
+  event.sealed = seal(participant_key, event_context(event), plain, padding);
+  event.hash = event_hash(event);
+  return event;
+}
+
+Event sealed_event(Event event, const std::string& secret, const SecretKey& participant_key) {
+  const std::size_t padding = sealed_padding(event.kind);
+  return sealed_event(std::move(event), secret, participant_key, padding);
+}
+
+std::optional<OpenedEvent> opened_event(const Event& event, const SecretKey& participant_key) {
+  const std::optional<Bytes> plain =
+      unseal(participant_key, event_context(event), event.sealed, kSealedUnit);
+  if (!plain || plain->size() < kBeforeTexts) return std::nullopt;
+  const ByteView bytes(*plain);
+  const std::uint64_t length = number_in(bytes.subspan(kTimeSize, kLengthSize));
+  const ByteView texts = bytes.subspan(kBeforeTexts);
+  if (length > texts.size()) return std::nullopt;
+  OpenedEvent opened{.event = event, .secret = text_of(texts.subspan(length))};
+  opened.event.at =
+      std::chrono::nanoseconds(static_cast<std::int64_t>(number_in(bytes.first(kTimeSize))));
+  opened.event.body = joined_body({event.body, text_of(texts.first(length))});
+  opened.event.sealed.clear();
+  return opened;
 }
 
 std::optional<std::string> unsealed(const Event& event, const SecretKey& participant_key) {
-  const std::optional<Bytes> bytes = unseal(participant_key, event_context(event), event.sealed);
-  if (!bytes) return std::nullopt;
-  return text_of(*bytes);
+  std::optional<OpenedEvent> opened = opened_event(event, participant_key);
+  if (!opened) return std::nullopt;
+  return std::move(opened->secret);
 }
 
 SealedTrace seal_trace(int own_session, int trial, const Trace& trace,
@@ -77,11 +132,10 @@ SealedTrace seal_trace(int own_session, int trial, const Trace& trace,
                       trace_padding(trace.samples.size()))};
 }
 
-std::optional<Trace> unsealed_trace(const SealedTrace& sealed, const SecretKey& participant_key,
-                                    std::size_t sample_count) {
-  const std::optional<Bytes> bytes =
-      unseal(participant_key, trace_context(sealed.session, sealed.trial), sealed.box,
-             trace_padding(sample_count));
+std::optional<Trace> unsealed_trace(const SealedTrace& sealed, const SecretKey& participant_key) {
+  // Whoever sealed it chose the padding, which its end marks.
+  const std::optional<Bytes> bytes = unseal(
+      participant_key, trace_context(sealed.session, sealed.trial), sealed.box, /*padded_size=*/1);
   if (!bytes) return std::nullopt;
   return decode_trace(*bytes);
 }

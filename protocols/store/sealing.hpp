@@ -1,7 +1,7 @@
 /// \file What is encrypted under a participant's key, and who holds that key: the investigator
 /// always, the station only while the session is open. A box is bound to the session's own number
-/// (Event::own_session) and to its place there, so that none can be passed off as another. Format:
-/// docs/data-dictionary.md, "Events".
+/// (Event::own_session) and to its place there, an event's also to all that is in clear of it, so
+/// that none can be passed off as another. Format: docs/data-dictionary.md, "Events".
 #pragma once
 
 #include "core/public_keys.hpp"
@@ -23,9 +23,6 @@ struct SealedTrace {
   friend bool operator==(const SealedTrace&, const SealedTrace&) = default;
 };
 
-/// Events' sealed parts are padded to a multiple of this many bytes.
-inline constexpr std::size_t kEventPadding = 256;
-
 /// A participant's random key, sealed for the investigator. Once the row that holds it is
 /// destroyed, nobody can read the participant's payloads any more. \param own_session  the
 /// session's own number, see SessionRow
@@ -44,24 +41,38 @@ inline constexpr std::size_t kEventPadding = 256;
 [[nodiscard]] std::optional<SecretKey> kept_participant_key(const SecretKey& station_secret,
                                                             int own_session, const Bytes& kept);
 
-/// Encrypts the secret text of an event (schedule, measures).
-/// \param event  session, sequence and kind are set
-/// \param padding  bytes, see touchtrial::seal
-[[nodiscard]] Bytes seal_text(const Event& event, const SecretKey& participant_key,
-                              const std::string& text, std::size_t padding = kEventPadding);
-/// \return the secret text of an event, or nothing if key or bytes are wrong
+/// An event of a session as it was recorded.
+struct OpenedEvent {
+  Event event;         ///< with its time and its whole body; its hash is that of the stored event
+  std::string secret;  ///< text that no body holds (schedule, measures); may be empty
+};
+
+/// Seals the time of a session's event, the members of its body that are not in clear, and a secret
+/// text. \return the event as it is stored, with its hash
+/// \param event  with its time, whole body and `previous`
+/// \param padding  bytes, see touchtrial::seal; a multiple of kSealedUnit
+/// \throws StoreError if the body is not a JSON object
+[[nodiscard]] Event sealed_event(Event event, const std::string& secret,
+                                 const SecretKey& participant_key, std::size_t padding);
+/// The same with the padding of the event's kind.
+[[nodiscard]] Event sealed_event(Event event, const std::string& secret,
+                                 const SecretKey& participant_key);
+/// \param event  of a session, as it is stored
+/// \return nothing if the key is wrong, or anything of the event was altered
+[[nodiscard]] std::optional<OpenedEvent> opened_event(const Event& event,
+                                                      const SecretKey& participant_key);
+/// \return the secret text alone, or nothing likewise
 [[nodiscard]] std::optional<std::string> unsealed(const Event& event,
                                                   const SecretKey& participant_key);
 
-/// Encodes and encrypts a trace. The size of the box depends on the number of samples alone.
+/// Encodes and encrypts a trace. The size of the box depends on the trace's whole seconds alone.
 /// \param own_session  the session's own number, see SessionRow
 /// \throws what encode_trace throws
 [[nodiscard]] SealedTrace seal_trace(int own_session, int trial, const Trace& trace,
                                      const SecretKey& participant_key);
-/// \return nothing if key, bytes or number of samples are wrong
+/// \return nothing if key or bytes are wrong
 /// \throws what decode_trace throws
 [[nodiscard]] std::optional<Trace> unsealed_trace(const SealedTrace& sealed,
-                                                  const SecretKey& participant_key,
-                                                  std::size_t sample_count);
+                                                  const SecretKey& participant_key);
 
 }  // namespace touchtrial::store

@@ -1,8 +1,10 @@
 #include "protocols/store/session_recorder.hpp"
 
 #include "core/errors.hpp"
+#include "protocols/store/body_parts.hpp"
 #include "protocols/store/payload_json.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace touchtrial::store {
@@ -23,14 +25,19 @@ bool is_remark(EventKind kind) {
   }
 }
 
-/// The padding of an interruption: a function of its flight record's ticks alone, so that the size
-/// does not tell rough textures from smooth ones. A multiple of kEventPadding.
+/// The padding of an interruption: a function of its flight record's ticks alone, in whole
+/// thousands, so that the size tells neither rough textures from smooth ones nor how long they were
+/// felt.
 std::size_t interruption_padding(std::int64_t ticks) {
   // A row has 21 values, 14 of them of up to 24 characters; ordinary rows need 330 bytes or less.
-  constexpr std::size_t kBytesATick = 384;
+  constexpr std::size_t kBytesAThousand = 384'000;
   constexpr std::size_t kBytesBefore = 1024;
-  const std::size_t bytes = kBytesBefore + kBytesATick * static_cast<std::size_t>(ticks);
-  return (bytes + kEventPadding - 1) / kEventPadding * kEventPadding;
+  return kBytesBefore + kBytesAThousand * ((static_cast<std::size_t>(ticks) + 999) / 1000);
+}
+static_assert(1024 % kSealedUnit == 0 && 384'000 % kSealedUnit == 0);
+
+int whole_seconds(const Trace& trace) {
+  return static_cast<int>(std::ceil(static_cast<double>(trace.samples.size()) / trace.rate_hz));
 }
 
 }  // namespace
@@ -45,72 +52,75 @@ SessionRecorder::SessionRecorder(int session, const SecretKey& participant_key, 
 
 void SessionRecorder::opened(std::chrono::nanoseconds at, const SessionOpening& opening,
                              const std::string& secret_schedule) {
-  append(at, EventKind::opened, to_json(opening), {secret_schedule});
+  append(at, {EventKind::opened, to_json(opening), secret_schedule});
 }
 
 void SessionRecorder::presented(std::chrono::nanoseconds at, int trial, int block) {
-  append(at, EventKind::presented, presented_to_json(trial, block), {});
+  append(at, {EventKind::presented, presented_to_json(trial, block)});
 }
 
 void SessionRecorder::first_contact(std::chrono::nanoseconds at, int trial) {
-  append(at, EventKind::first_contact, trial_to_json(trial), {});
+  append(at, {EventKind::first_contact, trial_to_json(trial)});
 }
 
 void SessionRecorder::answered(std::chrono::nanoseconds at, const AnswerBody& answer,
                                const std::optional<TrialEvidence>& evidence) {
-  append_with(at, evidence, {EventKind::answered, to_json(answer), {}, {}});
+  append_with(at, evidence, {EventKind::answered, to_json(answer)});
 }
 
 void SessionRecorder::interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
                                   const std::optional<InterruptionDetail>& detail) {
-  Secret secret;
-  if (detail) secret = {to_json(*detail), interruption_padding(detail->ticks)};
-  append(at, EventKind::interrupted, interrupted_to_json(trial, reason), secret);
+  Draft draft{EventKind::interrupted, interrupted_to_json(trial, reason)};
+  if (detail) {
+    draft.secret = to_json(*detail);
+    draft.padding = interruption_padding(detail->ticks);
+  }
+  append(at, std::move(draft));
 }
 
 void SessionRecorder::timed_out(std::chrono::nanoseconds at, int trial,
                                 const std::optional<TrialEvidence>& evidence) {
-  append_with(at, evidence, {EventKind::timed_out, trial_to_json(trial), {}, {}});
+  append_with(at, evidence, {EventKind::timed_out, trial_to_json(trial)});
 }
 
 TrialEvidence SessionRecorder::packed(TraceBody body, const TrialMeasures& measures,
                                       const Trace& trace) const {
   SealedTrace sealed = seal_trace(session_, body.trial, trace, participant_key_);
   body.samples = static_cast<std::int64_t>(trace.samples.size());
+  body.seconds = whole_seconds(trace);
   body.trace = sha256(sealed.box);
   return {std::move(body), measures, std::move(sealed)};
 }
 
 void SessionRecorder::trace_stored(std::chrono::nanoseconds at, const TraceBody& body,
                                    const TrialMeasures& measures, const Trace& trace) {
-  Draft draft = draft_of(packed(body, measures, trace));
-  append_together(at, std::span(&draft, 1));
+  append(at, draft_of(packed(body, measures, trace)));
 }
 
 void SessionRecorder::practised(std::chrono::nanoseconds at, const PracticeBody& body) {
-  append(at, EventKind::practised, to_json(body), {});
+  append(at, {EventKind::practised, to_json(body)});
 }
 
 void SessionRecorder::deviated(std::chrono::nanoseconds at, const DeviationBody& body) {
-  append(at, EventKind::deviated, to_json(body), {});
+  append(at, {EventKind::deviated, to_json(body)});
 }
 
 void SessionRecorder::questioned(std::chrono::nanoseconds at, const std::string& name,
                                  const std::string& answers) {
-  append(at, EventKind::questioned, remark_to_json(name), {answers});
+  append(at, {EventKind::questioned, remark_to_json(name), answers});
 }
 
 void SessionRecorder::explored_again(std::chrono::nanoseconds at, int trial) {
-  append(at, EventKind::explored_again, trial_to_json(trial), {});
+  append(at, {EventKind::explored_again, trial_to_json(trial)});
 }
 
 void SessionRecorder::block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
                                       const std::string& secret_schedule) {
-  append(at, EventKind::block_restarted, block_to_json(block, first_trial), {secret_schedule});
+  append(at, {EventKind::block_restarted, block_to_json(block, first_trial), secret_schedule});
 }
 
 void SessionRecorder::resumed(std::chrono::nanoseconds at, const ResumedBody& body) {
-  append(at, EventKind::resumed, to_json(body), {});
+  append(at, {EventKind::resumed, to_json(body)});
 }
 
 void SessionRecorder::remarked(std::chrono::nanoseconds at, EventKind kind,
@@ -119,13 +129,14 @@ void SessionRecorder::remarked(std::chrono::nanoseconds at, EventKind kind,
     throw StoreError("an event of kind '" + std::string(name_of(kind)) +
                      "' is no remark; record it with the function of its name");
   }
-  append(at, kind, remark_to_json(text), {});
+  append(at, {kind, remark_to_json(text)});
 }
 
-void SessionRecorder::closed(std::chrono::nanoseconds at, bool complete) {
+void SessionRecorder::closed(std::chrono::nanoseconds at, bool complete,
+                             const std::optional<AnswerSummary>& answers) {
   // Sealing this takes the key: a chain that somebody makes anew without it ends differently.
-  append(at, EventKind::closed, completion_to_json(complete),
-         {to_json(ChainEnd{.length = length_, .head = head_})});
+  append(at, {EventKind::closed, to_json(ClosedBody{.complete = complete, .answers = answers}),
+              to_json(ChainEnd{.length = length_, .head = head_})});
 }
 
 void SessionRecorder::go_on_after(const Event& last) {
@@ -135,15 +146,13 @@ void SessionRecorder::go_on_after(const Event& last) {
 }
 
 SessionRecorder::Draft SessionRecorder::draft_of(TrialEvidence evidence) {
-  return {EventKind::trace_stored,
-          to_json(evidence.body),
-          {to_json(evidence.measures)},
-          std::move(evidence.trace)};
+  return {.kind = EventKind::trace_stored,
+          .body = to_json(evidence.body),
+          .secret = to_json(evidence.measures),
+          .trace = std::move(evidence.trace)};
 }
 
-void SessionRecorder::append(std::chrono::nanoseconds at, EventKind kind, std::string body,
-                             const Secret& secret) {
-  Draft draft{kind, std::move(body), secret, {}};
+void SessionRecorder::append(std::chrono::nanoseconds at, Draft draft) {
   append_together(at, std::span(&draft, 1));
 }
 
@@ -188,11 +197,9 @@ RecordedEvent SessionRecorder::chained(std::chrono::nanoseconds at, std::int64_t
               .sealed = {},
               .previous = previous,
               .hash = {}};
-  if (!draft.secret.text.empty()) {
-    event.sealed = seal_text(event, participant_key_, draft.secret.text, draft.secret.padding);
-  }
-  event.hash = event_hash(event);
-  return {std::move(event), std::move(draft.trace)};
+  const std::size_t padding = draft.padding.value_or(sealed_padding(draft.kind));
+  return {sealed_event(std::move(event), draft.secret, participant_key_, padding),
+          std::move(draft.trace)};
 }
 
 }  // namespace touchtrial::store

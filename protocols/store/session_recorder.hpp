@@ -67,13 +67,15 @@ class SessionRecorder {
   void answered(std::chrono::nanoseconds at, const AnswerBody& answer,
                 const std::optional<TrialEvidence>& evidence = std::nullopt);
   /// \param reason  in clear: must say nothing about the stimulus
-  /// \param detail  sealed, with a padding that follows from the flight record's number of ticks
+  /// \param detail  sealed, with a padding that follows from the flight record's ticks, rounded up
+  ///   to whole thousands
   void interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
                    const std::optional<InterruptionDetail>& detail = std::nullopt);
   void timed_out(std::chrono::nanoseconds at, int trial,
                  const std::optional<TrialEvidence>& evidence = std::nullopt);
-  /// Encodes and seals a trace, and fills `body.trace` and `body.samples`. Takes a few milliseconds
-  /// for each second of exploration. Another thread may call it while this one records.
+  /// Encodes and seals a trace, and fills `body.trace`, `body.samples` and `body.seconds`. Takes a
+  /// few milliseconds for each second of exploration. Another thread may call it while this one
+  /// records.
   [[nodiscard]] TrialEvidence packed(TraceBody body, const TrialMeasures& measures,
                                      const Trace& trace) const;
   /// Stores what `packed` makes of these, without an answer.
@@ -95,10 +97,12 @@ class SessionRecorder {
   void remarked(std::chrono::nanoseconds at, EventKind kind, const std::string& text);
   /// Seals the chain's length and head up to here into the event, see ChainEnd.
   /// \param complete  whether the schedule was finished
-  void closed(std::chrono::nanoseconds at, bool complete);
+  /// \param answers  in clear; empty: there are none
+  void closed(std::chrono::nanoseconds at, bool complete,
+              const std::optional<AnswerSummary>& answers = std::nullopt);
 
   /// Goes on with a chain that is stored already.
-  /// \param last  its last event
+  /// \param last  its last event, opened
   void go_on_after(const Event& last);
 
   /// Hash of the last event; zeros before the first.
@@ -106,18 +110,14 @@ class SessionRecorder {
   [[nodiscard]] std::int64_t length() const noexcept { return length_; }
 
  private:
-  /// An event's secret part, and the padding under which it is sealed.
-  struct Secret {
-    std::string text;
-    std::size_t padding = kEventPadding;
-  };
   struct Draft {
     EventKind kind{};
-    std::string body;
-    Secret secret;
-    std::optional<SealedTrace> trace;
+    std::string body;  ///< whole
+    std::string secret{};
+    std::optional<std::size_t> padding{};  ///< empty: that of the kind
+    std::optional<SealedTrace> trace{};
   };
-  void append(std::chrono::nanoseconds at, EventKind kind, std::string body, const Secret& secret);
+  void append(std::chrono::nanoseconds at, Draft draft);
   /// All or none, one after the other at the same time.
   void append_together(std::chrono::nanoseconds at, std::span<Draft> drafts);
   /// After the presentation's trace, if there is one.

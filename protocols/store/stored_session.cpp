@@ -84,11 +84,12 @@ void StoredStudy::admit(const Event& opened, const SessionKeys& keys, std::chron
 
 void StoredStudy::conclude(const Event& closed, std::chrono::nanoseconds at) {
   database_.query("DELETE FROM station_keys WHERE session = ?").bind(closed.session).run();
-  append_to_file(EventKind::session_closed, at,
-                 to_json(SessionClosedBody{.session = closed.session,
-                                           .length = closed.sequence + 1,
-                                           .head = closed.hash,
-                                           .complete = body_of(closed, completion_from_json)}));
+  append_to_file(
+      EventKind::session_closed, at,
+      to_json(SessionClosedBody{.session = closed.session,
+                                .length = closed.sequence + 1,
+                                .head = closed.hash,
+                                .complete = body_of(closed, closed_from_json).complete}));
 }
 
 bool StoredStudy::keeps_key(int session) const {

@@ -79,7 +79,7 @@ class StudyStore {
   [[nodiscard]] std::vector<SessionRow> sessions_of(const std::string& participant) const;
   /// The last event of one chain (0: the file's). The events before it are not read.
   [[nodiscard]] std::optional<Event> last_event(int session) const;
-  /// All trials of all sessions, by session and trial.
+  /// All trials of all sessions, by session and trial: without answers and times, which are sealed.
   [[nodiscard]] std::vector<TrialRow> trials() const;
   /// Events of one chain in order (0: the file's).
   [[nodiscard]] std::vector<Event> events(int session) const;
@@ -110,8 +110,8 @@ class StudyStore {
                                                          const Bytes& kept_key = {});
 
   /// Goes on with a session that is stored and still open, after the program ended during it. Give
-  /// last_event to the recorder (SessionRecorder::go_on_after). If another program goes on with it
-  /// too, the slower of the two is refused at its next event; see session_lock.hpp.
+  /// last_event, opened, to the recorder (SessionRecorder::go_on_after). If another program goes on
+  /// with it, the slower of the two is refused at its next event; see session_lock.hpp.
   /// \param utc  the system's clock if empty
   /// \return the sink; it must not outlive the store
   /// \throws StoreError if there is no such session, it has ended, its participant has withdrawn,

@@ -42,19 +42,11 @@ constexpr auto kTrials = std::to_array<TableColumn>({{"session", integer},
                                                      {"trial", integer},
                                                      {"block", integer},
                                                      {"state", text},
-                                                     {"presented_at_ns", integer},
-                                                     {"contact_at_ns", integer, true},
                                                      {"valid", integer},
                                                      {"overruns", integer},
-                                                     {"samples", integer},
+                                                     {"seconds", integer},
                                                      {"rate_hz", real},
                                                      {"explorations", integer}});
-constexpr auto kResponses = std::to_array<TableColumn>({{"session", integer},
-                                                        {"trial", integer},
-                                                        {"answered_at_ns", integer},
-                                                        {"position", integer},
-                                                        {"first_position", integer, true},
-                                                        {"confidence", integer, true}});
 
 constexpr auto kOfEvent = std::to_array<Names>({"session", "sequence"});
 constexpr auto kOfSession = std::to_array<Names>({"session"});
@@ -64,8 +56,7 @@ constexpr auto kTakenOnce =
     std::to_array<UniqueIndex>({{"sessions_participant", "participant", "replaced_by IS NULL"},
                                 {"sessions_enrolment", "enrolment", "replaced_by IS NULL"}});
 
-constexpr auto kTrialsRefer = std::to_array<TableReference>({{kOfSession, "sessions"}});
-constexpr auto kResponsesRefer = std::to_array<TableReference>({{kOfTrial, "trials"}});
+constexpr auto kTrialsRefer = std::to_array<TableReference>({{"session", "sessions"}});
 
 constexpr auto kTables = std::to_array<TableDefinition>({
     {"events", kEvents, kOfEvent, true},
@@ -74,11 +65,10 @@ constexpr auto kTables = std::to_array<TableDefinition>({
     {"station_keys", kStationKeys, kOfSession, false, {}, {}, true},
     {"sessions", kSessions, kOfSession, false, kTakenOnce},
     {"trials", kTrials, kOfTrial, false, {}, kTrialsRefer},
-    {"responses", kResponses, kOfTrial, false, {}, kResponsesRefer},
 });
 
 std::string reference_sql(const TableReference& reference) {
-  return "REFERENCES " + std::string(reference.table) + "(" + listed(reference.columns) + ")";
+  return "REFERENCES " + std::string(reference.table) + "(" + std::string(reference.column) + ")";
 }
 
 std::string column_sql(const TableDefinition& table, const TableColumn& column,
@@ -89,9 +79,7 @@ std::string column_sql(const TableDefinition& table, const TableColumn& column,
   if (!column.nullable) sql += " NOT NULL";
   if (!column.default_value.empty()) sql += " DEFAULT " + std::string(column.default_value);
   for (const TableReference& reference : table.references) {
-    if (reference.columns.size() == 1 && reference.columns.front() == column.name) {
-      sql += " " + reference_sql(reference);
-    }
+    if (reference.column == column.name) sql += " " + reference_sql(reference);
   }
   return sql;
 }
@@ -99,14 +87,6 @@ std::string column_sql(const TableDefinition& table, const TableColumn& column,
 template <typename State, std::size_t N>
 Cell state_cell(const std::array<std::string_view, N>& names, State state) {
   return std::string(names.at(static_cast<std::size_t>(state)));
-}
-
-Cell cell_of(const std::optional<std::chrono::nanoseconds>& time) {
-  return time ? Cell(std::int64_t{time->count()}) : Cell();
-}
-
-Cell cell_of(const std::optional<int>& number) {
-  return number ? Cell(std::int64_t{*number}) : Cell();
 }
 
 Cell cell_of(bool flag) {
@@ -131,11 +111,6 @@ class CellReader {
     const std::int64_t number = integer();
     if (number != 0 && number != 1) refuse();
     return number == 1;
-  }
-  [[nodiscard]] std::chrono::nanoseconds time() { return std::chrono::nanoseconds(integer()); }
-  [[nodiscard]] std::optional<std::chrono::nanoseconds> optional_time() {
-    if (skip_null()) return std::nullopt;
-    return time();
   }
   template <typename State, std::size_t N>
   [[nodiscard]] State state(const std::array<std::string_view, N>& names) {
@@ -194,10 +169,6 @@ std::string create_table_sql(const TableDefinition& table, const TypeNames& type
     sql += "  " + column_sql(table, column, types) + ",\n";
   }
   if (table.key.size() > 1) sql += "  PRIMARY KEY(" + listed(table.key) + "),\n";
-  for (const TableReference& reference : table.references) {
-    if (reference.columns.size() == 1) continue;  // stands with its column
-    sql += "  FOREIGN KEY(" + listed(reference.columns) + ") " + reference_sql(reference) + ",\n";
-  }
   return sql.substr(0, sql.size() - 2) + "\n)";
 }
 
@@ -231,28 +202,17 @@ Cells trial_cells(const TrialRow& row) {
           std::int64_t{row.trial},
           std::int64_t{row.block},
           state_cell(kTrialStates, row.state),
-          std::int64_t{row.presented_at.count()},
-          cell_of(row.contact_at),
           cell_of(row.valid),
           row.overruns,
-          row.samples,
+          std::int64_t{row.seconds},
           row.rate_hz,
           std::int64_t{row.explorations}};
 }
 
-Cells response_cells(const TrialRow& row) {
-  return {std::int64_t{row.session}, std::int64_t{row.trial},     cell_of(row.answered_at),
-          cell_of(row.position),     cell_of(row.first_position), cell_of(row.confidence)};
-}
-
-Cells cells_of(std::initializer_list<Table> tables,
-               const std::function<Cell(int, ColumnType)>& cell) {
+Cells cells_of(Table table, const std::function<Cell(int, ColumnType)>& cell) {
   Cells cells;
-  cells.reserve(20);
-  for (const Table table : tables) {
-    for (const TableColumn& column : table_definition(table).columns) {
-      cells.push_back(cell(static_cast<int>(cells.size()), column.type));
-    }
+  for (const TableColumn& column : table_definition(table).columns) {
+    cells.push_back(cell(static_cast<int>(cells.size()), column.type));
   }
   return cells;
 }
@@ -276,29 +236,17 @@ SessionRow session_row(std::span<const Cell> cells) {
 }
 
 TrialRow trial_row(std::span<const Cell> cells) {
-  constexpr std::size_t kOfTrials = 11;
-  CellReader trial(cells.first(kOfTrials), "trials");
+  CellReader trial(cells, "trials");
   TrialRow row;
   row.session = trial.whole();
   row.trial = trial.whole();
   row.block = trial.whole();
   row.state = trial.state<TrialState>(kTrialStates);
-  row.presented_at = trial.time();
-  row.contact_at = trial.optional_time();
   row.valid = trial.flag();
   row.overruns = trial.integer();
-  row.samples = trial.integer();
+  row.seconds = trial.whole();
   row.rate_hz = trial.real();
   row.explorations = trial.whole();
-  const std::span<const Cell> response = cells.subspan(kOfTrials);
-  if (std::holds_alternative<std::monostate>(response.front())) return row;
-  CellReader answer(response, "responses");
-  static_cast<void>(answer.whole());  // session and trial again
-  static_cast<void>(answer.whole());
-  row.answered_at = answer.time();
-  row.position = answer.whole();
-  row.first_position = answer.optional_whole();
-  row.confidence = answer.optional_whole();
   return row;
 }
 

@@ -8,7 +8,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,10 +41,10 @@ struct UniqueIndex {
   std::string_view where;  ///< SQL condition
 };
 
-/// Columns that name a row of another table.
+/// A column that names a row of another table.
 struct TableReference {
-  std::span<const std::string_view> columns;
-  std::string_view table;  ///< its columns of the same names are its key
+  std::string_view column;
+  std::string_view table;  ///< its column of the same name is its key
 };
 
 struct TableDefinition {
@@ -59,7 +58,7 @@ struct TableDefinition {
 };
 
 /// Each table comes after those that it refers to.
-enum class Table { events, traces, participant_keys, station_keys, sessions, trials, responses };
+enum class Table { events, traces, participant_keys, station_keys, sessions, trials };
 
 [[nodiscard]] std::span<const TableDefinition> table_definitions();
 [[nodiscard]] const TableDefinition& table_definition(Table table);
@@ -91,17 +90,13 @@ enum class OwnNumber { if_other, always };
 
 [[nodiscard]] Cells session_cells(const SessionRow& row, OwnNumber own = OwnNumber::if_other);
 [[nodiscard]] Cells trial_cells(const TrialRow& row);
-/// \pre the trial has a response
-[[nodiscard]] Cells response_cells(const TrialRow& row);
 
-/// Reads the columns of one row of derived tables, one table after the other.
+/// Reads the columns of one row of a derived table.
 /// \param cell  gives the value of a column by its place in the row, from 0, and its type
-[[nodiscard]] Cells cells_of(std::initializer_list<Table> tables,
-                             const std::function<Cell(int, ColumnType)>& cell);
+[[nodiscard]] Cells cells_of(Table table, const std::function<Cell(int, ColumnType)>& cell);
 
 /// \throws EventFault if a cell holds a value that no event can give rise to
 [[nodiscard]] SessionRow session_row(std::span<const Cell> cells);
-/// \param cells  of a row of trials, then those of responses; all NULL without a response
 /// \throws the same
 [[nodiscard]] TrialRow trial_row(std::span<const Cell> cells);
 

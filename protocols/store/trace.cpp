@@ -271,7 +271,8 @@ Trace decode_trace(ByteView bytes) {
 }
 
 std::size_t trace_padding(std::size_t sample_count) {
-  return 2048 + 8 * std::min(sample_count, kMaxSamples);
+  const std::size_t thousands = (std::min(sample_count, kMaxSamples) + 999) / 1000;
+  return 2048 + 8000 * thousands;
 }
 
 }  // namespace touchtrial::store

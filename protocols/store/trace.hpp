@@ -27,8 +27,9 @@ struct Trace {
 /// \throws StoreError if the bytes are no trace, are truncated, or claim an absurd length
 [[nodiscard]] Trace decode_trace(ByteView bytes);
 
-/// The padding under which traces are sealed, in bytes. It depends on the number of samples alone,
-/// so that the size of a stored trace does not tell rough textures from smooth ones.
+/// The padding under which traces are sealed, in bytes. It depends on the number of samples rounded
+/// up to whole thousands (seconds, at the servo's rate), so that the size of a stored trace tells
+/// neither rough textures from smooth ones nor how long exactly they were felt.
 [[nodiscard]] std::size_t trace_padding(std::size_t sample_count);
 
 }  // namespace touchtrial::store

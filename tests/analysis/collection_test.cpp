@@ -59,9 +59,12 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
   session.station = falcon();
   session.servo = store::ServoHealth{.rate_hz = 998.0, .lateness_p99_us = 40.0};
   session.before_trials = [](store::SessionRecorder& recorder) {
-    recorder.practised(milliseconds(10), {.round = 1, .presentation = 1, .correct = false});
-    recorder.practised(milliseconds(20), {.round = 2, .presentation = 1, .correct = true});
-    recorder.practised(milliseconds(30), {.round = 2, .presentation = 2, .correct = true});
+    const auto practise = [&](milliseconds at, int round, int presentation, bool correct) {
+      recorder.practised(at, {round, presentation, 0, correct});
+    };
+    practise(milliseconds(10), 1, 1, false);
+    practise(milliseconds(20), 2, 1, true);
+    practise(milliseconds(30), 2, 2, true);
     recorder.deviated(milliseconds(40), {"no-masking-noise", "no sound card"});
     recorder.deviated(milliseconds(50), {"no-masking-noise", "no sound card"});
     recorder.resumed(milliseconds(60), {.after = "pause", .away_s = 3.0});
@@ -71,7 +74,7 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
   study.store().note(1, milliseconds(100), "moved-hand", "during trial 3");
   study.store().note(1, milliseconds(110), "", "a remark is no deviation");
 
-  const analysis::Collection collection = analysis::load_collection(study.store());
+  const analysis::Collection collection = analysis::load_collection(study.store(), &study.key());
   REQUIRE(collection.sessions.size() == 1);
   const analysis::SessionRecord& record = collection.sessions[0];
   CHECK(record.row.participant == "P01");
@@ -82,6 +85,7 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
   CHECK(record.practice->passed);
   REQUIRE(record.deviations.size() == 2);
   CHECK(record.deviations[0].code == "no-masking-noise");
+  CHECK(record.deviations[0].text == "no sound card");
   CHECK(record.deviations[1].text == "during trial 3");
   CHECK(record.resumed == 1);
   REQUIRE(record.station);
@@ -92,11 +96,32 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
   CHECK_FALSE(collection.visual);
 }
 
+TEST_CASE("Without the key a record lacks what a session's people said and answered") {
+  FakeStudy study(design::identification::classification());
+  FakeSession session = session_of("P01", 1);
+  session.summary = store::AnswerSummary{
+      .n = 12, .different = 3, .largest_share = 0.5, .longest_run = 2, .median_s = 4.3};
+  session.before_trials = [](store::SessionRecorder& recorder) {
+    recorder.practised(milliseconds(10), {1, 1, 0, true});
+    recorder.deviated(milliseconds(40), {"no-masking-noise", "no sound card"});
+  };
+  study.add(session);
+  const analysis::Collection collection = analysis::load_collection(study.store());
+  const analysis::SessionRecord& record = collection.sessions.at(0);
+  REQUIRE(record.practice);
+  CHECK(record.practice->presentations == 1);
+  CHECK_FALSE(record.practice->correct);
+  REQUIRE(record.deviations.size() == 1);
+  CHECK(record.deviations[0].code == "no-masking-noise");
+  CHECK(record.deviations[0].text.empty());
+  CHECK(record.answers == session.summary);
+}
+
 TEST_CASE("Practice that did not reach its criterion is reported") {
   FakeStudy study(design::identification::classification());
   FakeSession session = session_of("P01", 1);
   session.before_trials = [](store::SessionRecorder& recorder) {
-    recorder.practised(milliseconds(10), {.round = 1, .presentation = 1, .correct = false});
+    recorder.practised(milliseconds(10), {1, 1, 0, false});
     recorder.deviated(milliseconds(20), {"practice-not-passed", "0 of 1"});
   };
   study.add(session);

@@ -153,7 +153,7 @@ void FakeStudy::add(const FakeSession& session) {
     }
   }
   if (again != nullptr) record_trial(recorder, session, schedule, *again, ++place);
-  recorder.closed(milliseconds(10'000'000), session.complete);
+  recorder.closed(milliseconds(10'000'000), session.complete, session.summary);
   store_.add_session(buffer, store::wrap_participant_key(key_.investigator_box, number, own),
                      milliseconds(number));
 }

@@ -32,7 +32,8 @@ struct FakeSession {
   int stop_after = 1 << 20;  ///< presentations
   /// Recorded after the opening, before 10 s have passed.
   std::function<void(store::SessionRecorder&)> before_trials{};
-  FakeTraces traces{};  ///< empty: a touch too short to feel anything
+  std::optional<store::AnswerSummary> summary{};  ///< that the session ends with
+  FakeTraces traces{};                            ///< empty: a touch too short to feel anything
 };
 
 struct FakeOptions {

@@ -50,8 +50,25 @@ TEST_CASE("make_quality counts sessions, answers and validity without a key") {
   CHECK(quality.with_trace == 28);
   CHECK(quality.valid == 16);
   CHECK(quality.lowest_rate_hz == 1000.0);
-  REQUIRE(quality.by_position.size() == 3);
-  CHECK(std::accumulate(quality.by_position.begin(), quality.by_position.end(), 0) == 27);
+}
+
+TEST_CASE("A quality report shows by session how answers are spread") {
+  FakeStudy study(design::identification::classification());
+  FakeSession session{.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()};
+  session.summary = store::AnswerSummary{
+      .n = 12, .different = 2, .largest_share = 0.75, .longest_run = 7, .median_s = 4.3};
+  study.add(session);
+  study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
+  const analysis::QualityReport report = analysis::make_quality(study.store());
+  const std::string text = analysis::quality_text(report);
+  for (const char* figure : {"longest run", "75.0%", "4.3 s"}) CHECK(contains(text, figure));
+  const auto json = nlohmann::json::parse(analysis::quality_json(report));
+  const auto& sessions = json["collection"]["sessions"];
+  CHECK(sessions[0]["answers"]["different"] == 2);
+  CHECK(sessions[0]["answers"]["longest_run"] == 7);
+  CHECK(sessions[1]["answers"].is_null());
+  CHECK_FALSE(json["responses"].contains("by_position"));
+  CHECK_FALSE(json["responses"].contains("changed"));
 }
 
 TEST_CASE("make_quality counts every session once, and replaced ones apart") {

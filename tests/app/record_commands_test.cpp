@@ -121,7 +121,7 @@ Opened opened_by(const StudyStore& store, int session, const SecretKey& key) {
     const auto body = json::parse(event.body);
     const int trial = body.at("trial");
     const auto box = store.sealed_trace(session, trial);
-    if (box && unsealed_trace(*box, key, body.at("samples"))) ++opened.traces;
+    if (box && unsealed_trace(*box, key)) ++opened.traces;
   }
   return opened;
 }
@@ -129,9 +129,10 @@ Opened opened_by(const StudyStore& store, int session, const SecretKey& key) {
 TEST_CASE("consent is recorded in a file of its own that only its owner may read") {
   const TempFolder folder;
   const fs::path database = folder.path() / "study.db";
-  const ProgramResult done =
-      run_touchtrial(folder.path(), {"consent", database.string(), "--participant", "P07",
-                                     "--version", "2026-03", "--age", "34"});
+  const ProgramResult done = run_touchtrial(folder.path(),
+                                            {"consent", database.string(), "--participant", "P07",
+                                             "--version", "2026-03", "--details", "-"},
+                                            "age: 34\n\ngender:  woman \n");
   INFO(done.errors);
   REQUIRE(done.exit_code == 0);
   const fs::path file = personal_data_path(database);
@@ -140,18 +141,58 @@ TEST_CASE("consent is recorded in a file of its own that only its owner may read
   REQUIRE(record);
   CHECK(record->consent_version == "2026-03");
   CHECK(record->age == 34);
+  CHECK(record->gender == "woman");
   CHECK(record->contact.empty());
   CHECK_FALSE(fs::exists(database));
 }
 
-TEST_CASE("consent records nothing if the line for --contact is missing") {
+TEST_CASE("consent refuses personal details on the command line, and details that it cannot read") {
   const TempFolder folder;
   const fs::path database = folder.path() / "study.db";
-  const ProgramResult done = run_touchtrial(
-      folder.path(),
-      {"consent", database.string(), "--participant", "P07", "--version", "1", "--contact"});
-  CHECK(done.exit_code == 2);
-  CHECK_FALSE(fs::exists(personal_data_path(database)));
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& input,
+                           const std::vector<std::string>& words) {
+    std::vector<std::string> arguments = {"consent", database.string(), "--participant",
+                                          "P07",     "--version",       "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    check_refused(run_touchtrial(folder.path(), arguments, input), 2, words);
+    CHECK_FALSE(fs::exists(personal_data_path(database)));
+  };
+  for (const auto& option : {std::vector<std::string>{"--age", "34"},
+                             {"--gender", "woman"},
+                             {"--contact"},
+                             {"--contact", "ann@example.org"}}) {
+    refused(option, "", {"list of programs", "--details -"});
+  }
+  refused({"--details", "-"}, "", {"standard input", "empty"});
+  refused({"--details", "-"}, "age: 34\nphone: 12345\n", {"line 2", "contact: WORDS"});
+  refused({"--details", "-"}, "age: 34\nage: 35\n", {"line 2", "twice"});
+  refused({"--details", "-"}, "age: old\n", {"age", "0 to 130"});
+  refused({"--details", "-"}, "age: 131\n", {"age", "0 to 130"});
+}
+
+TEST_CASE("a limit on the size of files ends a command in one line, and the database holds") {
+  const PeopleStudy study;
+  const std::vector<std::string> note = {"note", study.in("study.db"), "--participant", "P001",
+                                         std::string(20'000, 'x')};
+  const ProgramResult limited = run_touchtrial_limited(study.path(), "-f 8", note);
+  INFO(limited.errors);
+  CHECK(limited.exit_code == 1);  // not -1: no signal ended it
+  CHECK(line_count(limited.errors) == 1);
+  CHECK(limited.errors.find("study.db") != std::string::npos);
+  check_verified(study);
+  CHECK(run_touchtrial(study.path(), note).exit_code == 0);
+}
+
+TEST_CASE("an output that nobody reads ends a command in one line") {
+  const PeopleStudy study;
+  const ProgramResult closed = run_program(
+      "/bin/sh", study.path(),
+      {"-c",
+       "{ while (echo x) 2>/dev/null; do :; done; \"$0\" verify \"$1\"; echo $? >&2; } | true",
+       TOUCHTRIAL_PROGRAM, study.in("study.db")});
+  INFO(closed.errors);
+  CHECK(closed.errors.find("standard output: cannot be written") != std::string::npos);
+  CHECK(closed.errors.ends_with("\n1\n"));
 }
 
 }  // namespace
@@ -228,6 +269,66 @@ TEST_CASE("a replacement inherits the participant's enrolment number and its sch
   CHECK(quality.at("sessions").at("replaced") == 1);
   CHECK(quality.at("sessions").at("excluded") == 0);
   CHECK(study.outcomes().at("participants") == 5);
+}
+
+TEST_CASE(
+    "a withdrawal while others read goes as far as it can, says what is left, and is finished") {
+  const PeopleStudy study;
+  const fs::path personal = personal_data_path(study.database());
+  PersonalData(personal).put({.participant = "P001",
+                              .consent_version = "3",
+                              .consented_utc = "2026-01-02T03:04:05Z",
+                              .age = 30,
+                              .gender = "",
+                              .contact = "somebody@example.org"});
+  const Bytes wrapped =
+      study.store().wrapped_key(session_of(study.store(), "P001").session).value();
+  const std::vector<std::string> reason = {"--reason", "asked to"};
+  {
+    SQLite::Database reader(study.in("study.db"), SQLite::OPEN_READONLY);
+    reader.exec("BEGIN");
+    static_cast<void>(reader.execAndGet("SELECT count(*) FROM participant_keys").getInt());
+    check_refused(study.people("withdraw", "P001", reason), 1,
+                  {"P001", "not everything is erased yet", "keeps the key in the file's -wal",
+                   "run the same command again"});
+    CHECK_FALSE(PersonalData(personal).find("P001"));
+    CHECK(files_with(study, bytes_of("somebody@example.org")).empty());
+  }
+  CHECK(study.people("withdraw", "P001", reason).exit_code == 0);
+  CHECK(files_with(study, wrapped).empty());
+  CHECK(session_of(study.store(), "P001").withdrawn);
+
+  PersonalData(personal).put({.participant = "P002",
+                              .consent_version = "3",
+                              .consented_utc = "2026-01-02T03:04:05Z",
+                              .age = {},
+                              .gender = "",
+                              .contact = "else@example.org"});
+  {
+    SQLite::Database reader(personal.string(), SQLite::OPEN_READONLY);
+    reader.exec("BEGIN");
+    static_cast<void>(reader.execAndGet("SELECT count(*) FROM people").getInt());
+    check_refused(study.people("withdraw", "P002", reason), 1,
+                  {"P002", "the personal data are not removed yet", "study.db.personal"});
+    CHECK(session_of(study.store(), "P002").withdrawn);
+  }
+  const ProgramResult finished = study.people("withdraw", "P002", reason);
+  INFO(finished.errors);
+  CHECK(finished.exit_code == 0);
+  CHECK(finished.output.find("personal data are removed") != std::string::npos);
+  CHECK(files_with(study, bytes_of("else@example.org")).empty());
+  check_verified(study);
+}
+
+TEST_CASE("a withdrawal says and records what it could not erase") {
+  const PeopleStudy study;
+  const ProgramResult withdrawn = study.people("withdraw", "P001", {"--reason", "asked to"});
+  CHECK(withdrawn.output.find("every other copy of the database") != std::string::npos);
+  CHECK(withdrawn.output.find("run `touchtrial sync` now") != std::string::npos);
+  CHECK(study.store().events(0).back().body.find("asked to [not erased by this: other copies") !=
+        std::string::npos);
+  check_refused(study.people("withdraw", "P002", {"--reason", ""}), 1, {"reason"});
+  check_verified(study);
 }
 
 TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") {

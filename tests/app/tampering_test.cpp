@@ -120,12 +120,10 @@ const std::vector<Tampering> kTamperings = {
     {"a wrapped key",
      [](const StudyFolder& study) { flip_in(study, "participant_keys", "wrapped", "session = 2"); },
      {"chain", "failed", "key"}},
-    {"a row of responses",
+    {"a row of trials",
      [](const StudyFolder& study) {
        SQLite::Database(study.in("study.db"), SQLite::OPEN_READWRITE)
-           .exec(
-               "UPDATE responses SET position = (position + 1) % 3 WHERE session = 2 AND "
-               "trial = 3");
+           .exec("UPDATE trials SET overruns = overruns + 1 WHERE session = 2 AND trial = 3");
      },
      {"chain", "failed", "session 2"}},
     {"a row of sessions",

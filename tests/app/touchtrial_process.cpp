@@ -14,7 +14,7 @@ extern char** environ;
 namespace touchtrial {
 
 ProgramResult run_program(const std::filesystem::path& program, const std::filesystem::path& folder,
-                          const std::vector<std::string>& arguments) {
+                          const std::vector<std::string>& arguments, const std::string& input) {
   std::vector<std::string> words = {program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -25,7 +25,9 @@ ProgramResult run_program(const std::filesystem::path& program, const std::files
   const std::string err = (folder / "stderr.txt").string();
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  const std::string in = input.empty() ? "/dev/null" : (folder / "stdin.txt").string();
+  if (!input.empty()) replace_file(in, input);
+  posix_spawn_file_actions_addopen(&actions, 0, in.c_str(), O_RDONLY, 0);
   const int flags = O_WRONLY | O_CREAT | O_TRUNC;
   posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), flags, 0600);
   posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), flags, 0600);
@@ -40,8 +42,16 @@ ProgramResult run_program(const std::filesystem::path& program, const std::files
 }
 
 ProgramResult run_touchtrial(const std::filesystem::path& folder,
-                             const std::vector<std::string>& arguments) {
-  return run_program(TOUCHTRIAL_PROGRAM, folder, arguments);
+                             const std::vector<std::string>& arguments, const std::string& input) {
+  return run_program(TOUCHTRIAL_PROGRAM, folder, arguments, input);
+}
+
+ProgramResult run_touchtrial_limited(const std::filesystem::path& folder, const std::string& limit,
+                                     const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {"-c", "ulimit " + limit + " && exec \"$0\" \"$@\"",
+                                    TOUCHTRIAL_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return run_program("/bin/sh", folder, words);
 }
 
 int line_count(const std::string& text) {

@@ -13,15 +13,22 @@ struct ProgramResult {
   std::string errors;  ///< standard error
 };
 
-/// Runs `PROGRAM ARGUMENTS` to its end without input.
+/// Runs `PROGRAM ARGUMENTS` to its end.
 /// \param folder  a folder for its output while it runs
+/// \param input  its standard input
 [[nodiscard]] ProgramResult run_program(const std::filesystem::path& program,
                                         const std::filesystem::path& folder,
-                                        const std::vector<std::string>& arguments);
+                                        const std::vector<std::string>& arguments,
+                                        const std::string& input = "");
 
 /// The same for `touchtrial`.
 [[nodiscard]] ProgramResult run_touchtrial(const std::filesystem::path& folder,
-                                           const std::vector<std::string>& arguments);
+                                           const std::vector<std::string>& arguments,
+                                           const std::string& input = "");
+/// The same under the limits that a shell's `ulimit` sets, for instance "-f 8".
+[[nodiscard]] ProgramResult run_touchtrial_limited(const std::filesystem::path& folder,
+                                                   const std::string& limit,
+                                                   const std::vector<std::string>& arguments);
 
 /// The number of lines in a text, the last one finished or not.
 [[nodiscard]] int line_count(const std::string& text);

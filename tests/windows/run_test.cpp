@@ -1,4 +1,5 @@
 // "touchtrial run" as experimenter and participant have it, on a screen that nobody sees.
+#include "analysis/sealed_sessions.hpp"
 #include "app/touchtrial_process.hpp"
 #include "core/files.hpp"
 #include "protocols/store/study_store.hpp"
@@ -59,8 +60,10 @@ struct Laboratory {
   TempFolder folder;
 };
 
-std::vector<store::TrialRow> trials_in(const std::string& database) {
-  return store::StudyStore::open(database, store::StudyStore::Access::read_only).trials();
+std::vector<store::TrialRow> trials_in(const Laboratory& lab, const std::string& database) {
+  return analysis::open_trials(
+      store::StudyStore::open(lab.in(database), store::StudyStore::Access::read_only),
+      design::load_study_key(lab.in("config/study.key")));
 }
 
 std::vector<int> positions_of(const std::vector<store::TrialRow>& trials) {
@@ -69,8 +72,8 @@ std::vector<int> positions_of(const std::vector<store::TrialRow>& trials) {
   return positions;
 }
 
-std::vector<int> positions_as_answered(const std::string& database) {
-  std::vector<store::TrialRow> trials = trials_in(database);
+std::vector<int> positions_as_answered(const Laboratory& lab, const std::string& database) {
+  std::vector<store::TrialRow> trials = trials_in(lab, database);
   std::ranges::sort(trials, {}, &store::TrialRow::answered_at);
   return positions_of(trials);
 }
@@ -86,9 +89,9 @@ TEST_CASE("a simulated participant answers with the window's keys as without a w
   INFO(seen.errors);
   REQUIRE(seen.exit_code == 0);
   CHECK(seen.output.find("trial 25 acknowledged\n") != std::string::npos);
-  const std::vector<int> answers = positions_of(trials_in(lab.in("b.db")));
+  const std::vector<int> answers = positions_of(trials_in(lab, "b.db"));
   CHECK(answers.size() == 25);
-  CHECK(answers == positions_of(trials_in(lab.in("a.db"))));
+  CHECK(answers == positions_of(trials_in(lab, "a.db")));
   lab.verify("b.db");
 }
 
@@ -163,7 +166,7 @@ TEST_CASE("a person pilots a whole session of 25 trials from the keyboard") {
   INFO(pilot.output());
   REQUIRE(code == 0);
   CHECK(pilot.meant().size() == 25);
-  CHECK(positions_as_answered(lab.in("pilot.db")) == pilot.meant());
+  CHECK(positions_as_answered(lab, "pilot.db") == pilot.meant());
   lab.verify("pilot.db");
 }
 

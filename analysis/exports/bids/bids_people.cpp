@@ -126,7 +126,7 @@ std::map<int, Demographics> demographics(const DatasetSource& source) {
     const auto own = keys.find(event.session);
     if (own == keys.end()) return;
     take_answers(store::remark_from_json(event.body),
-                 answers_from_json(opened_part(event, own->second)), source.key->study,
+                 answers_from_json(whole_event(event, own->second).secret), source.key->study,
                  all[event.session]);
   });
   return all;

@@ -33,8 +33,7 @@ store::Trace opened_trace(const DatasetSource& study, const store::TrialRow& row
     return study.store.sealed_trace(row.session, row.trial);
   }();
   if (box) {
-    auto trace = store::unsealed_trace(*box, shared.keys.at(row.session),
-                                       static_cast<std::size_t>(row.samples));
+    auto trace = store::unsealed_trace(*box, shared.keys.at(row.session));
     if (trace) return *std::move(trace);
   }
   throw VerificationError(fmt::format(
@@ -131,9 +130,9 @@ std::vector<ExportFile> trace_files(const DatasetSource& study,
   std::map<int, const BidsSession*> by_number;
   for (const BidsSession& session : sessions) by_number[session.row.session] = &session;
   std::vector<ExportFile> files;
-  for (const store::TrialRow& row : study.store.trials()) {
+  for (const store::TrialRow& row : open_trials(study.store, *study.key)) {
     const auto session = by_number.find(row.session);
-    if (session == by_number.end() || row.samples == 0) continue;
+    if (session == by_number.end() || row.seconds == 0) continue;
     const std::string name =
         fmt::format("{}/{}_task-{}_recording-trial{:03}_stim", session->second->folder(),
                     session->second->stem(), task, row.trial);

@@ -27,10 +27,11 @@ using Files = std::vector<ExportFile>;
 
 std::string bids_readme(const DatasetSource& study, const DatasetOptions& options) {
   std::string text = study.store.commitment().study + "\n\n" + about_study(study);
-  text +=
-      "One *_beh.tsv a session, one row a trial, in the order of presentation; task-*_beh.json "
-      "describes the columns. Labels of participants are their ids with Zd for a hyphen, Zu for "
-      "an underscore, Zp for a plus sign and ZZ for Z; participants.tsv has both.\n";
+  text += fmt::format(
+      "One *_beh.tsv a session, one row a trial, {}; task-*_beh.json describes the columns. Labels "
+      "of participants are their ids with Zd for a hyphen, Zu for an underscore, Zp for a plus "
+      "sign and ZZ for Z; participants.tsv has both.\n",
+      study.outcomes != nullptr ? "in the order of presentation" : "by number");
   if (options.traces) {
     text +=
         "*_recording-trial<number>_stim.tsv.gz hold the stylus' position and the force sent, from "
@@ -90,38 +91,28 @@ DataCell stimulus_file(const TrialView& trial) {
   return stimulus_name(trial.study->design, shown.class_index, shown.exemplar);
 }
 
-/// What each row may show. Leaves out trials that an interim look does not show.
+/// What each row may show: trials with their outcomes, or before unblinding the rows in clear.
 std::vector<TrialView> views_of(const DatasetSource& study,
-                                const std::vector<store::TrialRow>& rows) {
+                                const std::vector<store::TrialRow>& in_clear) {
   static const std::string kNobody;
   const bool simulated = study.store.commitment().simulated;
-  std::map<std::pair<int, int>, const TrialOutcome*> meanings;
-  if (study.outcomes != nullptr) {
-    for (const TrialOutcome& trial : study.outcomes->trials) {
-      meanings[{trial.row.session, trial.row.trial}] = &trial;
-    }
-  }
   std::vector<TrialView> views;
-  for (const store::TrialRow& row : rows) {
-    const auto meaning = meanings.find({row.session, row.trial});
-    if (meaning != meanings.end()) {
-      views.push_back({kNobody, row, simulated, study.outcomes, meaning->second});
-    } else if (study.outcomes == nullptr) {
-      views.push_back({kNobody, row, simulated});
-    }
+  for (const store::TrialRow& row : in_clear) views.push_back({kNobody, row, simulated});
+  if (study.outcomes == nullptr) return views;
+  std::vector<const TrialOutcome*> trials;
+  for (const TrialOutcome& trial : study.outcomes->trials) trials.push_back(&trial);
+  std::ranges::stable_sort(trials, {}, [](const TrialOutcome* trial) {
+    return std::pair(trial->row.session, trial->row.presented_at);
+  });
+  for (const TrialOutcome* trial : trials) {
+    views.push_back({kNobody, trial->row, simulated, study.outcomes, trial});
   }
   return views;
 }
 
-/// Sorts by session, then by time.
-void sort_by_presentation(std::vector<store::TrialRow>& rows) {
-  std::sort(rows.begin(), rows.end(), [](const store::TrialRow& a, const store::TrialRow& b) {
-    return std::pair(a.session, a.presented_at) < std::pair(b.session, b.presented_at);
-  });
-}
-
-/// The trials of each session in the order of presentation, unscored trials included. The columns
-/// are those of trials.csv under the names of BIDS. A session without trials has an empty table.
+/// The trials of each session in the order of presentation (before unblinding: of their numbers),
+/// unscored trials included. The columns are those of trials.csv under the names of BIDS. A session
+/// without trials has an empty table.
 struct BidsTrials {
   std::vector<std::string> columns;
   std::map<int, DataTable> by_session;
@@ -138,9 +129,9 @@ BidsTrials bids_trials(const DatasetSource& study, bool stimuli) {
   for (const store::SessionRow& session : study.store.sessions()) {
     if (!session.withdrawn) trials.by_session[session.session].columns = trials.columns;
   }
-  std::vector<store::TrialRow> rows = study.store.trials();
-  sort_by_presentation(rows);
-  for (const TrialView& trial : views_of(study, rows)) {
+  const std::vector<store::TrialRow> in_clear =
+      unblinded ? std::vector<store::TrialRow>() : study.store.trials();
+  for (const TrialView& trial : views_of(study, in_clear)) {
     const auto table = trials.by_session.find(trial.row.session);
     if (table == trials.by_session.end()) continue;
     std::vector<DataCell>& row = table->second.rows.emplace_back();

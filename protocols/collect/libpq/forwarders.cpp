@@ -58,6 +58,7 @@ FORWARD(PostgresPollingStatusType, PQconnectPoll, (PGconn* conn), (conn))
 FORWARD(PGconn*, PQconnectStart, (const char* conninfo), (conninfo))
 FORWARD(PGconn*, PQconnectdb, (const char* conninfo), (conninfo))
 FORWARD(int, PQconnectionNeedsPassword, (const PGconn* conn), (conn))
+FORWARD(PQconninfoOption*, PQconndefaults, (), ())
 FORWARD(void, PQconninfoFree, (PQconninfoOption* connOptions), (connOptions))
 FORWARD(PQconninfoOption*, PQconninfoParse, (const char* conninfo, char** errmsg),
         (conninfo, errmsg))

@@ -5,6 +5,7 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace touchtrial {
@@ -95,6 +96,9 @@ store::TrialRow trial_row_of(const CsvRow& row) {
   trial.overruns = number_of<std::int64_t>(row.at("overruns"));
   trial.samples = number_of<std::int64_t>(row.at("samples"));
   trial.rate_hz = number_of<double>(row.at("sampling_hz"));
+  if (trial.samples > 0) {
+    trial.seconds = static_cast<int>(std::ceil(static_cast<double>(trial.samples) / trial.rate_hz));
+  }
   trial.explorations = number_of<int>(row.at("explorations"));
   return trial;
 }

@@ -110,8 +110,10 @@ TEST_CASE("How a study was collected is the same from its CSV files, in words an
       store::StationRecord{"Falcon", "1.2, beta", 8.9, false, 1000.0, "SCHED_FIFO 80", "c0ffee"};
   felt.servo = store::ServoHealth{999.75, 1.5, 40.25, 80.125, 1e3 / 3.0, 2, 17};
   felt.before_trials = [](store::SessionRecorder& recorder) {
-    recorder.practised(milliseconds(10), {.round = 1, .presentation = 1, .correct = false});
-    recorder.practised(milliseconds(20), {.round = 2, .presentation = 1, .correct = true});
+    recorder.practised(milliseconds(10),
+                       {.round = 1, .presentation = 1, .position = 0, .correct = false});
+    recorder.practised(milliseconds(20),
+                       {.round = 2, .presentation = 1, .position = 0, .correct = true});
     recorder.deviated(milliseconds(40), {"no-masking-noise", "no \"sound\" card,\nnone"});
     recorder.deviated(milliseconds(45), {"practice-not-passed", ""});
     recorder.resumed(milliseconds(70), {.after = "program-ended", .away_s = 60.0});

@@ -115,7 +115,6 @@ TEST_CASE("page: a table of a thousand participants is folded away") {
 TEST_CASE("page: the report before unblinding tells nothing about outcomes") {
   QualityReport quality;
   quality.study = "hand-made";
-  quality.quality.by_position = {3, 4, 5};
   quality.quality.answered = 12;
   Provenance provenance = hand_made_provenance();
   provenance.state = {};

@@ -218,7 +218,7 @@ TEST_CASE("every reader refuses data that were altered on the server, with exit 
   const std::string database = url.substr(14, url.find('?') - 14);
   shared_server().ask(database,
                       "SET session_replication_role = replica; "
-                      "UPDATE events SET body = replace(body, '1', '2') WHERE session = 3 AND "
+                      "UPDATE events SET body = replace(body, '1', '2') WHERE session = 100001 AND "
                       "kind = 'answered'");
   for (const char* const command : {"report", "export"}) {
     std::vector<std::string> arguments = {command, url, "--key", stations().key()};

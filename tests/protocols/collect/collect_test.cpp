@@ -75,7 +75,7 @@ TEST_CASE("events, traces and keys open as they did at the station") {
   CHECK(unsealed(here.front(), *key) == R"({"schedule":"2"})");
   const SealedTrace sealed = store.sealed_trace(4, 3).value();
   CHECK(sealed == station.sealed_trace(2, 3).value());
-  CHECK(unsealed_trace(sealed, *key, 20));
+  CHECK(unsealed_trace(sealed, *key));
 }
 
 TEST_CASE("the stations' own chains are kept as they were") {

@@ -8,6 +8,7 @@
 #include "protocols/simulation/prompt_participant.hpp"
 #include "protocols/store/noting_sink.hpp"
 #include "protocols/store/study_store.hpp"
+#include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 #include "support/fault_vfs.hpp"
 
@@ -123,7 +124,7 @@ struct KilledSession {
                              store::SessionRecorder(1, lab.participant_key, sink));
     session::VirtualSessionClock clock;
     if (again) {
-      session.restore(store.events(1));
+      session.restore(as_recorded(store.events(1), lab.participant_key));
       clock = session::VirtualSessionClock(session.last() + std::chrono::seconds(30));
       session.take_up(clock.now(), {.after = "program-ended", .away_s = 30.0});
     } else {

@@ -12,6 +12,7 @@
 #include "protocols/simulation/prompt_participant.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/study_store.hpp"
+#include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 #include "support/realtime_watch.hpp"
 
@@ -115,12 +116,15 @@ TEST_CASE("a real-time session stores every answer, every sample and the servo's
   const std::vector<store::Event> answers = lab.all(store::EventKind::answered);
   REQUIRE(answers.size() == 5);
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    CHECK(store::answer_from_json(answers[i].body).position == lab.person.named[i]);
+    const store::Event answer = as_recorded(answers[i], lab.participant_key);
+    CHECK(store::answer_from_json(answer.body).position == lab.person.named[i]);
   }
   REQUIRE(lab.events.traces.size() == 5);
   for (const store::Event& stored : lab.all(store::EventKind::trace_stored)) {
-    const store::TraceBody body = store::trace_body_from_json(stored.body);
+    const store::TraceBody body =
+        store::trace_body_from_json(as_recorded(stored, lab.participant_key).body);
     CHECK(body.samples == 500);
+    CHECK(body.seconds == 1);
     REQUIRE(body.servo);
     CHECK(body.servo->lost == 0);
     CHECK(body.servo->held == 0);
@@ -182,7 +186,7 @@ TEST_CASE("a session ends when the attendant gives up on the device") {
   CHECK(lab.session.phase() == session::SessionPhase::closed);
   CHECK(lab.all(store::EventKind::stopped).size() == 1);
   CHECK(lab.all(store::EventKind::answered).empty());
-  CHECK_FALSE(store::completion_from_json(lab.events.events.back().body));
+  CHECK_FALSE(store::closed_from_json(lab.events.events.back().body).complete);
 }
 
 /// Servo time that stands still from one tick on until it is told to go on.
@@ -242,7 +246,8 @@ TEST_CASE("a participant who is done ends the exploration before its time is up"
   CHECK(lab.all(store::EventKind::answered).size() == 5);
   CHECK(lab.all(store::EventKind::timed_out).empty());
   for (const store::Event& stored : lab.all(store::EventKind::trace_stored)) {
-    CHECK(store::trace_body_from_json(stored.body).samples <= 201);
+    const store::Event recorded = as_recorded(stored, lab.participant_key);
+    CHECK(store::trace_body_from_json(recorded.body).samples <= 201);
   }
 }
 
@@ -314,7 +319,7 @@ TEST_CASE("a real-time session on the machine's own clock records how late its t
   int traces = 0;
   for (const store::Event& event : events.events) {
     if (event.kind != store::EventKind::trace_stored) continue;
-    const store::TraceBody body = store::trace_body_from_json(event.body);
+    const store::TraceBody body = store::trace_body_from_json(as_recorded(event, SecretKey{}).body);
     ++traces;
     REQUIRE(body.servo);
     CHECK(body.servo->rate_hz > 0.0);

@@ -1,6 +1,8 @@
 #include "protocols/session/session.hpp"
 
 #include "core/errors.hpp"
+#include "protocols/store/payload_json.hpp"
+#include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -62,7 +64,7 @@ struct Laboratory {
     return kinds;
   }
   [[nodiscard]] nlohmann::json last_body() const {
-    return nlohmann::json::parse(sink.stored.events.back().body);
+    return nlohmann::json::parse(as_recorded(sink.stored.events.back(), SecretKey{}).body);
   }
 
   FickleSink sink;
@@ -418,8 +420,9 @@ std::vector<int> killed_after(std::size_t kept, const design::TrialOptions& opti
   FickleSink second;
   session::Session again(schedule_of(4), options, store::SessionRecorder(1, SecretKey{}, second),
                          two_trials_again());
-  again.restore(first.stored.events);
-  CHECK(again.last() == first.stored.events.back().at);
+  const std::vector<store::Event> so_far = as_recorded(first.stored.events, SecretKey{});
+  again.restore(so_far);
+  CHECK(again.last() == so_far.back().at);
   if (again.phase() != Phase::closed) again.take_up(again.last(), {"program-ended", 1.0, "1"});
   run(again, second, 1000);
   CHECK(again.phase() == Phase::closed);
@@ -468,14 +471,15 @@ TEST_CASE("resuming a session ends its pause, and asks nothing twice") {
   lab.session.pause(seconds(4), "telephone");
   FickleSink sink;
   session::Session again(schedule_of(3), {}, store::SessionRecorder(1, SecretKey{}, sink));
-  again.restore(lab.sink.stored.events);
+  again.restore(as_recorded(lab.sink.stored.events, SecretKey{}));
   CHECK(again.phase() == Phase::paused);
   again.take_up(seconds(5), {"program-ended", 1.0, "1"});
   CHECK(again.phase() == Phase::ready);
   CHECK(again.remarks().ticked.contains("curtain"));
   CHECK(again.remarks().deviations.contains("no-masking-noise"));
   CHECK(again.remarks().questionnaires.contains("handedness"));
-  CHECK(again.remarks().practice.size() == 1);
+  REQUIRE(again.remarks().practice.size() == 1);
+  CHECK(again.remarks().practice.front().correct == true);
 }
 
 TEST_CASE("events that do not fit the schedule are refused") {
@@ -485,7 +489,38 @@ TEST_CASE("events that do not fit the schedule are refused") {
   design::Schedule other = schedule_of(1);
   other.presentations.front().trial = 2;
   session::Session again(other, {}, store::SessionRecorder(1, SecretKey{}, sink));
-  CHECK_THROWS_WITH(again.restore(lab.sink.stored.events), Catch::Contains("verify"));
+  CHECK_THROWS_WITH(again.restore(as_recorded(lab.sink.stored.events, SecretKey{})),
+                    Catch::Contains("verify"));
+}
+
+TEST_CASE("a session ends with how its answers are spread, also after it was taken up") {
+  Laboratory lab(5);
+  lab.run_trial(2);
+  lab.run_trial(0);
+  FickleSink sink;
+  session::Session again(schedule_of(5), {}, store::SessionRecorder(1, SecretKey{}, sink));
+  again.restore(as_recorded(lab.sink.stored.events, SecretKey{}));
+  std::chrono::nanoseconds now = again.last();
+  again.take_up(now, {"program-ended", 1.0, "1"});
+  for (const int trial : {3, 4, 5}) {
+    again.present(now += seconds(1));
+    again.end_exploring(now += seconds(1));
+    again.choose(trial == 5 ? 1 : 0);
+    again.confirm(now += std::chrono::milliseconds(2260));
+  }
+  again.close(now);
+  // The first two took 3 s, the others 3.26 s.
+  CHECK(store::closed_from_json(sink.stored.events.back().body).answers ==
+        store::AnswerSummary{
+            .n = 5, .different = 3, .largest_share = 0.6, .longest_run = 3, .median_s = 3.3});
+}
+
+TEST_CASE("a session without answers ends without their spread") {
+  Laboratory lab(0);
+  lab.session.close(seconds(4));
+  const store::ClosedBody closed = store::closed_from_json(lab.sink.stored.events.back().body);
+  CHECK(closed.complete);
+  CHECK_FALSE(closed.answers);
 }
 
 TEST_CASE("a session without presentations is finished once the participant is instructed") {

@@ -3,22 +3,44 @@
 
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/study_store.hpp"
+#include "support/as_recorded.hpp"
 
 #include <map>
 #include <utility>
+#include <vector>
 
 namespace touchtrial {
 
 /// Counts of (presented class, answered class).
 using Confusion = std::map<std::pair<int, int>, int>;
 
+[[nodiscard]] inline SecretKey key_of_session(const store::StudyStore& store,
+                                              const design::StudyKey& key, int session) {
+  return store::unwrap_participant_key(key.box(), session, store.wrapped_key(session).value())
+      .value();
+}
+
 [[nodiscard]] inline design::Schedule schedule_of_session(const store::StudyStore& store,
                                                           const design::StudyKey& key,
                                                           int session) {
-  const auto participant_key =
-      store::unwrap_participant_key(key.box(), session, store.wrapped_key(session).value());
   return design::schedule_from_json(
-      store::unsealed(store.events(session).front(), participant_key.value()).value(), key);
+      store::unsealed(store.events(session).front(), key_of_session(store, key, session)).value(),
+      key);
+}
+
+/// All trials, with answers and times.
+[[nodiscard]] inline std::vector<store::TrialRow> opened_trials(const store::StudyStore& store,
+                                                                const design::StudyKey& key) {
+  store::DerivedRows rows;
+  for (const store::SessionRow& row : store.sessions()) {
+    const SecretKey own = key_of_session(store, key, row.session);
+    for (const store::Event& event : as_recorded(store.events(row.session), own)) {
+      fold(rows, event);
+    }
+  }
+  std::vector<store::TrialRow> trials;
+  for (const auto& [id, row] : rows.trials) trials.push_back(row);
+  return trials;
 }
 
 [[nodiscard]] inline Confusion confusion_of(const store::StudyStore& store,
@@ -28,7 +50,7 @@ using Confusion = std::map<std::pair<int, int>, int>;
     schedules[row.session] = schedule_of_session(store, key, row.session);
   }
   Confusion confusion;
-  for (const store::TrialRow& row : store.trials()) {
+  for (const store::TrialRow& row : opened_trials(store, key)) {
     const design::Schedule& schedule = schedules[row.session];
     const int presented = schedule.presentations.at(row.trial - 1).stimulus.class_index;
     if (row.position) ++confusion[{presented, schedule.layout.at(*row.position)}];

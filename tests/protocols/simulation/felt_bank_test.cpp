@@ -2,6 +2,7 @@
 
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/tiny_study.hpp"
+#include "protocols/simulation/confusion_of.hpp"
 #include "protocols/simulation/felt_decision.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 #include "protocols/simulation/simulation.hpp"
@@ -62,7 +63,7 @@ TEST_CASE("answers to trials that are felt without a session equal those of sess
   const simulation::FeltKnowledge knowledge =
       simulation::learn_by_feeling(fields.all, subject, design.rendering.max_force_n, kSeed, 1);
   const simulation::FeltBank places = bank_of(study, {.explorations = 1});
-  const std::vector<store::TrialRow> rows = store.trials();
+  const std::vector<store::TrialRow> rows = opened_trials(store, study.key());
   std::size_t row = 0;
   for (int number = 1; number <= 3; ++number) {
     const design::Schedule schedule =

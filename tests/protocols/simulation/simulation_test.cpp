@@ -32,9 +32,10 @@ store::StudyStore simulated(TinyStudy& study, const simulation::SubjectModel& su
   return store;
 }
 
-std::vector<int> answers_of(const store::StudyStore& store) {
+std::vector<int> answers_of(const store::StudyStore& store, const design::StudyKey& key) {
   std::vector<int> answers;
-  for (const store::TrialRow& row : store.trials()) answers.push_back(row.position.value_or(-1));
+  for (const store::TrialRow& row : opened_trials(store, key))
+    answers.push_back(row.position.value_or(-1));
   return answers;
 }
 
@@ -44,11 +45,12 @@ TEST_CASE("an ideal subject tells almost all textures apart, and every trial is 
   const Confusion confusion = confusion_of(store, study.key());
   CHECK(correct_of(confusion) >= 98);
   CHECK(store.trials().size() == 100);
-  for (const store::TrialRow& row : store.trials()) {
+  for (const store::TrialRow& row : opened_trials(store, study.key())) {
     REQUIRE(row.state == store::TrialState::answered);
     REQUIRE(row.contact_at.value() > row.presented_at);
     REQUIRE(row.answered_at.value() > row.contact_at.value());
     REQUIRE(row.samples == 2000);
+    REQUIRE(row.seconds == 2);
   }
   CHECK_FALSE(store.first_fault());
 }
@@ -75,7 +77,9 @@ TEST_CASE("on smooth planes every subject is at chance") {
   // 25 even draws among five: fewer than three different answers come once in 10^9, and one answer
   // 17 times or more once in 10^6.
   std::map<int, std::map<int, int>> answers;
-  for (const store::TrialRow& row : store.trials()) ++answers[row.session][row.position.value()];
+  for (const store::TrialRow& row : opened_trials(store, study.key())) {
+    ++answers[row.session][row.position.value()];
+  }
   REQUIRE(answers.size() == 20);
   for (const auto& [session, count] : answers) {
     INFO("session " << session);
@@ -121,8 +125,8 @@ TEST_CASE("answers do not depend on codes") {
   TinyStudy recoded({.secret = 2, .schedules = 7});
   CHECK(study.key().code_of({0, 0, 0}) != recoded.key().code_of({0, 0, 0}));
   const simulation::SimulationOptions options{.participants = 2, .seed = 5};
-  CHECK(answers_of(simulated(study, subject, options)) ==
-        answers_of(simulated(recoded, subject, options)));
+  CHECK(answers_of(simulated(study, subject, options), study.key()) ==
+        answers_of(simulated(recoded, subject, options), recoded.key()));
 }
 
 TEST_CASE("the database is the same to the byte whatever the number of jobs") {
@@ -149,7 +153,7 @@ TEST_CASE("another seed gives other participants, and the same schedule") {
   TinyStudy study;
   const store::StudyStore one = simulated(study, subject, {.participants = 1, .seed = 1});
   const store::StudyStore other = simulated(study, subject, {.participants = 1, .seed = 2});
-  CHECK(answers_of(one) != answers_of(other));
+  CHECK(answers_of(one, study.key()) != answers_of(other, study.key()));
   CHECK(schedule_of_session(one, study.key(), 1) == schedule_of_session(other, study.key(), 1));
 }
 
@@ -157,14 +161,14 @@ TEST_CASE("another seed gives other participants, and the same schedule") {
 nlohmann::json clear_part(const store::Event& event) {
   nlohmann::json body = nlohmann::json::parse(event.body);
   body.erase("trace");
-  if (event.kind == store::EventKind::answered) body.erase("position");
+  if (event.kind == store::EventKind::closed) body.erase("answers");
   return {{"kind", name_of(event.kind)},
           {"at", event.at.count()},
           {"body", body},
           {"sealed", event.sealed.size()}};
 }
 
-TEST_CASE("except for answers, nothing in clear depends on what is presented") {
+TEST_CASE("except for how answers are spread, nothing in clear depends on what is presented") {
   simulation::SubjectModel subject = quick_subject();
   TinyStudy textured({.smooth = false});
   TinyStudy smooth({.smooth = true});
@@ -221,7 +225,7 @@ TEST_CASE("participants who are added later are the same as if simulated at once
   CHECK(report.sessions == 1);
   CHECK(report.presentations == 25);
   CHECK(report.ticks == 25'000);
-  CHECK(answers_of(at_once) == answers_of(in_two));
+  CHECK(answers_of(at_once, study.key()) == answers_of(in_two, study.key()));
   CHECK(in_two.sessions().back().participant == "P003");
   CHECK_THROWS_AS(
       simulation::simulate_study(study.key(), study.pack(), subject, {.participants = 1}, in_two),
@@ -246,7 +250,7 @@ TEST_CASE("an exploration beyond the limit times out, and the study says whether
   int timed_out = 0;
   store.for_each(store::EventKind::timed_out, [&](const store::Event&) { ++timed_out; });
   CHECK(timed_out == 5);
-  for (const store::TrialRow& row : store.trials()) {
+  for (const store::TrialRow& row : opened_trials(store, study.key())) {
     CHECK(row.position.has_value() == fades);
     CHECK(row.samples == 900);
   }

@@ -75,6 +75,9 @@ TEST_CASE("the hash of an event changes with each of its members") {
 TEST_CASE("a chain takes what follows and says why it does not take the rest") {
   ChainLink chain(2);
   Event first = an_event();
+  REQUIRE(chain.broken_by(first).value() == "the time of the event is not sealed");
+  first.at = {};
+  first.hash = event_hash(first);
   REQUIRE_FALSE(chain.broken_by(first));
   chain.extend(first);
   REQUIRE(chain.length() == 1);
@@ -89,10 +92,6 @@ TEST_CASE("a chain takes what follows and says why it does not take the rest") {
           "previous does not match the hash of the event before");
   second.previous = first.hash;
   REQUIRE(chain.broken_by(second).value() == "the hash of the event does not match its content");
-  second.at = std::chrono::nanoseconds(12344);
-  second.hash = event_hash(second);
-  REQUIRE(chain.broken_by(second).value() == "the time is before that of the event before");
-  second.at = first.at;
   second.kind = EventKind::study_closed;
   second.hash = event_hash(second);
   REQUIRE(chain.broken_by(second).value() ==

@@ -10,13 +10,16 @@ using namespace touchtrial::fixture;
 
 namespace {
 
-/// A session that folds as it is recorded.
+/// A session that folds as it is recorded, opened and as it is stored.
 class FoldedSession final : public EventSink {
  public:
   FoldedSession() { recorder.opened(nanoseconds(0), opening(1), "{}"); }
 
   void accept(const Event& event, const std::optional<SealedTrace>& /*trace*/) override {
-    fold(rows, event);
+    DerivedRows next = rows;
+    fold(next, opened(event));
+    fold(in_clear, event);
+    rows = next;
   }
   void answer(int trial) {
     recorder.answered(seconds(2),
@@ -31,6 +34,7 @@ class FoldedSession final : public EventSink {
   const TrialRow& row(int trial) { return rows.trials.at({1, trial}); }
 
   DerivedRows rows;
+  DerivedRows in_clear;
   SessionRecorder recorder{1, participant_key(1), *this};
 };
 
@@ -49,6 +53,30 @@ TEST_CASE("a trial goes from presented by contact to answered") {
   REQUIRE(session.row(1).state == TrialState::answered);
   REQUIRE(session.row(1).answered_at == seconds(2));
   REQUIRE(session.row(1).position == 1);
+}
+
+TEST_CASE("stored events give the rows that opened ones give, without answers and times") {
+  FoldedSession session;
+  session.recorder.presented(seconds(1), 1, 0);
+  session.recorder.first_contact(seconds(1), 1);
+  session.recorder.explored_again(seconds(1), 1);
+  session.trace(1);
+  session.recorder.answered(seconds(2),
+                            {.trial = 1, .position = 1, .first_position = 2, .confidence = 3});
+  TrialRow expected = session.row(1);
+  REQUIRE(expected.samples == 3);
+  expected.presented_at = {};
+  expected.contact_at.reset();
+  expected.answered_at.reset();
+  expected.position.reset();
+  expected.first_position.reset();
+  expected.confidence.reset();
+  expected.samples = 0;
+  REQUIRE(session.in_clear.trials.at({1, 1}) == expected);
+  REQUIRE(expected.state == TrialState::answered);
+  REQUIRE(expected.explorations == 2);
+  REQUIRE(expected.seconds == 1);
+  REQUIRE(session.in_clear.sessions == session.rows.sessions);
 }
 
 TEST_CASE("a trial may be answered after its time is up") {
@@ -83,6 +111,7 @@ TEST_CASE("an impossible event is refused with its place and leaves the rows as 
     REQUIRE(contains(line, "session 1, event "));
     REQUIRE(contains(line, why));
     REQUIRE(session.rows.trials == before.trials);
+    REQUIRE(session.in_clear.sessions == before.sessions);
     REQUIRE(session.rows.sessions == before.sessions);
   };
   refused([&] { session.answer(1); }, "trial 1 has not been presented");

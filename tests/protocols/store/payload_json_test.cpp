@@ -40,6 +40,7 @@ TEST_CASE("every body reads back as it was written") {
 
   const TraceBody trace{.trial = 9,
                         .samples = 10'000,
+                        .seconds = 11,
                         .rate_hz = 999.9871,
                         .overruns = 3,
                         .valid = false,
@@ -49,6 +50,7 @@ TEST_CASE("every body reads back as it was written") {
   REQUIRE(read_trace.trace == trace.trace);
   REQUIRE_FALSE(read_trace.valid);
   REQUIRE(read_trace.samples == 10'000);
+  REQUIRE(read_trace.seconds == 11);
 
   const AnswerBody answer = answer_from_json(
       to_json(AnswerBody{.trial = 1, .position = 4, .first_position = 0, .confidence = {}}));
@@ -57,7 +59,21 @@ TEST_CASE("every body reads back as it was written") {
 
   REQUIRE(trial_from_json(interrupted_to_json(4, "pause")).reason == "pause");
   REQUIRE(trial_from_json(presented_to_json(4, 1)).block == 1);
-  REQUIRE(completion_from_json(completion_to_json(true)));
+
+  ClosedBody closed{.complete = true, .answers = {}};
+  REQUIRE(to_json(closed) == R"({"complete":true})");
+  REQUIRE(closed_from_json(to_json(closed)).complete);
+  REQUIRE_FALSE(closed_from_json(to_json(closed)).answers);
+  closed.answers = AnswerSummary{
+      .n = 9, .different = 3, .largest_share = 1.0 / 3.0, .longest_run = 2, .median_s = 12.5};
+  REQUIRE(closed_from_json(to_json(closed)).answers == closed.answers);
+}
+
+TEST_CASE("what is in clear of a body reads without the rest") {
+  REQUIRE_FALSE(answer_from_json(R"({"trial":1})").position);
+  REQUIRE_FALSE(practice_from_json(R"({"presentation":1,"round":1})").correct);
+  REQUIRE(deviation_from_json(R"({"code":"late"})").code == "late");
+  REQUIRE(resumed_from_json(R"({"after":"pause","program_version":""})").after == "pause");
 }
 
 TEST_CASE("members for sessions in real time are written for those alone, and read back") {
@@ -150,7 +166,7 @@ TEST_CASE("hostile bodies are refused with one line and never crash") {
       [](const auto& t) { static_cast<void>(participant_from_json(t)); },
       [](const auto& t) { static_cast<void>(unblinding_from_json(t)); },
       [](const auto& t) { static_cast<void>(trial_from_json(t)); },
-      [](const auto& t) { static_cast<void>(completion_from_json(t)); },
+      [](const auto& t) { static_cast<void>(closed_from_json(t)); },
       [](const auto& t) { static_cast<void>(measures_from_json(t)); },
       [](const auto& t) { static_cast<void>(interruption_from_json(t)); },
   };
@@ -162,8 +178,8 @@ TEST_CASE("hostile bodies are refused with one line and never crash") {
 TEST_CASE("a refused body names the key") {
   REQUIRE_THROWS_WITH(static_cast<void>(trial_from_json(R"({"trial":"x"})")),
                       "/trial is not a whole number");
-  REQUIRE_THROWS_WITH(static_cast<void>(answer_from_json(R"({"trial":1})")),
-                      "/position is missing");
+  REQUIRE_THROWS_WITH(static_cast<void>(answer_from_json(R"({"position":1})")),
+                      "/trial is missing");
   REQUIRE_THROWS_WITH(
       static_cast<void>(session_closed_from_json(R"({"session":1,"length":3,"head":"zz"})")),
       "/head is not 64 hexadecimal digits");

@@ -50,14 +50,15 @@ TEST_CASE("a recorder knows its head and length") {
   REQUIRE(recorder.length() == 2);
 }
 
-TEST_CASE("only schedule, measures and the end are sealed, and only the right key opens them") {
+TEST_CASE("schedule, measures and the end are secret, and only the right key opens events") {
   const BufferedEvents session = session_of(4);
   for (const Event& event : session.events) {
     const bool secret = event.kind == EventKind::opened || event.kind == EventKind::trace_stored ||
                         event.kind == EventKind::closed;
-    REQUIRE(event.sealed.empty() != secret);
-    REQUIRE(unsealed(event, participant_key(4)).has_value() == secret);
+    REQUIRE(event.at.count() == 0);
+    REQUIRE(unsealed(event, participant_key(4)).value().empty() != secret);
     REQUIRE_FALSE(unsealed(event, participant_key(5)));
+    REQUIRE_FALSE(opened_event(event, participant_key(5)));
   }
   REQUIRE(unsealed(session.events.front(), participant_key(4)) == R"({"schedule":"4"})");
   const Event& end = session.events.back();
@@ -66,6 +67,60 @@ TEST_CASE("only schedule, measures and the end are sealed, and only the right ke
   REQUIRE(measures_from_json(*unsealed(session.events[5], participant_key(4))) ==
           TrialMeasures{
               .contact_s = 0.1, .path_mm = 512.5, .force_rms_n = 0.05, .saturated_share = 0.0});
+}
+
+TEST_CASE("an opened event has the time and the body with which it was recorded") {
+  BufferedEvents events;
+  SessionRecorder recorder(1, participant_key(1), events);
+  const auto recorded = [&](const std::string& body, const std::string& in_clear) {
+    const Event& stored = events.events.back();
+    REQUIRE(stored.body == in_clear);
+    const OpenedEvent opened = opened_event(stored, participant_key(1)).value();
+    REQUIRE(opened.event.body == body);
+    REQUIRE(opened.event.at == nanoseconds(1'234'567'891));
+    REQUIRE(opened.event.hash == stored.hash);
+    REQUIRE(opened.event.sequence == stored.sequence);
+  };
+  const nanoseconds at(1'234'567'891);
+  recorder.practised(at, {.round = 2, .presentation = 3, .position = 1, .correct = true});
+  recorded(R"({"correct":true,"position":1,"presentation":3,"round":2})",
+           R"({"presentation":3,"round":2})");
+  recorder.presented(at, 7, 2);
+  recorded(R"({"block":2,"trial":7})", R"({"block":2,"trial":7})");
+  recorder.answered(at, {.trial = 7, .position = 4, .first_position = 0, .confidence = 5});
+  recorded(R"({"confidence":5,"first_position":0,"position":4,"trial":7})", R"({"trial":7})");
+  recorder.remarked(at, EventKind::noted, "sneezed");
+  recorded(R"({"text":"sneezed"})", "{}");
+  recorder.deviated(at, {"late", "ten minutes"});
+  recorded(R"({"code":"late","text":"ten minutes"})", R"({"code":"late"})");
+  recorder.resumed(at, {.after = "pause", .away_s = 12.5, .program_version = "1"});
+  recorded(R"({"after":"pause","away_s":12.5,"program_version":"1"})",
+           R"({"after":"pause","program_version":"1"})");
+  TraceBody body{.trial = 7, .samples = 0, .rate_hz = 1e3, .overruns = 2, .valid = true};
+  body.explorations = {900, 101};
+  const TrialEvidence evidence = recorder.packed(body, {}, stroking(1001, 0.05));
+  recorder.answered(at, {.trial = 7, .position = 4, .first_position = {}, .confidence = {}},
+                    evidence);
+  const Event& stored = events.events[events.events.size() - 2];
+  const std::string in_clear = R"({"overruns":2,"rate_hz":1000.0,"seconds":2,"trace":")" +
+                               to_hex(evidence.body.trace) + R"(","trial":7,"valid":true})";
+  REQUIRE(stored.body == in_clear);
+  const TraceBody whole = trace_body_from_json(opened(stored).body);
+  REQUIRE(whole.samples == 1001);
+  REQUIRE(whole.explorations == std::vector<std::int64_t>{900, 101});
+}
+
+TEST_CASE("the size of a sealed part follows from the kind of its event") {
+  const auto size_of = [](const AnswerBody& answer, nanoseconds at) {
+    BufferedEvents events;
+    SessionRecorder recorder(1, participant_key(1), events);
+    recorder.answered(at, answer);
+    return events.events.back().sealed.size();
+  };
+  const std::size_t least =
+      size_of({.trial = 1, .position = 0, .first_position = {}, .confidence = {}}, nanoseconds(0));
+  REQUIRE(size_of({.trial = 99, .position = 63, .first_position = 62, .confidence = 100},
+                  std::chrono::hours(9)) == least);
 }
 
 TEST_CASE("the size of an interruption depends on its flight record's number of ticks alone") {
@@ -84,13 +139,14 @@ TEST_CASE("the size of an interruption depends on its flight record's number of 
   REQUIRE(sealed_size(smooth, 3001) == sealed_size(rough, 3001));
   REQUIRE(sealed_size(smooth, 10) == sealed_size(rough, 10));
   REQUIRE(sealed_size(smooth, 10) < sealed_size(smooth, 3001));
+  REQUIRE(sealed_size(smooth, 2001) == sealed_size(smooth, 3000));
 }
 
-TEST_CASE("an interruption without a detail has no sealed part") {
+TEST_CASE("an interruption without a detail has no secret part") {
   BufferedEvents events;
   SessionRecorder recorder(1, participant_key(1), events);
   recorder.interrupted(seconds(1), 3, "comfort stop");
-  REQUIRE(events.events.back().sealed.empty());
+  REQUIRE(unsealed(events.events.back(), participant_key(1)).value().empty());
 }
 
 TEST_CASE("a sealed part cannot be moved to another event") {
@@ -104,21 +160,27 @@ TEST_CASE("a sealed part cannot be moved to another event") {
   moved = session.events.front();
   moved.session = 5;
   REQUIRE_FALSE(unsealed(moved, participant_key(4)));
+  moved = session.events[2];
+  REQUIRE(opened_event(moved, participant_key(4)));
+  moved.previous = session.events[3].previous;
+  REQUIRE_FALSE(opened_event(moved, participant_key(4)));
+  moved = session.events[2];
+  moved.body = R"({"block":0,"trial":2})";
+  REQUIRE_FALSE(opened_event(moved, participant_key(4)));
 }
 
-TEST_CASE("a stored trace opens with its session, trial, key and number of samples alone") {
+TEST_CASE("a stored trace opens with its session, trial and key alone") {
   const BufferedEvents session = session_of(4);
   const SealedTrace& sealed = session.traces[1];
   REQUIRE(sealed.session == 4);
   REQUIRE(sealed.trial == 2);
-  const auto opened = unsealed_trace(sealed, participant_key(4), 20);
+  const auto opened = unsealed_trace(sealed, participant_key(4));
   REQUIRE(opened.has_value());
   REQUIRE(encode_trace(*opened) == encode_trace(stroking(20, 0.05)));
-  REQUIRE_FALSE(unsealed_trace({4, 1, sealed.box}, participant_key(4), 20));
-  REQUIRE_FALSE(unsealed_trace({3, 2, sealed.box}, participant_key(4), 20));
-  REQUIRE_FALSE(unsealed_trace({4, 2, sealed.box}, participant_key(3), 20));
-  REQUIRE_FALSE(unsealed_trace({4, 2, sealed.box}, participant_key(4), 21));
-  REQUIRE_FALSE(unsealed_trace({4, 2, Bytes{}}, participant_key(4), 20));
+  REQUIRE_FALSE(unsealed_trace({4, 1, sealed.box}, participant_key(4)));
+  REQUIRE_FALSE(unsealed_trace({3, 2, sealed.box}, participant_key(4)));
+  REQUIRE_FALSE(unsealed_trace({4, 2, sealed.box}, participant_key(3)));
+  REQUIRE_FALSE(unsealed_trace({4, 2, Bytes{}}, participant_key(4)));
 }
 
 TEST_CASE("sealed measures are of one size whatever their values") {
@@ -139,7 +201,7 @@ TEST_CASE("equal trials of two sessions have nothing in common in their sealed p
   const BufferedEvents a = session_of(1);
   const BufferedEvents b = session_of(2);
   for (std::size_t i = 0; i < a.events.size(); ++i) {
-    if (!a.events[i].sealed.empty()) REQUIRE(a.events[i].sealed != b.events[i].sealed);
+    REQUIRE(a.events[i].sealed != b.events[i].sealed);
   }
   REQUIRE(a.traces[0].box != a.traces[1].box);
   REQUIRE(a.traces[0].box != b.traces[0].box);
@@ -176,7 +238,7 @@ TEST_CASE("only remarks are recorded as remarks") {
         EventKind::paused, EventKind::stopped, EventKind::noted}) {
     recorder.remarked(seconds(1), kind, "text");
     REQUIRE(events.events.back().kind == kind);
-    REQUIRE(events.events.back().body == R"({"text":"text"})");
+    REQUIRE(opened(events.events.back()).body == R"({"text":"text"})");
   }
   REQUIRE_THROWS_AS(recorder.remarked(seconds(1), EventKind::answered, ""), StoreError);
   REQUIRE_THROWS_AS(recorder.remarked(seconds(1), EventKind::practised, ""), StoreError);

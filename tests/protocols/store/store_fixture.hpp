@@ -13,6 +13,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <SQLiteCpp/Database.h>
 #include <SQLiteCpp/Statement.h>
@@ -158,6 +159,27 @@ std::string refusal_of(Work&& work) {
 
 inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
+}
+
+/// An event as it was recorded.
+inline store::Event opened(const store::Event& event) {
+  return store::opened_event(event, participant_key(event.own_session())).value().event;
+}
+
+/// The events of a session as they were recorded.
+inline std::vector<store::Event> opened_events(const store::StudyStore& store, int session) {
+  std::vector<store::Event> events = store.events(session);
+  for (store::Event& event : events) event = opened(event);
+  return events;
+}
+
+/// The trials of a session with answers and times.
+inline std::vector<store::TrialRow> opened_trials(const store::StudyStore& store, int session) {
+  store::DerivedRows rows;
+  for (const store::Event& event : opened_events(store, session)) fold(rows, event);
+  std::vector<store::TrialRow> trials;
+  for (const auto& [id, row] : rows.trials) trials.push_back(row);
+  return trials;
 }
 
 /// A study in a folder of its own.

@@ -31,7 +31,7 @@ void reopen(StoredFixture& study) {
 
 SessionRecorder recorder_after_last(const StudyStore& store, EventSink& sink) {
   SessionRecorder recorder(1, participant_key(1), sink);
-  recorder.go_on_after(store.last_event(1).value());
+  recorder.go_on_after(opened(store.last_event(1).value()));
   return recorder;
 }
 
@@ -110,7 +110,8 @@ TEST_CASE("every accepted event is in the file at once, for other programs too")
   REQUIRE(reader.trials().at(0).state == TrialState::presented);
   recorder.answered(seconds(2),
                     {.trial = 1, .position = 3, .first_position = {}, .confidence = {}});
-  REQUIRE(reader.trials().at(0).position == 3);
+  REQUIRE(reader.trials().at(0).state == TrialState::answered);
+  REQUIRE(opened_trials(reader, 1).at(0).position == 3);
   REQUIRE_FALSE(reader.first_fault());
 }
 
@@ -209,8 +210,8 @@ TEST_CASE("a session that broke off goes on where it ended, and is one chain") {
   recorder.closed(seconds(13), true);
 
   REQUIRE(study.store->sessions().at(0).state == SessionState::completed);
-  REQUIRE(study.store->trials().at(0).position == 3);
-  REQUIRE(study.store->trials().at(1).position == 2);
+  REQUIRE(opened_trials(*study.store, 1).at(0).position == 3);
+  REQUIRE(opened_trials(*study.store, 1).at(1).position == 2);
   REQUIRE(study.store->events(0).size() == 3);
   REQUIRE_FALSE(study.store->first_fault());
 }
@@ -257,7 +258,7 @@ TEST_CASE(
   b.answered(seconds(5), answer_to(2));
   REQUIRE(contains(refusal_of([&] { a.answered(seconds(6), answer_to(2)); }),
                    "session 1 was continued by another program"));
-  REQUIRE(study.store->trials().at(1).answered_at == seconds(5));
+  REQUIRE(opened_trials(*study.store, 1).at(1).answered_at == seconds(5));
   REQUIRE_FALSE(study.store->first_fault());
 }
 
@@ -290,12 +291,13 @@ TEST_CASE("events that belong together are stored all or none") {
       "trial 1 was interrupted"));
   REQUIRE(study.store->events(1).size() == 3);
   REQUIRE_FALSE(study.store->sealed_trace(1, 1));
-  REQUIRE(study.store->trials().at(0).samples == 0);
+  REQUIRE(study.store->trials().at(0).seconds == 0);
   recorder.presented(seconds(4), 1, 0);
   recorder.answered(seconds(5), answer_to(1), evidence_of(recorder, 1));
   REQUIRE(study.store->events(1).size() == 6);
   REQUIRE(study.store->sealed_trace(1, 1));
-  REQUIRE(study.store->events(1).at(4).at == study.store->events(1).at(5).at);
+  const std::vector<Event> events = opened_events(*study.store, 1);
+  REQUIRE(events.at(4).at == events.at(5).at);
   REQUIRE_FALSE(study.store->first_fault());
 }
 

@@ -89,25 +89,35 @@ TEST_CASE("sessions and trials are derived from the events") {
                         .trial = 2,
                         .block = 0,
                         .state = TrialState::answered,
-                        .presented_at = seconds(40),
-                        .contact_at = seconds(40) + milliseconds(350),
-                        .answered_at = seconds(49),
-                        .position = 2,
-                        .first_position = 4,
-                        .confidence = 3,
                         .valid = true,
                         .overruns = 2,
-                        .samples = 20,
-                        .rate_hz = 999.75};
+                        .seconds = 1,
+                        .rate_hz = 999.75,
+                        .explorations = 1,
+                        .presented_at = {},
+                        .contact_at = {},
+                        .answered_at = {},
+                        .position = {},
+                        .first_position = {},
+                        .confidence = {},
+                        .samples = 0};
   REQUIRE(trials[1] == second);
+  TrialRow opened = second;
+  opened.presented_at = seconds(40);
+  opened.contact_at = seconds(40) + milliseconds(350);
+  opened.answered_at = seconds(49);
+  opened.position = 2;
+  opened.first_position = 4;
+  opened.confidence = 3;
+  opened.samples = 20;
+  REQUIRE(opened_trials(*study.store, 1)[1] == opened);
   const TrialRow& last = trials[5];
   REQUIRE(last.session == 2);
   REQUIRE(last.trial == 3);
   REQUIRE(last.block == 1);
   REQUIRE(last.state == TrialState::timed_out);
-  REQUIRE_FALSE(last.position);
-  REQUIRE_FALSE(last.answered_at);
   REQUIRE_FALSE(last.valid);
+  REQUIRE_FALSE(opened_trials(*study.store, 2)[2].position);
 }
 
 TEST_CASE("the derived tables agree with the events after an exclusion and a withdrawal") {

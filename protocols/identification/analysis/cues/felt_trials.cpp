@@ -39,8 +39,7 @@ std::string refusal(const store::TrialRow& row, const std::string& why) {
 /// whichever thread finds one first.
 void open_and_visit(WaitingTrace& sealed, const TraceVisitor& visit) {
   try {
-    const std::optional<store::Trace> trace = store::unsealed_trace(
-        sealed.box, *sealed.own, static_cast<std::size_t>(sealed.row->samples));
+    const std::optional<store::Trace> trace = store::unsealed_trace(sealed.box, *sealed.own);
     if (trace) {
       visit(sealed.place, *trace);
     } else {

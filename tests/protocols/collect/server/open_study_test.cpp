@@ -111,7 +111,7 @@ TEST_CASE("a session withdrawn at a station cannot be read from the server after
 }
 
 TEST_CASE("every alteration on the server is found, and named by station and session") {
-  // Sessions 1 and 2 are the first station's, 3 and 4 the second's.
+  // Sessions 1 and 2 are the first station's, 100001 and 100002 the second's.
   const auto check = [](const std::string& sql, const std::vector<std::string>& words) {
     const std::string line = refusal_after(sql);
     INFO(sql);
@@ -120,29 +120,28 @@ TEST_CASE("every alteration on the server is found, and named by station and ses
     CHECK(line.find("not as damage") == std::string::npos);
     CHECK(line.find("found only") == std::string::npos);
   };
-  check("UPDATE events SET body = body || ' ' WHERE session = 3 AND sequence = 4",
+  check("UPDATE events SET body = body || ' ' WHERE session = 100001 AND sequence = 4",
         {"station 2", "session 1"});
-  check("UPDATE events SET sealed = '\\x00' WHERE session = 4 AND sequence = 0",
+  check("UPDATE events SET sealed = '\\x00' WHERE session = 100002 AND sequence = 0",
         {"station 2", "session 2"});
   check("UPDATE events SET at_ns = at_ns + 1 WHERE session = -1 AND sequence = 1", {"station 1"});
   check("DELETE FROM events WHERE session = 2 AND sequence = 6", {"station 1", "session 2"});
-  check("DELETE FROM traces WHERE session = 3 AND trial = 2", {"station 2", "session 1"});
+  check("DELETE FROM traces WHERE session = 100001 AND trial = 2", {"station 2", "session 1"});
   check("UPDATE traces SET box = set_byte(box, 9, 7) WHERE session = 1 AND trial = 1",
         {"station 1", "session 1"});
   check(
-      "UPDATE participant_keys SET session = session + 100; "
-      "UPDATE participant_keys SET session = 5 - (session - 100)",
+      "UPDATE participant_keys SET session = session + 900000; "
+      "UPDATE participant_keys SET session = 1000003 - session",
       {"station", "key"});
   check("DELETE FROM participant_keys WHERE session = 2", {"station 1", "session 2", "key"});
   check("UPDATE sessions SET enrolment = 77 WHERE session = 2",
         {"station 1", "session 2", "derived table sessions"});
-  check("UPDATE trials SET valid = 1 - valid WHERE session = 4 AND trial = 3",
+  check("UPDATE trials SET valid = 1 - valid WHERE session = 100002 AND trial = 3",
         {"station 2", "session 2", "derived table trials"});
-  check("UPDATE responses SET position = 4 WHERE session = 1 AND trial = 1",
-        {"station 1", "session 1", "responses"});
-  check("DELETE FROM responses WHERE session = 1 AND trial = 1", {"station 1", "session 1"});
-  check("DELETE FROM trials WHERE session = 4 AND trial = 3", {"derived table trials"});
-  check("DELETE FROM sessions WHERE session = 4", {"session 4"});
+  check("UPDATE trials SET state = 'timed-out' WHERE session = 1 AND trial = 1",
+        {"station 1", "session 1", "trials"});
+  check("DELETE FROM trials WHERE session = 100002 AND trial = 3", {"derived table trials"});
+  check("DELETE FROM sessions WHERE session = 100002", {"session 100002"});
 }
 
 TEST_CASE("an address with a password opens nothing, and is not repeated") {

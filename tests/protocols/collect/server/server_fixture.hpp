@@ -114,8 +114,7 @@ struct ServerFixture {
   /// The number of rows of every table, in the order of their names.
   [[nodiscard]] std::string counts() const {
     std::string text;
-    for (const char* const table :
-         {"events", "participant_keys", "responses", "sessions", "traces", "trials"}) {
+    for (const char* const table : {"events", "participant_keys", "sessions", "traces", "trials"}) {
       text += first(std::string("SELECT count(*) FROM ") + table) + " ";
     }
     return text;

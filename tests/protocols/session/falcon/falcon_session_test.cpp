@@ -13,6 +13,7 @@
 #include "protocols/session/tiny_study.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 #include "protocols/store/payload_json.hpp"
+#include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -112,7 +113,8 @@ struct Laboratory {
 void check_answers(const Laboratory& lab) {
   std::vector<int> stored;
   for (const store::Event& event : lab.all(store::EventKind::answered)) {
-    stored.push_back(store::answer_from_json(event.body).position);
+    const store::Event answer = as_recorded(event, lab.participant_key);
+    stored.push_back(store::answer_from_json(answer.body).position.value());
   }
   CHECK(stored == lab.person.named);
   CHECK(stored.size() == 25);
@@ -149,8 +151,8 @@ TEST_CASE("a whole session on the emulated Falcon loses no response, though it i
   CHECK(lab.all(store::EventKind::paused).size() == 1);
 
   // The fault and the seconds before it, which only the key's holder can read.
-  const store::InterruptionDetail detail =
-      store::interruption_from_json(analysis::opened_part(interrupted[0], lab.participant_key));
+  const store::InterruptionDetail detail = store::interruption_from_json(
+      analysis::whole_event(interrupted[0], lab.participant_key).secret);
   CHECK(detail.device_fault == "link_lost");
   CHECK(detail.ticks > 100);
   CHECK(std::ranges::count(detail.flight, '\n') == detail.ticks + 1);

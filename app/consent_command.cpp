@@ -1,0 +1,157 @@
+// consent: records a participant's consent and demographics in the file of personal data.
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "core/errors.hpp"
+#include "protocols/store/personal_data.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace touchtrial::app {
+namespace {
+
+constexpr int kOldestYears = 130;
+
+struct ConsentArguments {
+  std::filesystem::path database;
+  store::PersonalRecord record;
+  std::string details;  ///< "-": read them from standard input
+  std::string refused;  ///< what earlier versions took from the command line
+  bool on_command_line = false;
+};
+
+std::string trimmed(std::string_view text) {
+  constexpr std::string_view kSpace = " \t\r";
+  const std::size_t begin = text.find_first_not_of(kSpace);
+  if (begin == std::string_view::npos) return {};
+  return std::string(text.substr(begin, text.find_last_not_of(kSpace) + 1 - begin));
+}
+
+void set_detail(store::PersonalRecord& record, std::string_view name, const std::string& value) {
+  if (value.empty()) return;
+  if (name == "age") {
+    record.age = number_in<int>(value);
+    if (!record.age || *record.age < 0 || *record.age > kOldestYears) {
+      throw UsageError(
+          fmt::format("consent: the age must be a whole number of years from 0 to {}; nothing was "
+                      "recorded",
+                      kOldestYears));
+    }
+  } else if (name == "gender") {
+    record.gender = value;
+  } else {
+    record.contact = value;
+  }
+}
+
+constexpr std::array<std::string_view, 3> kDetails = {"age", "gender", "contact"};
+
+/// Asks for one after the other; an empty answer leaves a detail out.
+void ask_details(store::PersonalRecord& record) {
+  for (const std::string_view name : kDetails) {
+    const std::string prompt = fmt::format("{} (Return: not given): ", name);
+    std::fputs(prompt.c_str(), stderr);
+    std::string line;
+    if (!std::getline(std::cin, line)) {
+      throw UsageError("consent: broken off; nothing was recorded");
+    }
+    set_detail(record, name, trimmed(line));
+  }
+}
+
+/// Reads lines "NAME: value" to the end of standard input. No message repeats a value.
+void read_details(store::PersonalRecord& record) {
+  std::array<bool, kDetails.size()> given{};
+  int number = 0;
+  for (std::string line; std::getline(std::cin, line);) {
+    ++number;
+    if (trimmed(line).empty()) continue;
+    const std::size_t colon = std::min(line.find(':'), line.size());
+    const std::string name = trimmed(std::string_view(line).substr(0, colon));
+    const auto* const found = std::find(kDetails.begin(), kDetails.end(), name);
+    if (found == kDetails.end() || colon == line.size()) {
+      throw UsageError(
+          fmt::format("consent: standard input, line {}: must be \"age: YEARS\", \"gender: WORDS\" "
+                      "or \"contact: WORDS\"; nothing was recorded",
+                      number));
+    }
+    if (std::exchange(given.at(static_cast<std::size_t>(found - kDetails.begin())), true)) {
+      throw UsageError(
+          fmt::format("consent: standard input, line {}: {} is there twice; nothing was recorded",
+                      number, name));
+    }
+    set_detail(record, name, trimmed(std::string_view(line).substr(colon + 1)));
+  }
+  if (number == 0) {
+    throw UsageError("consent: --details - reads standard input, which is empty");
+  }
+}
+
+int record_consent(const ConsentArguments& arguments) {
+  if (arguments.on_command_line) {
+    throw UsageError(
+        "consent: every user of this machine can read the command line in the list of programs; "
+        "give age, gender and contact with --details -, which asks for them");
+  }
+  store::PersonalRecord record = arguments.record;
+  if (record.participant.empty() || record.consent_version.empty()) {
+    throw UsageError("consent: --participant and --version must not be empty");
+  }
+  if (!arguments.details.empty() && ::isatty(STDIN_FILENO) != 0) {
+    ask_details(record);
+  } else if (!arguments.details.empty()) {
+    read_details(record);
+  }
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  record.consented_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
+  const std::filesystem::path path = store::personal_data_path(arguments.database);
+  store::PersonalData(path).put(record);
+  print(fmt::format("{}: consent of participant {} to version {} recorded\n", path.string(),
+                    record.participant, record.consent_version));
+  return 0;
+}
+
+}  // namespace
+
+void add_consent_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<ConsentArguments>();
+  CLI::App* command = program.add_subcommand(
+      "consent", "Record a participant's consent and demographics, in DB.personal only");
+  add_database_argument(*command, arguments->database,
+                        "Database of the study; it need not exist yet")
+      ->check(place_validator());
+  command->add_option("--participant", arguments->record.participant, "Id, for instance P07")
+      ->required();
+  command->add_option("--version", arguments->record.consent_version, "Version that was signed")
+      ->required();
+  command
+      ->add_option("--details", arguments->details,
+                   "-: ask for age, gender and contact, or read them from standard input in lines "
+                   "\"age: 34\"")
+      ->check(CLI::IsMember({"-"}));
+  constexpr std::array kEarlierOptions = {"--age", "--gender", "--contact"};
+  for (const char* const option : kEarlierOptions) {
+    command->add_option(option, arguments->refused)->expected(0, 1)->group("");  // not in the help
+  }
+  command->callback([=, &action] {
+    for (const char* const option : kEarlierOptions) {
+      arguments->on_command_line |= command->count(option) > 0;
+    }
+    action = [=] { return record_consent(*arguments); };
+  });
+}
+
+}  // namespace touchtrial::app

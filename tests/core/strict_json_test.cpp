@@ -1,0 +1,32 @@
+#include "core/strict_json.hpp"
+
+#include "core/errors.hpp"
+#include "support/catch.hpp"
+
+#include <string>
+
+using namespace touchtrial;
+
+namespace {
+
+std::string refusal_of_text(const std::string& text) {
+  try {
+    static_cast<void>(parse_strict_json(text, "study.json"));
+  } catch (const StudyError& error) {
+    return error.what();
+  }
+  return "was not refused";
+}
+
+}  // namespace
+
+TEST_CASE("what stands behind a zero byte is not ignored, and the message names the place") {
+  using namespace std::string_literals;
+  CHECK(refusal_of_text("{\"a\": 1}\n\0 {\"b\": 2}"s)
+            .starts_with("study.json: line 2, column 1: is a zero byte"));
+  CHECK(refusal_of_text("{\"a\": 1}\0"s).starts_with("study.json: line 1, column 9: is a zero"));
+  CHECK(refusal_of_text("{\"a\"\0: 1}"s).starts_with("study.json: line 1, column 5: is a zero"));
+  CHECK(refusal_of_text("{\"a\": \"x\0y\"}"s).find("line 1, column 9") != std::string::npos);
+  CHECK(parse_strict_json("{\"a\": \"x\\u0000y\"}", "study.json").object({"a"}).at("a").text() ==
+        "x\0y"s);
+}
