@@ -47,18 +47,19 @@ std::string ranges_text(const design::Station& station) {
 }
 
 std::string plan_text(const design::StudyKey& key, const design::PackPlace& place) {
-  analysis::TextTable table({"station", "participants", "file"});
-  std::string numbers;
+  std::string text =
+      fmt::format("{}: {} at {}\n", key.study.name,
+                  analysis::counted(design::enrolments_of(key.stations), "participant"),
+                  analysis::counted(static_cast<int>(key.stations.size()), "station"));
   for (const design::Station& station : key.stations) {
-    table.add({station.name, std::to_string(station.size()), place.station(station.name).string()});
-    numbers += analysis::wrapped("  " + station.name + ": ", ranges_text(station));
+    text += analysis::wrapped(
+        "  " + station.name + ": ",
+        fmt::format("{} participants, numbers {}", station.size(), ranges_text(station)));
+    text += "    " + place.station(station.name).string() + "\n";
   }
-  return fmt::format(
-      "{}: {} at {}\n{}enrolment numbers of each station\n{}Give every station its own file beside "
-      "the study file, and no other; there, `touchtrial run ... --station NAME` takes its next "
-      "number.\n",
-      key.study.name, analysis::counted(design::enrolments_of(key.stations), "participant"),
-      analysis::counted(static_cast<int>(key.stations.size()), "station"), table.text(), numbers);
+  return text +
+         "Give every station its own file beside the study file, and no other; there,\n"
+         "`touchtrial run ... --station NAME` takes its next number.\n";
 }
 
 std::string plan_json(const design::StudyKey& key, const design::PackPlace& place) {
