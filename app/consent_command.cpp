@@ -2,6 +2,7 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "core/errors.hpp"
+#include "core/text.hpp"
 #include "protocols/store/personal_data.hpp"
 
 #include <algorithm>
