@@ -29,8 +29,7 @@ class PersonalData {
  public:
   /// Opens it, or makes an empty one.
   /// \throws FileError, with the remedy, if others may read it
-  /// \throws StoreError, with the remedy, if it cannot be made, or is another kind of file or a newer
-  ///   one
+  /// \throws StoreError, with the remedy, if it cannot be made, or is a newer file or no such file
   explicit PersonalData(const std::filesystem::path& path);
   ~PersonalData();
   PersonalData(PersonalData&&) noexcept;
