@@ -10,35 +10,31 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The row of a withdrawn session, without any data of the participant.
+/// The row of an erased session, without any data of the participant.
 store::SessionRow without_participant(const store::SessionRow& row) {
   store::SessionRow bare;
   bare.session = row.session;
   bare.state = row.state;
   bare.withdrawn = true;
+  bare.erased = true;
   return bare;
 }
 
 std::map<int, SessionRecord> empty_records(const std::vector<store::SessionRow>& rows) {
   std::map<int, SessionRecord> records;
   for (const store::SessionRow& row : rows) {
-    records[row.session].row = row.withdrawn ? without_participant(row) : row;
+    records[row.session].row = row.erased ? without_participant(row) : row;
   }
   return records;
 }
 
-/// The session that an event is about, on whichever chain the event is.
-int session_named_by(const store::Event& event) {
-  switch (event.kind) {
-    case store::EventKind::participant_excluded:
-      return store::participant_from_json(event.body).session;
-    case store::EventKind::participant_replaced:
-      return store::replacement_from_json(event.body).session;
-    case store::EventKind::participant_noted:
-      return store::note_from_json(event.body).session;
-    default:
-      return event.session;
-  }
+void count_hand(const store::TrialRow& trial, HandCounts& outside) {
+  if (!trial.has_trace()) return;
+  ++outside.trials;
+  outside.contact += trial.hand.contact ? 0 : 1;
+  outside.path += trial.hand.path ? 0 : 1;
+  outside.force += trial.hand.force ? 0 : 1;
+  outside.speed += trial.hand.speed ? 0 : 1;
 }
 
 bool is_practice_failure(const Deviation& deviation) {
@@ -61,25 +57,33 @@ Collection load_collection(const store::StudyStore& store, const design::StudyKe
   std::map<int, SessionRecord> records = empty_records(rows);
   Collection collection;
   collection.prescription = prescription_from_json(store.commitment().configuration);
-  std::map<int, SecretKey> keys;
-  if (key != nullptr) keys = participant_keys(store, *key);
+  std::map<int, store::PersonKeys> keys;
+  if (key != nullptr) keys = person_keys(store, *key);
   const auto add = [&](const store::Event& event) {
-    const auto record = records.find(session_named_by(event));
-    if (record == records.end() || record->second.row.withdrawn) return;
-    const auto own = keys.find(event.session);
+    const auto record = records.find(store::session_about(event));
+    if (record == records.end() || record->second.row.erased) return;
+    const auto own = keys.find(record->first);
     const bool has_more = own != keys.end() && is_partly_sealed(event.kind);
-    add_to_record(has_more ? whole_event(event, own->second).event : event, record->second);
+    add_to_record(has_more ? readable_event(event, record->second.row, own->second) : event,
+                  record->second);
     if (event.kind != store::EventKind::trace_stored) return;
     if (const auto servo = servo_trial_of(event)) collection.servo_trials.push_back(*servo);
   };
   store.for_each_of(kinds_in_sessions(), add);
   for (const store::Event& event : store.events(0)) add(event);  // later notes come last
+  for (const store::TrialRow& trial : store.trials()) {
+    const auto record = records.find(trial.session);
+    if (record == records.end() || record->second.row.withdrawn) continue;
+    count_hand(trial, record->second.outside);
+  }
   for (auto& [session, record] : records) {
     finish(record);
     collection.visual = collection.visual || (record.station && record.station->visual);
     collection.sessions.push_back(std::move(record));
   }
-  collection.flow = participant_flow(rows, collection.sessions, store.commitment(), store.state());
+  const store::StudyState state = store.state();
+  collection.looks = state.looks;
+  collection.flow = participant_flow(rows, collection.sessions, store.commitment(), state);
   return collection;
 }
 

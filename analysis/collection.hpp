@@ -26,7 +26,19 @@ struct PracticeRecord {
   bool passed = true;          ///< whether there is no deviation `practice-not-passed`
 };
 
-/// One session. A withdrawn session has only its number and state.
+/// Trials of a session with a trace, and those of them in which the hand was outside a window
+/// (store::HandWindows).
+struct HandCounts {
+  int trials = 0;
+  int contact = 0;
+  int path = 0;
+  int force = 0;
+  int speed = 0;
+
+  friend bool operator==(const HandCounts&, const HandCounts&) = default;
+};
+
+/// One session. An erased session has only its number and state.
 struct SessionRecord {
   store::SessionRow row;
   std::string device_serial;                    ///< empty if none
@@ -34,10 +46,15 @@ struct SessionRecord {
   std::string opened_utc;                       ///< ISO 8601; empty for simulated sessions
   std::optional<PracticeRecord> practice;
   std::optional<store::AnswerSummary> answers;  ///< of a session that has ended with answers
+  HandCounts outside{};
+  std::optional<int> saturated{};     ///< trials at the force limit, of a session that has ended
   std::vector<Deviation> deviations;  ///< including those noted later; duplicates appear once
+  // In the words of people; "(sealed)" without the key.
   std::string exclusion_reason;
   std::string replacement_reason;
-  std::string stop_reason;
+  std::string stop_reason;  ///< or the program's
+  std::string withdrawal_reason;
+  std::optional<double> largest_force_n;  ///< sent, to tenths; of a session that has ended
   int resumed = 0;  ///< how often the session was resumed after the program had ended
 };
 
@@ -53,7 +70,7 @@ struct ServoTrial {
 /// participant's last session.
 struct ParticipantFlow {
   int enrolled = 0;
-  int withdrawn = 0;
+  int erased = 0;    ///< withdrew and had the data erased
   int replaced = 0;  ///< somebody else took their place
   int excluded = 0;
   std::vector<std::string> exclusion_reasons;  ///< one per exclusion, in order of sessions
@@ -62,6 +79,7 @@ struct ParticipantFlow {
   int other_kind = 0;  ///< pilot or simulated sessions in a study that is not, or the reverse
   int unseen = 0;      ///< completed after an interim look
   int analysed = 0;    ///< enrolled minus all of the above
+  int withdrawn = 0;   ///< among all of these: who withdrew, whether the data were erased or not
 };
 
 /// What the study prescribes for a session, from its configuration in clear.
@@ -79,8 +97,9 @@ struct Prescription {
 struct Collection {
   Prescription prescription;
   std::vector<SessionRecord> sessions;   ///< in order of session numbers
-  std::vector<ServoTrial> servo_trials;  ///< by session and trial, without withdrawn sessions
+  std::vector<ServoTrial> servo_trials;  ///< by session and trial, without erased sessions
   ParticipantFlow flow;
+  std::vector<store::PersonLook> looks;  ///< at single participants' outcomes, in order
   bool visual = false;  ///< textures were seen on a screen, not felt; the same for all sessions
 };
 

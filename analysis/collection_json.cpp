@@ -20,7 +20,7 @@ Json prescription_json(const Prescription& prescription) {
 
 Json flow_json(const ParticipantFlow& flow) {
   return {{"enrolled", flow.enrolled},
-          {"withdrawn", flow.withdrawn},
+          {"erased", flow.erased},
           {"replaced", flow.replaced},
           {"excluded", flow.excluded},
           {"exclusion_reasons", flow.exclusion_reasons},
@@ -28,7 +28,8 @@ Json flow_json(const ParticipantFlow& flow) {
           {"open", flow.open},
           {"other_kind", flow.other_kind},
           {"unseen", flow.unseen},
-          {"analysed", flow.analysed}};
+          {"analysed", flow.analysed},
+          {"withdrawn", flow.withdrawn}};
 }
 
 std::string name_of(store::SessionState state) {
@@ -64,7 +65,8 @@ Json answers_json(const std::optional<store::AnswerSummary>& answers) {
 Json session_json(const SessionRecord& session) {
   Json object{{"session", session.row.session}, {"state", name_of(session.row.state)}};
   object["withdrawn"] = session.row.withdrawn;
-  if (session.row.withdrawn) return object;
+  object["erased"] = session.row.erased;
+  if (session.row.erased) return object;
   object["participant"] = session.row.participant;
   object["excluded"] = session.row.excluded;
   object["replaced_by"] = session.row.replaced_by;
@@ -75,6 +77,9 @@ Json session_json(const SessionRecord& session) {
   object["exclusion_reason"] = session.exclusion_reason;
   object["replacement_reason"] = session.replacement_reason;
   object["stop_reason"] = session.stop_reason;
+  object["withdrawal_reason"] = session.withdrawal_reason;
+  object["largest_force_n"] = nullptr;
+  if (session.largest_force_n) object["largest_force_n"] = figure_json(*session.largest_force_n);
   object["resumed"] = session.resumed;
   object["deviations"] = Json::array();
   for (const auto& [code, text] : session.deviations) {
@@ -103,8 +108,13 @@ nlohmann::ordered_json collection_object(const Collection& collection) {
   for (const SessionRecord& session : collection.sessions) {
     sessions.push_back(session_json(session));
   }
+  Json looks = Json::array();
+  for (const store::PersonLook& look : collection.looks) {
+    looks.push_back({{"participant", look.participant}, {"reason", look.reason}});
+  }
   return {{"prescription", prescription_json(collection.prescription)},
           {"flow", flow_json(collection.flow)},
+          {"looks", std::move(looks)},
           {"deviations", deviations_json(collection)},
           {"sessions", std::move(sessions)}};
 }

@@ -1,5 +1,6 @@
 #include "analysis/collection_records.hpp"
 
+#include "analysis/text_figures.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
@@ -18,6 +19,27 @@ void add_opening(const store::Event& event, SessionRecord& session) {
   session.device_serial = std::move(opening.device_serial);
   session.opened_utc = std::move(opening.opened_utc);
   session.station = std::move(opening.station);
+}
+
+/// What a person wrote, if the event is opened.
+std::string words_of(const store::Event& event, const std::string& text) {
+  return event.sealed.empty() ? text : "(sealed)";
+}
+
+std::string exclusion_in(const store::Event& event) {
+  const store::ParticipantBody body = store::participant_from_json(event.body);
+  return (body.after_outcomes ? "after outcomes were seen: " : "") + words_of(event, body.reason);
+}
+
+std::string stop_in(const store::Event& event) {
+  const store::StopBody body = store::stop_from_json(event.body);
+  return body.code.empty() ? words_of(event, body.text) : body.code;
+}
+
+void add_end(const store::ClosedBody& closed, SessionRecord& session) {
+  session.answers = closed.answers;
+  session.saturated = closed.saturated;
+  session.largest_force_n = closed.largest_force_n;
 }
 
 void add_practice(const store::PracticeBody& practised, SessionRecord& session) {
@@ -43,7 +65,18 @@ std::span<const store::EventKind> kinds_in_sessions() {
 }
 
 bool is_partly_sealed(store::EventKind kind) {
-  return kind == store::EventKind::practised || kind == store::EventKind::deviated;
+  switch (kind) {
+    case store::EventKind::practised:
+    case store::EventKind::deviated:
+    case store::EventKind::stopped:
+    case store::EventKind::participant_excluded:
+    case store::EventKind::participant_withdrawn:
+    case store::EventKind::participant_replaced:
+    case store::EventKind::participant_noted:
+      return true;
+    default:
+      return false;
+  }
 }
 
 void add_to_record(const store::Event& event, SessionRecord& session) {
@@ -62,24 +95,40 @@ void add_to_record(const store::Event& event, SessionRecord& session) {
       return;
     }
     case store::EventKind::participant_excluded:
-      session.exclusion_reason = store::participant_from_json(event.body).reason;
+      session.exclusion_reason = exclusion_in(event);
       return;
     case store::EventKind::participant_replaced:
-      session.replacement_reason = store::replacement_from_json(event.body).reason;
+      session.replacement_reason = words_of(event, store::replacement_from_json(event.body).reason);
       return;
     case store::EventKind::stopped:
-      session.stop_reason = store::remark_from_json(event.body);
+      session.stop_reason = stop_in(event);
+      return;
+    case store::EventKind::participant_withdrawn:
+      session.withdrawal_reason = words_of(event, store::withdrawal_from_json(event.body).reason);
       return;
     case store::EventKind::resumed:
       // A session that was only paused does not count as resumed.
       if (store::resumed_from_json(event.body).after == "program-ended") ++session.resumed;
       return;
     case store::EventKind::closed:
-      session.answers = store::closed_from_json(event.body).answers;
-      return;
+      return add_end(store::closed_from_json(event.body), session);
     default:
       return;
   }
+}
+
+std::vector<std::string> people_notes(const Collection& collection) {
+  std::vector<std::string> notes;
+  const int kept = collection.flow.withdrawn - collection.flow.erased;
+  if (kept > 0) {
+    notes.push_back(counted(kept, "participant") +
+                    " withdrew and let the data be used: counted like the others.");
+  }
+  for (const store::PersonLook& look : collection.looks) {
+    notes.push_back("Outcomes of participant " + look.participant +
+                    " alone were looked at: " + look.reason + ".");
+  }
+  return notes;
 }
 
 std::optional<ServoTrial> servo_trial_of(const store::Event& trace_stored) {

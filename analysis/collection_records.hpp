@@ -4,6 +4,8 @@
 #include "analysis/collection.hpp"
 
 #include <span>
+#include <string>
+#include <vector>
 
 namespace touchtrial::analysis {
 
@@ -20,6 +22,10 @@ void add_to_record(const store::Event& event, SessionRecord& session);
 
 /// \return the timing of the trial's servo, or nothing if the trial was not in real time
 [[nodiscard]] std::optional<ServoTrial> servo_trial_of(const store::Event& trace_stored);
+
+/// Sentences on participants who withdrew and let their data be used, and on looks at single
+/// participants' outcomes. Empty if there are none.
+[[nodiscard]] std::vector<std::string> people_notes(const Collection& collection);
 
 /// Counts participants, each by the participant's last session.
 /// \param rows  sessions in order of their numbers

@@ -101,6 +101,18 @@ void require_whole(const store::StudyStore& store) {
   }
 }
 
+[[noreturn]] void refuse_unseen(const std::string& participant) {
+  if (participant.empty()) {
+    throw StoreError(
+        "the study has not been unblinded, so its outcomes are not shown; run `touchtrial close` "
+        "and `touchtrial unblind`");
+  }
+  throw StoreError(one_line(
+      fmt::format("no look at the outcomes of participant {} is recorded, so they are not shown; "
+                  "run `touchtrial unblind DB --participant {} --reason TEXT`",
+                  participant, participant)));
+}
+
 }  // namespace
 
 std::string shown(const store::ChainFault& fault) {
@@ -108,22 +120,27 @@ std::string shown(const store::ChainFault& fault) {
                      one_line(fault.what));
 }
 
-Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& key) {
+Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& key,
+                       const std::string& participant) {
   require_key_of(store, key);
   Outcomes outcomes = labelled(store, key.study);
-  if (!outcomes.state.unblinded) {
-    throw StoreError(
-        "the study has not been unblinded, so its outcomes are not shown; run `touchtrial close` "
-        "and `touchtrial unblind`");
+  const std::vector<store::SessionRow> rows = store.sessions();
+  const auto shows = [&](const store::SessionRow& row) {
+    return participant.empty()
+               ? outcomes.state.reports(row.session)
+               : row.participant == participant && outcomes.state.shows(row.session);
+  };
+  if (participant.empty() ? !outcomes.state.unblinded : std::ranges::none_of(rows, shows)) {
+    refuse_unseen(participant);
   }
   require_whole(store);
   require_sealed_ends(store, key);
   outcomes.collection = load_collection(store, &key);
   outcomes.visual = outcomes.collection.visual;
   std::map<int, SessionOutcome> sessions;
-  for (const store::SessionRow& row : store.sessions()) {
-    if (!outcomes.state.shows(row.session)) {
-      ++outcomes.sessions_unseen;
+  for (const store::SessionRow& row : rows) {
+    if (!shows(row)) {
+      if (participant.empty()) ++outcomes.sessions_unseen;
       continue;
     }
     sessions[row.session] = {row, session_counts(row, store.commitment())};
@@ -134,8 +151,9 @@ Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& k
   for (const store::TrialRow& row : open_trials(store, key)) {
     const auto schedule = schedules.find(row.session);
     if (schedule == schedules.end()) continue;  // without an opening
-    if (!outcomes.state.shows(row.session)) continue;
-    TrialOutcome trial = outcome_of(row, sessions[row.session], schedule->second, key.study);
+    const auto session = sessions.find(row.session);
+    if (session == sessions.end()) continue;
+    TrialOutcome trial = outcome_of(row, session->second, schedule->second, key.study);
     const auto measured = measures.find({row.session, row.trial});
     if (measured != measures.end()) trial.measures = measured->second;
     outcomes.trials.push_back(std::move(trial));

@@ -48,11 +48,11 @@ struct Outcomes {
   std::vector<std::vector<std::string>> exemplars;  ///< image file names, by class
   std::vector<std::string> choices;                 ///< labels of the alternatives
   std::vector<std::string> methods;                 ///< labels of the presented methods
-  std::vector<SessionOutcome> sessions;             ///< by number, including withdrawn sessions
+  std::vector<SessionOutcome> sessions;             ///< by number, including erased sessions
   /// The number of sessions that had not ended at an interim look. These are neither in `sessions`
   /// nor in `trials`.
   int sessions_unseen = 0;
-  std::vector<TrialOutcome> trials;  ///< by session and trial, without withdrawn sessions
+  std::vector<TrialOutcome> trials;  ///< by session and trial, without erased sessions
   design::Study design;              ///< the study file, which has the rule for drawing orders
   Collection collection;
 };
@@ -62,7 +62,7 @@ struct Outcomes {
 
 /// Opens every sealed schedule and measure and scores the answers with them.
 ///
-/// A session counts if it was completed and is neither excluded, withdrawn nor replaced. A pilot or
+/// A session counts if it was completed and is neither excluded, erased nor replaced. A pilot or
 /// simulated session counts only if the whole study is one. A scored trial of a counted session
 /// counts if it ended, either with an answer or without a response when time ran out. A trial that
 /// was interrupted and repeated keeps its number, and its last presentation with an answer counts.
@@ -71,9 +71,13 @@ struct Outcomes {
 ///
 /// Chains, sealed ends and derived tables are checked against the events first; traces are not.
 ///
-/// \throws StoreError if the study has not been unblinded
+/// \param participant  whose sessions alone are opened, if a look at this participant or at the
+/// study
+///   shows them; empty: the study's
+/// \throws StoreError if the study has not been unblinded, or nothing shows this participant
 /// \throws VerificationError if the key does not match the database, the database is inconsistent,
 ///   or a session does not agree with its schedule; the message names the session
-[[nodiscard]] Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& key);
+[[nodiscard]] Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& key,
+                                     const std::string& participant = {});
 
 }  // namespace touchtrial::analysis

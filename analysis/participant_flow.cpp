@@ -18,13 +18,13 @@ std::map<int, const store::SessionRow*> sessions_that_stand(
 }
 
 bool unseen_after_interim_look(const store::SessionRow& row, const store::StudyState& state) {
-  return state.unblinded && !state.shows(row.session);
+  return state.unblinded && !state.reports(row.session);
 }
 
 /// The one counter of the flow that a participant's session belongs to.
 int& end_of(const store::SessionRow& row, const store::StudyCommitment& commitment,
             const store::StudyState& state, ParticipantFlow& flow) {
-  if (row.withdrawn) return flow.withdrawn;
+  if (row.erased) return flow.erased;
   if (!row.replaced_by.empty() && row.replaced_by != row.participant) return flow.replaced;
   if (row.excluded) return flow.excluded;
   if (row.state == store::SessionState::stopped) return flow.stopped;
@@ -47,6 +47,7 @@ ParticipantFlow participant_flow(const std::vector<store::SessionRow>& rows,
   ParticipantFlow flow;
   for (const auto& [session, row] : sessions_that_stand(rows)) {
     ++flow.enrolled;
+    if (row->withdrawn) ++flow.withdrawn;
     int& end = end_of(*row, commitment, state, flow);
     ++end;
     if (&end == &flow.excluded) flow.exclusion_reasons.push_back(reasons[session]);

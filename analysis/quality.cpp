@@ -1,11 +1,12 @@
 #include "analysis/quality.hpp"
 
+#include "analysis/collection_records.hpp"
 #include "analysis/json_figures.hpp"
 #include "analysis/session_rules.hpp"
 #include "analysis/statistics/confusion.hpp"
 #include "analysis/text_figures.hpp"
 #include "analysis/text_table.hpp"
-#include "analysis/verification/clock_notes.hpp"
+#include "analysis/verification/chain_notes.hpp"
 
 #include <algorithm>
 #include <set>
@@ -52,8 +53,9 @@ std::optional<ServoQuality> servo_quality(const Collection& collection) {
 void count_session(const store::SessionRow& session, const store::StudyCommitment& commitment,
                    SessionCounts& counts) {
   if (session.pilot && !commitment.pilot) ++counts.pilot;
-  if (session.withdrawn) {
-    ++counts.withdrawn;
+  if (session.withdrawn) ++counts.withdrawn;
+  if (session.erased) {
+    ++counts.erased;
   } else if (!session.replaced_by.empty()) {
     ++counts.replaced;
   } else if (session.excluded) {
@@ -75,7 +77,7 @@ void count_answer(const store::TrialRow& trial, TrialQuality& quality) {
 }
 
 void count_trace(const store::TrialRow& trial, TrialQuality& quality) {
-  if (trial.seconds == 0) return;
+  if (!trial.has_trace()) return;
   ++quality.with_trace;
   if (trial.valid) ++quality.valid;
   quality.overruns += trial.overruns;
@@ -98,22 +100,22 @@ QualityReport make_quality(const store::StudyStore& store) {
   report.state = store.state();
   report.simulated = commitment.simulated;
   report.pilot = commitment.pilot;
-  std::set<int> withdrawn;
+  std::set<int> erased;
   for (const store::SessionRow& session : store.sessions()) {
     count_session(session, commitment, report.sessions);
-    if (session.withdrawn) withdrawn.insert(session.session);
+    if (session.erased) erased.insert(session.session);
     if (session_counts(session, commitment)) ++report.participants;
   }
   report.trials = report.participants * commitment.scored_trials;
   for (const store::TrialRow& trial : store.trials()) {
-    if (withdrawn.contains(trial.session)) continue;
+    if (erased.contains(trial.session)) continue;
     count_answer(trial, report.quality);
     count_trace(trial, report.quality);
   }
   report.collection = load_collection(store);
   report.servo = servo_quality(report.collection);
   report.visual = report.collection.visual;
-  report.notes = clock_notes(store);
+  report.notes = chain_notes(store);
   return report;
 }
 
@@ -129,6 +131,24 @@ void put_real_time(nlohmann::ordered_json& object, const ServoQuality& servo) {
   object["scheduling"] = servo.scheduling;
 }
 
+/// By session, in how many trials the hand was outside each window.
+nlohmann::ordered_json hands_json(const Collection& collection) {
+  auto hands = nlohmann::ordered_json::array();
+  for (const SessionRecord& session : collection.sessions) {
+    const HandCounts& outside = session.outside;
+    if (outside.trials == 0) continue;
+    hands.push_back({{"session", session.row.session},
+                     {"trials", outside.trials},
+                     {"contact", outside.contact},
+                     {"path", outside.path},
+                     {"force", outside.force},
+                     {"speed", outside.speed},
+                     {"saturated", nullptr}});
+    if (session.saturated) hands.back()["saturated"] = *session.saturated;
+  }
+  return hands;
+}
+
 }  // namespace
 
 nlohmann::ordered_json quality_object(const QualityReport& report) {
@@ -142,8 +162,8 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
   object["trials"] = report.trials;
   object["sessions"] = {{"completed", sessions.completed}, {"open", sessions.open},
                         {"stopped", sessions.stopped},     {"excluded", sessions.excluded},
-                        {"replaced", sessions.replaced},   {"withdrawn", sessions.withdrawn},
-                        {"pilot", sessions.pilot}};
+                        {"replaced", sessions.replaced},   {"erased", sessions.erased},
+                        {"withdrawn", sessions.withdrawn}, {"pilot", sessions.pilot}};
   object["responses"] = {{"presented", quality.presented},
                          {"answered", quality.answered},
                          {"no_response", quality.no_response},
@@ -156,6 +176,7 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
                      {"trials_with_overruns", quality.with_overruns},
                      {"lowest_rate_hz", figure_json(quality.lowest_rate_hz)}};
   if (report.servo) put_real_time(object["servo"], *report.servo);
+  object["outside"] = hands_json(report.collection);
   if (report.visual) object["visual"] = true;
   object["collection"] = collection_object(report.collection);
   if (!report.notes.empty()) object["notes"] = report.notes;
@@ -170,13 +191,15 @@ namespace {
 
 std::string sessions_text(const QualityReport& report) {
   TextTable table(
-      {"sessions", "completed", "open", "stopped", "excluded", "replaced", "withdrawn", "pilot"});
+      {"sessions", "completed", "open", "stopped", "excluded", "replaced", "erased", "pilot"});
   const SessionCounts& counts = report.sessions;
   table.add({"", std::to_string(counts.completed), std::to_string(counts.open),
              std::to_string(counts.stopped), std::to_string(counts.excluded),
-             std::to_string(counts.replaced), std::to_string(counts.withdrawn),
+             std::to_string(counts.replaced), std::to_string(counts.erased),
              std::to_string(counts.pilot)});
-  return heading("sessions", report.simulated) + table.text();
+  std::string text = heading("sessions", report.simulated) + table.text();
+  for (const std::string& note : people_notes(report.collection)) text += wrapped("  ", note);
+  return text;
 }
 
 /// How answers are spread, by session: somebody who always presses one key shows here.
@@ -190,6 +213,21 @@ std::string answers_text(const QualityReport& report) {
                std::to_string(answers.longest_run), fmt::format("{:.1f} s", answers.median_s)});
   }
   return heading("answers by session", report.simulated) + table.text();
+}
+
+/// The trials in which the hand was outside a window, by session: somebody who does not press or
+/// does not move shows here.
+std::string hands_text(const QualityReport& report) {
+  TextTable table({"session", "with a trace", "contact", "path", "force", "speed", "saturated"});
+  for (const SessionRecord& session : report.collection.sessions) {
+    const HandCounts& outside = session.outside;
+    if (outside.trials == 0) continue;
+    table.add({std::to_string(session.row.session), std::to_string(outside.trials),
+               std::to_string(outside.contact), std::to_string(outside.path),
+               std::to_string(outside.force), std::to_string(outside.speed),
+               session.saturated ? std::to_string(*session.saturated) : "-"});
+  }
+  return heading("trials outside a window, by session", report.simulated) + table.text();
 }
 
 std::string health_text(const QualityReport& report) {
@@ -242,7 +280,7 @@ std::string quality_text(const QualityReport& report) {
   }
   text += sessions_text(report) + health_text(report);
   if (report.servo) text += servo_text(report);
-  text += answers_text(report);
+  text += answers_text(report) + hands_text(report);
   for (const std::string& note : report.notes) text += wrapped("", "Note: " + note);
   if (report.simulated) text += '\n' + simulated_line(report.simulated);
   return text;

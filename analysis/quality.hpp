@@ -13,19 +13,20 @@
 
 namespace touchtrial::analysis {
 
-/// The numbers of sessions by status. Each session is counted once: as withdrawn, else as replaced,
+/// The numbers of sessions by status. Each session is counted once: as erased, else as replaced,
 /// else as excluded, else by its state.
 struct SessionCounts {
   int completed = 0;
   int open = 0;
   int stopped = 0;
   int excluded = 0;
-  int replaced = 0;  ///< somebody else took the place, or the session was restarted
-  int withdrawn = 0;
-  int pilot = 0;  ///< pilot sessions among all of these, if the study itself is not a pilot
+  int replaced = 0;   ///< somebody else took the place, or the session was restarted
+  int erased = 0;     ///< the participant withdrew, and had the data erased
+  int withdrawn = 0;  ///< of participants who withdrew, among all of these, erased or not
+  int pilot = 0;      ///< pilot sessions among all of these, if the study itself is not a pilot
 };
 
-/// Quality of the trials of all sessions that are not withdrawn.
+/// Quality of the trials of all sessions that are not erased.
 struct TrialQuality {
   int presented = 0;
   int answered = 0;
@@ -38,7 +39,7 @@ struct TrialQuality {
   std::optional<double> lowest_rate_hz;  ///< lowest requested rate of a trace
 };
 
-/// The timing of the servo in all trials in real time of participants who have not withdrawn.
+/// The timing of the servo in all trials in real time of sessions that are not erased.
 struct ServoQuality {
   int trials = 0;
   double median_p99_us = 0.0;  ///< median of the trials' 99th percentiles of lateness
@@ -62,7 +63,7 @@ struct QualityReport {
   std::optional<ServoQuality> servo;  ///< empty if no session was in real time
   bool visual = false;                ///< textures were seen on a screen, not felt
   Collection collection;              ///< participant flow, deviations, stations
-  std::vector<std::string> notes{};   ///< where a clock went back, see clock_notes
+  std::vector<std::string> notes{};   ///< where a clock went back, see chain_notes
 };
 
 /// "collecting", "closed" or "unblinded"

@@ -1,6 +1,7 @@
 #include "analysis/sealed_sessions.hpp"
 
 #include "core/errors.hpp"
+#include "protocols/store/damage.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <exception>
@@ -14,7 +15,13 @@ namespace touchtrial::analysis {
 namespace {
 
 std::string place_of(const store::Event& event) {
-  return fmt::format("session {}, event {}", event.session, event.sequence);
+  return fmt::format("{}, event {}", store::chain_named(event.session), event.sequence);
+}
+
+[[noreturn]] void refuse_sealed(const store::Event& event) {
+  throw VerificationError(place_of(event) +
+                          ": the sealed part does not open: the event is damaged, or was made anew "
+                          "without the key; restore a backup of the database");
 }
 
 /// Calls `visit` with each event of a kind, opened, and its secret text, for all sessions that have
@@ -72,12 +79,17 @@ void require_key_of(const store::StudyStore& store, const design::StudyKey& key)
                     "the first session; give the key as it was then",
                     one_line(commitment.study), to_hex(commitment.seal).substr(0, 16)));
   }
+  if (key.investigator_signature != commitment.investigator) {
+    throw VerificationError(
+        "the database names another investigator than the key's holder: it was not begun with this "
+        "study's files");
+  }
 }
 
 std::optional<SecretKey> participant_key(const store::StudyStore& store,
                                          const design::StudyKey& key,
                                          const store::SessionRow& session) {
-  if (session.withdrawn) return std::nullopt;
+  if (session.erased) return std::nullopt;
   const std::optional<Bytes> wrapped = store.wrapped_key(session.session);
   if (!wrapped) {
     throw VerificationError(
@@ -104,14 +116,43 @@ std::map<int, SecretKey> participant_keys(const store::StudyStore& store,
   return keys;
 }
 
+std::map<int, store::PersonKeys> person_keys(const store::StudyStore& store,
+                                             const design::StudyKey& key) {
+  std::map<int, store::PersonKeys> all;
+  for (const store::SessionRow& session : store.sessions()) {
+    store::PersonKeys& own = all[session.session];
+    own.participant = participant_key(store, key, session);
+    const std::optional<Bytes> wrapped = store.wrapped_keys(session.session).safety;
+    if (!wrapped) continue;
+    own.safety = store::unwrap_safety_key(key.box(), session.own_session, *wrapped);
+    if (own.safety) continue;
+    throw VerificationError(
+        fmt::format("session {}: the safety key does not open with this study key; restore a "
+                    "backup of the database",
+                    session.session));
+  }
+  return all;
+}
+
 store::OpenedEvent whole_event(const store::Event& event, const SecretKey& own) {
   std::optional<store::OpenedEvent> opened = store::opened_event(event, own);
-  if (!opened) {
-    throw VerificationError(
-        place_of(event) +
-        ": the sealed part does not open: the event is damaged, or was made anew "
-        "without the key; restore a backup of the database");
+  if (!opened) refuse_sealed(event);
+  return *std::move(opened);
+}
+
+store::Event readable_event(const store::Event& event, const store::SessionRow& row,
+                            const store::PersonKeys& keys) {
+  if (event.sealed.empty()) return event;
+  if (!store::opener_of(event, keys)) return event;
+  std::optional<store::Event> opened;
+  if (event.session <= 0) {
+    opened = store::opened_person_text(event, row.own_session, keys);
+  } else if (keys.participant) {
+    return whole_event(event, *keys.participant).event;
+  } else if (auto safety = store::opened_safety_event(event, *keys.safety)) {
+    opened = std::move(safety->event);
   }
+  if (!opened) refuse_sealed(event);
   return *std::move(opened);
 }
 

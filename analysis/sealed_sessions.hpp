@@ -3,6 +3,7 @@
 #pragma once
 
 #include "protocols/design/study_key.hpp"
+#include "protocols/store/person_texts.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <map>
@@ -18,34 +19,45 @@ namespace touchtrial::analysis {
 void require_key_of(const store::StudyStore& store, const design::StudyKey& key);
 
 /// The key under which a participant's payloads are encrypted.
-/// \return the key, or nothing if the participant has withdrawn
+/// \return the key, or nothing if it was erased
 /// \throws VerificationError if the participant's key is missing without a withdrawal, or does not
 ///   open
 [[nodiscard]] std::optional<SecretKey> participant_key(const store::StudyStore& store,
                                                        const design::StudyKey& key,
                                                        const store::SessionRow& session);
 
-/// The participants' keys of all sessions that are not withdrawn, by session.
+/// The participants' keys of all sessions that are not erased, by session.
 /// \throws VerificationError as participant_key does
 [[nodiscard]] std::map<int, SecretKey> participant_keys(const store::StudyStore& store,
                                                         const design::StudyKey& key);
+
+/// What is left of the keys of every session, by session.
+/// \throws VerificationError as participant_key does
+[[nodiscard]] std::map<int, store::PersonKeys> person_keys(const store::StudyStore& store,
+                                                           const design::StudyKey& key);
 
 /// A session's event as it was recorded.
 /// \param own  the participant's key
 /// \throws VerificationError, naming the event, if it does not open
 [[nodiscard]] store::OpenedEvent whole_event(const store::Event& event, const SecretKey& own);
+/// The same with whatever key is left, of any chain.
+/// \param row  of the session that the event is about
+/// \return the event as it is stored, if what opens it was erased
+/// \throws the same
+[[nodiscard]] store::Event readable_event(const store::Event& event, const store::SessionRow& row,
+                                          const store::PersonKeys& keys);
 
-/// The trials of all sessions that are not withdrawn, with answers and times, by session and trial.
+/// The trials of all sessions that are not erased, with answers and times, by session and trial.
 /// \throws VerificationError, naming the event, if one does not open or cannot follow those before
 [[nodiscard]] std::vector<store::TrialRow> open_trials(const store::StudyStore& store,
                                                        const design::StudyKey& key);
 
-/// Checks the chain of every session that has ended and is not withdrawn against the end that was
+/// Checks the chain of every session that has ended and is not erased against the end that was
 /// sealed with it. Somebody without the key can rebuild a chain, but cannot seal its end.
 /// \throws VerificationError, naming the session, if a sealed end belongs to another chain
 void require_sealed_ends(const store::StudyStore& store, const design::StudyKey& key);
 
-/// Schedules and layouts of all sessions that are not withdrawn, by session. Restarted blocks, in
+/// Schedules and layouts of all sessions that are not erased, by session. Restarted blocks, in
 /// their new order, follow the schedule with which the session began.
 /// \throws VerificationError, naming the session, if a schedule does not open or does not belong to
 ///   this key
@@ -55,7 +67,7 @@ void require_sealed_ends(const store::StudyStore& store, const design::StudyKey&
 /// A session and the number of a trial in it.
 using TrialPlace = std::pair<int, int>;
 
-/// Measures of all trials with a trace, of sessions that are not withdrawn. For a repeated trial,
+/// Measures of all trials with a trace, of sessions that are not erased. For a repeated trial,
 /// the last presentation counts.
 /// \throws VerificationError, naming the session, if one does not open
 [[nodiscard]] std::map<TrialPlace, store::TrialMeasures> open_measures(

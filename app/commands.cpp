@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 
 #include "app/console.hpp"
+#include "app/passphrases.hpp"
 #include "core/text.hpp"
 
 #include <algorithm>
@@ -35,8 +36,25 @@ void add_study_place_argument(CLI::App& command, std::filesystem::path& place) {
                        "postgresql://USER@HOST/DATABASE, and put the password into ~/.pgpass"));
 }
 
-CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key) {
-  return command.add_option("--key", key, "Key of the study (default: DB.key)");
+CLI::Option* add_accept_loss_option(CLI::App& command, std::string& reason) {
+  return command.add_option("--accept-loss", reason,
+                            "Go on without what the database lost, and why; recorded");
+}
+
+CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key,
+                            const std::string& meaning) {
+  add_passphrase_option(command);
+  return command.add_option("--key", key, meaning);
+}
+
+void add_passphrase_option(CLI::App& command) {
+  command
+      .add_option(
+          "--passphrase-file", passphrase_files(),
+          "File or descriptor (/dev/fd/3) whose first line is the passphrase of a protected "
+          "key or station's file; may be repeated (default: asked for)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
 }
 
 void add_pack_option(CLI::App& command, std::filesystem::path& pack) {

@@ -38,6 +38,9 @@ void add_report_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);
 void add_fit_command(CLI::App& program, Action& action);
 void add_consent_command(CLI::App& program, Action& action);
+void add_key_command(CLI::App& program, Action& action);
+/// The command "key check".
+void add_key_check_command(CLI::App& keys, Action& action);
 /// exclude, replace, withdraw, note, close, unblind, migrate.
 void add_record_commands(CLI::App& program, Action& action);
 void add_merge_command(CLI::App& program, Action& action);
@@ -61,8 +64,13 @@ CLI::Option* add_database_argument(CLI::App& command, std::filesystem::path& dat
 /// DB, required: a database file, or an address such as postgresql://HOST/NAME. Refuses passwords,
 /// which libpq's own notation may contain.
 void add_study_place_argument(CLI::App& command, std::filesystem::path& place);
-/// --key; see key_of_database.
-CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key);
+/// --key, see key_of_database; and --passphrase-file, see app/passphrases.hpp.
+CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key,
+                            const std::string& meaning = "Key of the study (default: DB.key)");
+/// --passphrase-file, for commands that read keys or stations' files without --key.
+void add_passphrase_option(CLI::App& command);
+/// Why to go on without what the database lacks and its head file knows.
+CLI::Option* add_accept_loss_option(CLI::App& command, std::string& reason);
 /// --pack; see pack_place_for.
 void add_pack_option(CLI::App& command, std::filesystem::path& pack);
 /// --subject; see subject_for.

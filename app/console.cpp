@@ -4,7 +4,9 @@
 #include "core/printable.hpp"
 
 #include <cstdio>
+#include <ctime>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -45,6 +47,11 @@ std::function<void(int, int)> progress_bar(const std::string& what) {
 std::chrono::nanoseconds utc_now() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::system_clock::now().time_since_epoch());
+}
+
+std::string utc_words(std::chrono::nanoseconds at) {
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(at).count();
+  return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(static_cast<std::time_t>(seconds)));
 }
 
 std::string ending_of(const std::filesystem::path& file) {

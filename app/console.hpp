@@ -27,6 +27,9 @@ template <typename Json>
 /// Nanoseconds since 1970, UTC.
 [[nodiscard]] std::chrono::nanoseconds utc_now();
 
+/// A time as utc_now gives it, for people: "2026-03-02 09:00 UTC".
+[[nodiscard]] std::string utc_words(std::chrono::nanoseconds at);
+
 /// The extension of a file name in lower case, with its dot: ".png" of "A.PNG".
 [[nodiscard]] std::string ending_of(const std::filesystem::path& file);
 

@@ -1,4 +1,5 @@
 #include "analysis/exports/bids/export_bids.hpp"
+#include "analysis/exports/export_people.hpp"
 #include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/outcomes.hpp"
@@ -7,8 +8,10 @@
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
+#include "protocols/store/personal_data.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
@@ -27,6 +30,8 @@ struct ExportArguments {
   fs::path key;
   fs::path folder;
   std::string format = "csv";
+  std::string participant;
+  bool safety = false;
   bool with_database = false;
   analysis::DatasetOptions dataset;
 };
@@ -82,19 +87,53 @@ std::vector<fs::path> write_files(const ExportArguments& arguments, const store:
   return analysis::export_bids(study, options, arguments.folder);
 }
 
-int export_study(const ExportArguments& arguments) {
-  require_fitting(arguments);
-  const store::StudyStore store = collect::open_study(arguments.database.string());
+/// The personal data are beside a station's own database alone.
+std::optional<store::PersonalRecord> person_of(const ExportArguments& arguments) {
+  if (collect::is_address(arguments.database.string())) return std::nullopt;
+  const fs::path path = store::personal_data_path(arguments.database);
+  if (!is_there(path)) return std::nullopt;
+  return store::PersonalData(path).find(arguments.participant);
+}
+
+/// Outcomes take the key, and a look at this participant that is recorded.
+std::vector<fs::path> export_one(const ExportArguments& arguments, const store::StudyStore& store) {
+  std::optional<design::StudyKey> key;
+  std::optional<analysis::Outcomes> outcomes;
+  if (!arguments.key.empty()) {
+    key = key_of_database(store, arguments.database, arguments.key);
+    outcomes = analysis::load_outcomes(store, *key, arguments.participant);
+  }
+  return analysis::export_participant(
+      {store, outcomes ? &*outcomes : nullptr, key ? &*key : nullptr}, arguments.participant,
+      person_of(arguments), arguments.folder);
+}
+
+std::vector<fs::path> export_safety_record(const ExportArguments& arguments,
+                                           const store::StudyStore& store) {
+  if (arguments.key.empty()) return analysis::export_safety(store, nullptr, arguments.folder);
+  const design::StudyKey key = key_of_database(store, arguments.database, arguments.key);
+  return analysis::export_safety(store, &key, arguments.folder);
+}
+
+std::vector<fs::path> export_all(const ExportArguments& arguments, const store::StudyStore& store) {
   std::optional<design::StudyKey> key;
   std::optional<analysis::Outcomes> outcomes;
   if (store.state().unblinded) {
     key = key_of_database(store, arguments.database, arguments.key);
     outcomes = analysis::load_outcomes(store, *key);
   }
+  return write_files(arguments, store, key, outcomes);
+}
+
+int export_study(const ExportArguments& arguments) {
+  require_fitting(arguments);
+  const store::StudyStore store = collect::open_study(arguments.database.string());
+  const std::vector<fs::path> files = arguments.safety ? export_safety_record(arguments, store)
+                                      : arguments.participant.empty()
+                                          ? export_all(arguments, store)
+                                          : export_one(arguments, store);
   std::string written;
-  for (const fs::path& file : write_files(arguments, store, key, outcomes)) {
-    written += file.string() + "\n";
-  }
+  for (const fs::path& file : files) written += file.string() + "\n";
   print(written);
   return 0;
 }
@@ -117,13 +156,25 @@ void add_export_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = program.add_subcommand("export", "Write a study's data for other programs");
   add_study_place_argument(*command, arguments->database);
-  command->add_option("--format", arguments->format, "What to write")
-      ->check(CLI::IsMember({"csv", "json", "bids", "psych-ds", "r", "events"}))
+  CLI::Option* format = command->add_option("--format", arguments->format, "What to write");
+  format->check(CLI::IsMember({"csv", "json", "bids", "psych-ds", "r", "events"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->folder, "Folder to write into")
       ->check(place_validator())
       ->required();
   add_key_option(*command, arguments->key);
+  CLI::Option* participant = command->add_option(
+      "--participant", arguments->participant,
+      "Everything about one participant, as CSV; outcomes only with --key, after `unblind "
+      "--participant`");
+  command
+      ->add_flag(
+          "--safety", arguments->safety,
+          "Stops, faults, largest forces, reasons and deviations of everybody, as CSV, never "
+          "an outcome; with --key also what was typed")
+      ->excludes(participant)
+      ->excludes(format);
+  participant->excludes(format);
   add_dataset_options(*command, *arguments);
   command->callback([=, &action] { action = [=] { return export_study(*arguments); }; });
 }

@@ -1,5 +1,6 @@
 // touchtrial: parses the command line and runs one command.
 #include "app/commands.hpp"
+#include "app/passphrases.hpp"
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
 #include "core/version.hpp"
@@ -36,6 +37,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_prereg_command(program, action);
   add_simulate_command(program, action);
   add_plan_command(program, action);
+  add_key_command(program, action);
   add_run_command(program, action);
   add_consent_command(program, action);
   add_record_commands(program, action);
@@ -109,6 +111,7 @@ int parse_and_run(int argc, char** argv) {
   let_writes_fail();
   set_up_log();
   registration::register_protocols();
+  answer_for_passphrases();
   engine::use_measured_plans(engine::user_cache_folder());
   CLI::App program("A psychophysics runner for textures that are felt.", "touchtrial");
   program.set_version_flag("--version", std::string(program_version()));

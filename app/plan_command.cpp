@@ -117,8 +117,8 @@ int plan_enrolment(const PlanArguments& arguments) {
   const design::PackPlace place = pack_place_for(arguments.study, arguments.pack);
   if (!is_there(place.key)) {
     throw FileError(place.key.string() +
-                    ": there is no key, which a plan divides between stations; run `touchtrial "
-                    "prepare` first, or go to the machine that has it");
+                    ": there is no key, which a plan divides between stations; go to the machine "
+                    "that has it, or for a new study run `touchtrial prepare` first");
   }
   design::StudyKey key = design::load_study_key(place.key);
   std::vector<design::Station> stations = stations_to_fill(arguments, key, place.key);
@@ -157,6 +157,7 @@ void add_plan_command(CLI::App& program, Action& action) {
       ->excludes(stations)
       ->excludes(names);
   add_pack_option(*command, arguments->pack);
+  add_passphrase_option(*command);
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return plan_enrolment(*arguments); }; });
 }

@@ -2,10 +2,12 @@
 // code.
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/passphrases.hpp"
 #include "app/study_inputs.hpp"
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "protocols/design/key_protection.hpp"
 #include "protocols/design/loop_work_report.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/design/study.hpp"
@@ -193,6 +195,7 @@ struct PrepareArguments {
   bool explain = false;
   bool json = false;
   bool loop_work = false;
+  bool passphrase = false;
 };
 
 /// Keeps the key of an earlier version of the study, which databases that it sealed still need.
@@ -200,17 +203,41 @@ void keep_earlier_key(const design::StudyKey& earlier, const fs::path& path) {
   constexpr std::size_t kSealDigits = 8;
   fs::path kept = path;
   kept += "." + to_hex(earlier.seal).substr(0, kSealDigits);
-  design::save_study_key(kept, earlier);
+  // Its bytes, so that it stays under its passphrase.
+  replace_file(kept, read_file(path), FileMode::owner_only);
   spdlog::warn(
       "{}: the study has changed; the earlier key is kept as {}, because databases that it sealed "
       "need it",
       path.string(), kept.string());
 }
 
+/// A new key would make another study of this one, and replace the station's file that its
+/// databases need.
+void refuse_new_key(const design::PackPlace& place) {
+  const fs::path station = place.station();
+  const fs::path found = is_there(station) ? station : place.pack;
+  if (!is_there(station) && !is_there(place.pack / "pack.json")) return;
+  throw FileError(place.key.string() + ": is not here, but " + found.string() +
+                  " was made with it; lay the key here, or make a new study in another folder with "
+                  "--pack");
+}
+
+/// Writes the key, under a passphrase if one is wanted or protects it already.
+void save_key(const PrepareArguments& arguments, const design::StudyKey& key,
+              const fs::path& path) {
+  if (arguments.passphrase && !is_there(path)) {
+    design::save_study_key(path, key, new_passphrase(path, passphrase_files()));
+  } else {
+    design::save_study_key(path, key);
+  }
+}
+
 /// The key of the study, new or with the secrets of an earlier one, so that codes and fields stay
 /// valid.
-design::StudyKey key_for(const design::Study& study, const fs::path& path) {
+design::StudyKey key_for(const design::Study& study, const design::PackPlace& place) {
+  const fs::path& path = place.key;
   if (!is_there(path)) {
+    refuse_new_key(place);
     SystemEntropy entropy;
     return design::make_study_key(study, entropy, false);
   }
@@ -314,9 +341,12 @@ int prepare(const PrepareArguments& arguments) {
   const design::Study study = design::load_study(arguments.study);
   design::check_images_exist(study);
   const design::PackPlace place = pack_place_for(arguments.study, arguments.pack);
-  design::StudyKey key = key_for(study, place.key);
+  if (arguments.passphrase && is_there(place.key) && !design::is_protected(place.key)) {
+    design::protect(place.key, new_passphrase(place.key, passphrase_files()));
+  }
+  design::StudyKey key = key_for(study, place);
   key.pack_folder = place.pack;
-  design::save_study_key(place.key, key);
+  save_key(arguments, key, place.key);
   save_station_files(key, place);
   const design::PrepareReport report = design::prepare_pack(
       key, place.pack, progress_bar("preparing"), {.explain = arguments.explain});
@@ -343,6 +373,10 @@ void add_prepare_command(CLI::App& program, Action& action) {
   command->add_flag("--explain", arguments->explain,
                     "Report for each stage what was computed, reused or skipped, why, and at what "
                     "cost");
+  command->add_flag("--passphrase", arguments->passphrase,
+                    "Protect the key by a passphrase, which is asked for, or is the first line of "
+                    "--passphrase-file");
+  add_passphrase_option(*command);
   CLI::Option* json = add_json_flag(*command, arguments->json);
   command
       ->add_flag("--loop-work", arguments->loop_work,

@@ -62,7 +62,7 @@ void add_prereg_command(CLI::App& program, Action& action) {
       "prereg", "Write the page to deposit before the first participant comes");
   add_study_argument(*command, arguments->study);
   add_pack_option(*command, arguments->pack);
-  command->add_option("--key", arguments->key, "Key of the study (default: beside the pack)");
+  add_key_option(*command, arguments->key, "Key of the study (default: beside the pack)");
   command->add_option("-o,--output", arguments->output,
                       "Markdown file to write (default: standard output)");
   command->callback([=, &action] { action = [=] { return preregister(*arguments); }; });

@@ -25,16 +25,34 @@ store::StudyStore opened(const fs::path& database) {
   return store::StudyStore::open(database, store::StudyStore::Access::read_write);
 }
 
-// Participants. None of these commands reads a key.
+/// The database, ready to be recorded in.
+store::StudyStore opened(const fs::path& database, const SigningFiles& files) {
+  store::StudyStore store = opened(database);
+  sign_with_files(store, database, files);
+  return store;
+}
+
+void add_signing_options(CLI::App& command, SigningFiles& files) {
+  command.add_option("--station-file", files.station,
+                     "This station's file (default: the one beside the database, or here)");
+  add_key_option(command, files.key, "The investigator's key, in place of a station's file");
+  add_accept_loss_option(command, files.accept_loss);
+}
+
+// Participants.
 
 struct PeopleArguments {
   fs::path database;
+  SigningFiles files;
   std::string participant;
   std::string reason;
   std::string with;
   std::string deviation;
   std::string text;
   bool after_outcomes = false;
+  bool keep_data = false;
+  bool erase = false;
+  bool erase_safety = false;
 };
 
 std::string place_of(const PeopleArguments& arguments) {
@@ -59,7 +77,7 @@ int session_of(const store::StudyStore& store, const PeopleArguments& arguments)
 }
 
 int exclude(const PeopleArguments& arguments) {
-  store::StudyStore store = opened(arguments.database);
+  store::StudyStore store = opened(arguments.database, arguments.files);
   const int session = session_of(store, arguments);
   const bool seen = store.state().shows(session);
   if (seen && !arguments.after_outcomes) {
@@ -68,15 +86,13 @@ int exclude(const PeopleArguments& arguments) {
                  " cannot be excluded without notice: outcomes have been seen; give "
                  "--after-outcomes to exclude anyway, which is recorded with the reason"));
   }
-  store.exclude(
-      session, utc_now(),
-      (seen && !arguments.reason.empty() ? "after outcomes were seen: " : "") + arguments.reason);
+  store.exclude(session, utc_now(), arguments.reason);
   print(place_of(arguments) + ": excluded (session " + std::to_string(session) + ")\n");
   return 0;
 }
 
 int replace(const PeopleArguments& arguments) {
-  store::StudyStore store = opened(arguments.database);
+  store::StudyStore store = opened(arguments.database, arguments.files);
   const store::SessionRow row = sessions_of(store, arguments).back();
   store.replace(row.session, arguments.with, utc_now(), arguments.reason);
   print(place_of(arguments) + ": replaced; " + arguments.with + " inherits enrolment " +
@@ -85,7 +101,7 @@ int replace(const PeopleArguments& arguments) {
 }
 
 int note(const PeopleArguments& arguments) {
-  store::StudyStore store = opened(arguments.database);
+  store::StudyStore store = opened(arguments.database, arguments.files);
   store.note(session_of(store, arguments), utc_now(), arguments.deviation, arguments.text);
   print(place_of(arguments) + ": noted\n");
   return 0;
@@ -99,7 +115,7 @@ constexpr const char* kOtherCopies =
     "and in the server's backups\n";
 /// Goes into the withdrawal's event.
 constexpr const char* kNotErased =
-    " [not erased by this: other copies and backups; the key on a server, until the next sync]";
+    "other copies and backups; the key on a server, until the next sync";
 
 /// Removes personal data even if an interrupted withdrawal destroyed the key before.
 bool remove_person(const PeopleArguments& arguments) {
@@ -107,12 +123,18 @@ bool remove_person(const PeopleArguments& arguments) {
   return is_there(path) && store::PersonalData(path).remove(arguments.participant);
 }
 
-std::vector<int> not_withdrawn(const store::StudyStore& store, const std::string& participant) {
+/// The sessions of a participant that something holds for.
+std::vector<int> those_with(const store::StudyStore& store, const std::string& participant,
+                            bool (*holds)(const store::SessionRow&)) {
   std::vector<int> sessions;
   for (const store::SessionRow& row : store.sessions_of(participant)) {
-    if (!row.withdrawn) sessions.push_back(row.session);
+    if (holds(row)) sessions.push_back(row.session);
   }
   return sessions;
+}
+
+std::vector<int> not_erased(const store::StudyStore& store, const std::string& participant) {
+  return those_with(store, participant, [](const store::SessionRow& row) { return !row.erased; });
 }
 
 /// Destroys the keys of these sessions, and what an earlier call left of keys in the log.
@@ -121,26 +143,50 @@ std::vector<int> not_withdrawn(const store::StudyStore& store, const std::string
 std::string destroy_keys(store::StudyStore& store, const std::vector<int>& sessions,
                          const PeopleArguments& arguments) {
   try {
-    store.withdraw(sessions, utc_now(),
-                   arguments.reason.empty() ? "" : arguments.reason + kNotErased);
+    store.withdraw(sessions, utc_now(), arguments.reason, store::Kept::safety_record, kNotErased);
   } catch (const StoreError& error) {
-    if (!not_withdrawn(store, arguments.participant).empty()) throw;
+    if (!not_erased(store, arguments.participant).empty()) throw;
     return error.what();
   }
   return "";
 }
 
-int withdraw(const PeopleArguments& arguments) {
+int keep_data(const PeopleArguments& arguments) {
+  store::StudyStore store = opened(arguments.database, arguments.files);
+  static_cast<void>(sessions_of(store, arguments));  // throws if there are none
+  const std::vector<int> sessions = those_with(
+      store, arguments.participant, [](const store::SessionRow& row) { return !row.withdrawn; });
+  if (sessions.empty()) throw StoreError(one_line(place_of(arguments) + " has already withdrawn"));
+  store.withdraw(sessions, utc_now(), arguments.reason, store::Kept::data);
+  print(place_of(arguments) +
+        ": withdrawn; takes no further part, and the data stay: they are analysed as the study "
+        "says, and reports say how many let them be used\n"
+        "to erase them later, run the same command with --erase\n");
+  return 0;
+}
+
+int erase_safety(const PeopleArguments& arguments) {
+  store::StudyStore store = opened(arguments.database, arguments.files);
+  std::vector<int> sessions;
+  for (const store::SessionRow& row : sessions_of(store, arguments)) {
+    if (store.wrapped_keys(row.session).safety) sessions.push_back(row.session);
+  }
+  if (sessions.empty()) {
+    throw StoreError(one_line(place_of(arguments) + ": the safety record is already erased"));
+  }
+  store.withdraw(sessions, utc_now(), "", store::Kept::nothing, kNotErased);
+  print(place_of(arguments) + ": the texts of the safety record cannot be read again by anybody\n" +
+        kOtherCopies);
+  return 0;
+}
+
+int erase(const PeopleArguments& arguments) {
   std::error_code none;
   const auto log_size = fs::file_size(arguments.database.string() + "-wal", none);
   const bool had_log = !none && log_size > 0;  // an earlier withdrawal may have left its key there
-  if (arguments.reason.empty()) {
-    throw StoreError(place_of(arguments) +
-                     ": a withdrawal needs a reason, which is recorded; give one with --reason");
-  }
-  store::StudyStore store = opened(arguments.database);
+  store::StudyStore store = opened(arguments.database, arguments.files);
   const bool has_session = !store.sessions_of(arguments.participant).empty();
-  const std::vector<int> sessions = not_withdrawn(store, arguments.participant);
+  const std::vector<int> sessions = not_erased(store, arguments.participant);
   // The key first: a fault of the file of personal data must not prevent a withdrawal.
   std::string left = has_session ? destroy_keys(store, sessions, arguments) : "";
   bool removed = false;
@@ -160,21 +206,39 @@ int withdraw(const PeopleArguments& arguments) {
   }
   if (!has_session) static_cast<void>(sessions_of(store, arguments));  // throws
   if (sessions.empty() && !removed && !had_log) {
-    throw StoreError(one_line(place_of(arguments) + " has already withdrawn"));
+    throw StoreError(
+        one_line(place_of(arguments) + " has already withdrawn, and the data are erased"));
   }
   print(place_of(arguments) +
-        ": withdrawn; this person's sealed data cannot be read again by anybody" +
+        ": withdrawn; this person's sealed data cannot be read again by anybody, but for the "
+        "safety record" +
         (removed ? ", and the personal data are removed\n" : "\n") +
         (store.stations() > 0 ? "this is a merged database: withdraw at the station too\n" : "") +
         kOtherCopies);
   return 0;
 }
 
+int withdraw(const PeopleArguments& arguments) {
+  if (int{arguments.keep_data} + int{arguments.erase} + int{arguments.erase_safety} != 1) {
+    throw UsageError(
+        "withdraw: give --reason, and --keep-data (the person takes no further part, the data "
+        "stay), --erase (the data are destroyed, the safety record stays) or --erase-safety (when "
+        "its years have passed); ask the person which");
+  }
+  if (arguments.erase_safety) return erase_safety(arguments);
+  if (arguments.reason.empty()) {
+    throw StoreError(place_of(arguments) +
+                     ": a withdrawal needs a reason, which is recorded; give one with --reason");
+  }
+  return arguments.erase ? erase(arguments) : keep_data(arguments);
+}
+
 // The study.
 
 struct UnblindArguments {
   fs::path database;
-  fs::path key;
+  SigningFiles files;
+  std::string participant;
   std::string reason;
   bool interim = false;
 };
@@ -190,8 +254,14 @@ std::string left_open(const store::StudyStore& store) {
   return participants;
 }
 
-int close(const fs::path& database) {
-  store::StudyStore store = opened(database);
+struct CloseArguments {
+  fs::path database;
+  SigningFiles files;
+};
+
+int close(const CloseArguments& arguments) {
+  const fs::path& database = arguments.database;
+  store::StudyStore store = opened(database, arguments.files);
   const std::string open = left_open(store);
   store.close_study(utc_now());
   if (!open.empty()) {
@@ -206,8 +276,18 @@ int close(const fs::path& database) {
 
 int unblind(const UnblindArguments& arguments) {
   store::StudyStore store = opened(arguments.database);
-  // Outcomes cannot be shown without the key: check it before the look is recorded.
-  static_cast<void>(key_of_database(store, arguments.database, arguments.key));
+  // Outcomes cannot be shown without the key: it signs that they are looked at.
+  sign_with_files(store, arguments.database,
+                  {.key = key_path_for(arguments.database, arguments.files.key),
+                   .station = {},
+                   .accept_loss = arguments.files.accept_loss});
+  if (!arguments.participant.empty()) {
+    store.look_at(arguments.participant, utc_now(), arguments.reason);
+    print(arguments.database.string() + ": the look at participant " + arguments.participant +
+          " is recorded; `touchtrial export --participant " + arguments.participant +
+          " --key KEY` shows the outcomes\n");
+    return 0;
+  }
   store.unblind(utc_now(), arguments.reason, arguments.interim);
   print(arguments.database.string() + ": unblinded" +
         (arguments.interim ? " for an interim look\n" : "\n"));
@@ -230,6 +310,7 @@ PeopleCommand people_command(CLI::App& program, Action& action, const char* name
   auto arguments = std::make_shared<PeopleArguments>();
   CLI::App* command = program.add_subcommand(name, meaning);
   add_database_argument(*command, arguments->database);
+  add_signing_options(*command, arguments->files);
   command->add_option("--participant", arguments->participant, "Participant id")->required();
   command->callback([=, &action] { action = [=] { return work(*arguments); }; });
   return {command, arguments};
@@ -252,8 +333,21 @@ void add_people_commands(CLI::App& program, Action& action) {
   add_reason(*replaced.command, replaced.arguments->reason);
   const PeopleCommand withdrawn =
       people_command(program, action, "withdraw",
-                     "Make a participant's sealed data unreadable, for ever", withdraw);
-  add_reason(*withdrawn.command, withdrawn.arguments->reason);
+                     "A participant takes no further part; keep the data or erase them", withdraw);
+  CLI::Option* reason =
+      withdrawn.command->add_option("--reason", withdrawn.arguments->reason, "Why; recorded");
+  withdrawn.command
+      ->add_flag("--keep-data", withdrawn.arguments->keep_data,
+                 "The data stay, and are analysed as the study says")
+      ->needs(reason);
+  withdrawn.command
+      ->add_flag("--erase", withdrawn.arguments->erase,
+                 "Make the sealed data unreadable for ever, and remove the personal data; the "
+                 "safety record stays")
+      ->needs(reason);
+  withdrawn.command->add_flag("--erase-safety", withdrawn.arguments->erase_safety,
+                              "Make the safety record of an erased person unreadable too, when the "
+                              "study's years have passed");
   const PeopleCommand noted = people_command(
       program, action, "note", "Record a remark or a deviation from the protocol", note);
   noted.command->add_option("--deviation", noted.arguments->deviation, "Code of the deviation");
@@ -261,10 +355,11 @@ void add_people_commands(CLI::App& program, Action& action) {
 }
 
 void add_close_command(CLI::App& program, Action& action) {
-  auto database = std::make_shared<fs::path>();
+  auto arguments = std::make_shared<CloseArguments>();
   CLI::App* command = program.add_subcommand("close", "End collection: no session can be added");
-  add_database_argument(*command, *database);
-  command->callback([=, &action] { action = [=] { return close(*database); }; });
+  add_database_argument(*command, arguments->database);
+  add_signing_options(*command, arguments->files);
+  command->callback([=, &action] { action = [=] { return close(*arguments); }; });
 }
 
 void add_unblind_command(CLI::App& program, Action& action) {
@@ -273,9 +368,15 @@ void add_unblind_command(CLI::App& program, Action& action) {
       "unblind", "Record that outcomes are looked at; report then shows them");
   add_database_argument(*command, arguments->database);
   add_reason(*command, arguments->reason);
-  command->add_flag("--interim", arguments->interim,
-                    "Look at the sessions that have ended, before collection is closed");
-  add_key_option(*command, arguments->key);
+  CLI::Option* interim =
+      command->add_flag("--interim", arguments->interim,
+                        "Look at the sessions that have ended, before collection is closed");
+  command
+      ->add_option("--participant", arguments->participant,
+                   "Look at this participant's outcomes alone, at any time")
+      ->excludes(interim);
+  add_key_option(*command, arguments->files.key);
+  add_accept_loss_option(*command, arguments->files.accept_loss);
   command->callback([=, &action] { action = [=] { return unblind(*arguments); }; });
 }
 

@@ -53,6 +53,11 @@ void add_session_options(CLI::App& command, RunOptions& options) {
   auto* file =
       command.add_option("--station-file", options.station_file,
                          "File of this station (default: <study>.station beside the pack)");
+  command.add_option_function<std::string>(
+      "--heads", [&options](const std::string& folder) { options.heads.folder = folder; },
+      "Folder of the second head file, on another disk (default: that of the last time)");
+  add_accept_loss_option(command, options.heads.accept_loss);
+  add_passphrase_option(command);
   command.add_flag("--pilot", options.pilot,
                    "A pilot session, never pooled; needs a database of its own");
   command

@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/heads.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -75,11 +76,12 @@ int simulate(const SimulateArguments& arguments) {
   prepare_simulated_pack(key);
   const engine::Pack pack(key.pack_folder);
   store::StudyStore store = store::StudyStore::create(
-      arguments.database, session::commitment_of(key, pack, true, false), 0ns);
+      arguments.database, session::commitment_of(key, pack, true, false), 0ns, key.signer());
   design::save_study_key(key_path_for(arguments.database, {}), key);
   const simulation::SimulationReport report = simulation::simulate_study(
       key, pack, subject, arguments.options, store, progress_bar("simulating"));
   if (!arguments.keep_blind) end_collection(store);
+  make_head(store, arguments.database, key.signer());
   print(summary_of(arguments, report));
   return 0;
 }

@@ -101,7 +101,7 @@ void add_stimuli_sheet_command(CLI::App& stimuli, Action& action) {
   add_study_argument(*command, arguments->study);
   command->add_option("-o,--output", arguments->output, "PNG, PDF or HTML file to write")
       ->required();
-  command->add_option("--key", arguments->key, "Key of the study (default: beside the pack)");
+  add_key_option(*command, arguments->key, "Key of the study (default: beside the pack)");
   add_pack_option(*command, arguments->pack);
   command->callback([=, &action] { action = [=] { return draw_sheet(*arguments); }; });
 }

@@ -5,8 +5,15 @@
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/public_keys.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <system_error>
 
 #include <spdlog/spdlog.h>
 
@@ -27,7 +34,7 @@ design::StudyKey key_of_database(const store::StudyStore& store,
     throw FileError("a study on a server has no key beside it; name the study's key with --key");
   }
   const std::filesystem::path path = key_path_for(database, given);
-  if (given.empty() && !is_there(path)) {
+  if (path == key_path_for(database, {}) && !is_there(path)) {
     throw FileError(path.string() + ": there is no key beside the database; name it with --key");
   }
   design::StudyKey key = design::load_study_key(path);
@@ -38,6 +45,58 @@ design::StudyKey key_of_database(const store::StudyStore& store,
                             one_line(collect::study_name(database.string())) + ": " + wrong.what());
   }
   return key;
+}
+
+namespace {
+
+/// The file of the database's station in one of the folders; empty if there is none.
+/// \param damaged  gets why files could not be read
+std::optional<design::StationKey> station_key_in(std::span<const std::filesystem::path> folders,
+                                                 const store::StudyCommitment& commitment,
+                                                 std::string& damaged) {
+  if (!commitment.station) return std::nullopt;
+  for (const std::filesystem::path& folder : folders) {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+      if (entry.path().extension() != ".station") continue;
+      try {
+        design::StationKey key = design::load_station_key(entry.path());
+        if (key.signer().public_half() == commitment.station->key) return key;
+      } catch (const Error& error) {
+        damaged += std::string("; ") + error.what();
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// \throws as sign_with_files
+Signer signer_for(const store::StudyStore& store, const std::filesystem::path& database,
+                  const SigningFiles& files) {
+  if (!files.station.empty()) return design::load_station_key(files.station).signer();
+  if (!files.key.empty() || is_there(key_path_for(database, {}))) {
+    return key_of_database(store, database, files.key).signer();
+  }
+  const std::array folders = {database.has_parent_path() ? database.parent_path() : ".",
+                              std::filesystem::path(".")};
+  std::string damaged;
+  if (const auto key = station_key_in(folders, store.commitment(), damaged)) {
+    return key->signer();
+  }
+  throw StoreError(one_line(database.string()) +
+                   ": what is recorded is signed, and neither the database's folder nor this one "
+                   "has its station's file; name it with --station-file, or the investigator's key "
+                   "with --key" +
+                   one_line(damaged));
+}
+
+}  // namespace
+
+void sign_with_files(store::StudyStore& store, const std::filesystem::path& database,
+                     const SigningFiles& files) {
+  const Signer signer = signer_for(store, database, files);
+  store.sign_with(signer);
+  keep_heads(store, database, signer, {.accept_loss = files.accept_loss}, HeadUse::if_there);
 }
 
 design::PackPlace pack_place_for(const std::filesystem::path& study_file,

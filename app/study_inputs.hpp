@@ -1,6 +1,7 @@
 /// \file What several commands read: the keys of databases, the packs of studies, subject models.
 #pragma once
 
+#include "app/heads.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/simulation/subject_model.hpp"
@@ -22,6 +23,23 @@ namespace touchtrial::app {
 [[nodiscard]] design::StudyKey key_of_database(const store::StudyStore& store,
                                                const std::filesystem::path& database,
                                                const std::filesystem::path& given);
+
+/// What a user named to sign with; empty paths: nothing.
+struct SigningFiles {
+  std::filesystem::path key;
+  std::filesystem::path station;
+  std::string accept_loss;  ///< as HeadOptions::accept_loss
+};
+
+/// Lets somebody record on the file's chain, and signs what is recorded: with the investigator's
+/// key or the station's file that the user named; otherwise with the key beside the database, or
+/// with the file of the database's station in the folder of the database or in the current folder.
+/// If the database has a head file, it is kept.
+/// \throws FileError if a named file is missing or damaged
+/// \throws StoreError with the remedy if no file is there, or it is not the database's
+/// \throws as keep_heads
+void sign_with_files(store::StudyStore& store, const std::filesystem::path& database,
+                     const SigningFiles& files);
 
 /// The pack and key of a prepared study.
 /// \param pack  the pack's folder; empty: `<study>.pack` beside the study file

@@ -242,9 +242,9 @@ void add_sync_command(CLI::App& program, Action& action) {
                    "postgresql://USER@HOST/DATABASE, without a password, which comes from "
                    "~/.pgpass, PGPASSWORD or a service file")
       ->required();
-  command->add_option("--key", arguments->key,
-                      "Key of the study, to open the sealed ends of sessions (default: DB.key, if "
-                      "it exists)");
+  add_key_option(*command, arguments->key,
+                 "Key of the study, to open the sealed ends of sessions (default: DB.key, if it "
+                 "exists)");
   command->add_flag("--dry-run", arguments->dry_run,
                     "Show what would be pushed, and change nothing");
   add_json_flag(*command, arguments->json);

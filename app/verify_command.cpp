@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace touchtrial::app {
 namespace {
@@ -22,6 +23,7 @@ struct VerifyArguments {
   fs::path key;
   fs::path pack;
   std::string head;
+  std::vector<fs::path> heads;
   bool json = false;
 };
 
@@ -46,6 +48,7 @@ int verify(const VerifyArguments& arguments) {
   const analysis::StudyFiles files{.database = arguments.database,
                                    .key = key_for(arguments),
                                    .key_named = !arguments.key.empty(),
+                                   .heads = arguments.heads,
                                    .pack = arguments.pack};
   const analysis::Verification verification =
       analysis::verify_files(files, head, [](const fs::path& database) {
@@ -63,11 +66,13 @@ void add_verify_command(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand(
       "verify", "Check chain, seal, schedule, payloads and pack against each other");
   add_study_place_argument(*command, arguments->database);
-  command->add_option("--key", arguments->key, "Key of the study (default: DB.key, if it exists)");
+  add_key_option(*command, arguments->key, "Key of the study (default: DB.key, if it exists)");
   command->add_option("--pack", arguments->pack,
                       "Pack of the study (default: the one that the key names)");
   command->add_option("--head", arguments->head,
                       "A former head of the file's chain, which the chain must still contain");
+  command->add_option("--head-file", arguments->heads,
+                      "A head file beside DB.head, whose knowledge the database must have");
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return verify(*arguments); }; });
 }

@@ -11,12 +11,12 @@
 namespace touchtrial {
 namespace {
 
-void update_with_number(crypto_hash_sha256_state& state, std::uint64_t number) {
-  std::array<std::uint8_t, 8> little_endian{};
-  for (std::size_t i = 0; i < little_endian.size(); ++i) {
-    little_endian[i] = static_cast<std::uint8_t>(number >> (8 * i));
+std::array<std::uint8_t, 8> little_endian(std::uint64_t number) {
+  std::array<std::uint8_t, 8> bytes{};
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bytes[i] = static_cast<std::uint8_t>(number >> (8 * i));
   }
-  crypto_hash_sha256_update(&state, little_endian.data(), little_endian.size());
+  return bytes;
 }
 
 }  // namespace
@@ -24,6 +24,12 @@ void update_with_number(crypto_hash_sha256_state& state, std::uint64_t number) {
 Digest sha256(ByteView bytes) {
   Digest digest{};
   crypto_hash_sha256(digest.data(), bytes.data(), bytes.size());
+  return digest;
+}
+
+Digest blake2b(ByteView bytes) {
+  Digest digest{};
+  crypto_generichash(digest.data(), digest.size(), bytes.data(), bytes.size(), nullptr, 0);
   return digest;
 }
 
@@ -48,31 +54,47 @@ Digest sha256_of_file(const std::filesystem::path& path) {
 }
 
 struct FieldHasher::State {
+  explicit State(HashFunction chosen) : function(chosen) {
+    crypto_hash_sha256_init(&sha);
+    crypto_generichash_init(&blake, nullptr, 0, Digest{}.size());
+  }
+  void add(ByteView bytes) {
+    if (function == HashFunction::sha256) {
+      crypto_hash_sha256_update(&sha, bytes.data(), bytes.size());
+    } else {
+      crypto_generichash_update(&blake, bytes.data(), bytes.size());
+    }
+  }
+
+  HashFunction function;
   crypto_hash_sha256_state sha;
+  crypto_generichash_state blake;
 };
 
-FieldHasher::FieldHasher() : state_(std::make_unique<State>()) {
-  crypto_hash_sha256_init(&state_->sha);
-}
+FieldHasher::FieldHasher(HashFunction function) : state_(std::make_unique<State>(function)) {}
 FieldHasher::~FieldHasher() = default;
 FieldHasher::FieldHasher(FieldHasher&&) noexcept = default;
 FieldHasher& FieldHasher::operator=(FieldHasher&&) noexcept = default;
 
 FieldHasher& FieldHasher::add(ByteView field) {
-  update_with_number(state_->sha, field.size());
-  crypto_hash_sha256_update(&state_->sha, field.data(), field.size());
+  state_->add(little_endian(field.size()));
+  state_->add(field);
   return *this;
 }
 
 FieldHasher& FieldHasher::add(std::int64_t number) {
-  update_with_number(state_->sha, sizeof number);
-  update_with_number(state_->sha, static_cast<std::uint64_t>(number));
+  state_->add(little_endian(sizeof number));
+  state_->add(little_endian(static_cast<std::uint64_t>(number)));
   return *this;
 }
 
 Digest FieldHasher::finish() {
   Digest digest{};
-  crypto_hash_sha256_final(&state_->sha, digest.data());
+  if (state_->function == HashFunction::sha256) {
+    crypto_hash_sha256_final(&state_->sha, digest.data());
+  } else {
+    crypto_generichash_final(&state_->blake, digest.data(), digest.size());
+  }
   return digest;
 }
 

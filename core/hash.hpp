@@ -1,5 +1,6 @@
-/// \file SHA-256 for chains, seals and checksums; keyed BLAKE2b for tags that only the holder of
-/// the key can compute. Both by libsodium. All functions are thread-safe.
+/// \file SHA-256 for seals and checksums that other programs check too; BLAKE2b, several times as
+/// fast, for chains and traces, and with a key for tags that only its holder can compute. Both by
+/// libsodium. All functions are thread-safe.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -21,11 +22,16 @@ using Digest = std::array<std::uint8_t, 32>;
 /// \throws FileError if it cannot be read
 [[nodiscard]] Digest sha256_of_file(const std::filesystem::path& path);
 
-/// SHA-256 over a sequence of fields. Each field is preceded by its length in eight little-endian
+/// BLAKE2b-256 (RFC 7693) of one buffer.
+[[nodiscard]] Digest blake2b(ByteView bytes);
+
+enum class HashFunction { sha256, blake2b };
+
+/// Hash over a sequence of fields. Each field is preceded by its length in eight little-endian
 /// bytes, so that two different sequences never give the same input.
 class FieldHasher {
  public:
-  FieldHasher();
+  explicit FieldHasher(HashFunction function = HashFunction::sha256);
   ~FieldHasher();
   FieldHasher(FieldHasher&&) noexcept;
   FieldHasher& operator=(FieldHasher&&) noexcept;

@@ -63,6 +63,13 @@ Signature Signer::sign(ByteView message) const {
   return signature;
 }
 
+Bytes station_statement(std::string_view study_id, std::string_view name,
+                        const PublicKey& station) {
+  const Digest statement =
+      FieldHasher().add("touchtrial station 1").add(study_id).add(name).add(station).finish();
+  return {statement.begin(), statement.end()};
+}
+
 bool is_signed_by(const PublicKey& signer, ByteView message, ByteView signature) {
   return signature.size() == crypto_sign_BYTES &&
          crypto_sign_verify_detached(signature.data(), message.data(), message.size(),

@@ -47,6 +47,10 @@ class Signer {
   std::array<std::uint8_t, 64> secret_half_{};
 };
 
+/// What the investigator signs of a station: the study, the station's name, and its public half.
+[[nodiscard]] Bytes station_statement(std::string_view study_id, std::string_view name,
+                                      const PublicKey& station);
+
 [[nodiscard]] bool is_signed_by(const PublicKey& signer, ByteView message, ByteView signature);
 
 }  // namespace touchtrial

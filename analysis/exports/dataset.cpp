@@ -60,7 +60,12 @@ Meanings of_trials() {
       {"first_contact_s", {"From the moment the plane can be felt to first contact", "s"}},
       {"position", {"Place of the response among the pictures shown, from 0"}},
       {"first_position", {"Place of the first response, where it was changed once, from 0"}},
-      {"valid_in_clear", yes_or_no("Validity by what was never sealed: contact and servo health")},
+      {"valid_in_clear",
+       yes_or_no("Validity by what was never sealed: how long the plane was explored")},
+      {"contact_ok", yes_or_no("Whether the hand was at the plane long enough")},
+      {"path_ok", yes_or_no("Whether the hand moved far enough along the plane")},
+      {"force_ok", yes_or_no("Whether the hand pushed neither too lightly nor too hard")},
+      {"speed_ok", yes_or_no("Whether the hand moved neither too slowly nor too fast")},
       {"within_limits", yes_or_no("Validity by what was sealed: path, force and saturation")},
       {"limited_ticks", {"Servo ticks whose force the safety chain changed"}},
       {"samples", {"Samples in the trial's trace"}},
@@ -82,6 +87,7 @@ Meanings of_sessions() {
          {"open", "not ended"}}}},
       {"excluded", yes_or_no("Whether the session was excluded")},
       {"withdrawn", yes_or_no("Whether the participant withdrew")},
+      {"erased", yes_or_no("Whether the participant had the data erased")},
       {"pilot", yes_or_no("Whether the session is a pilot")},
       {"simulated", yes_or_no("Whether the participant was simulated and is no person")},
       {"counted_session", yes_or_no("Whether the session's trials enter the report")},
@@ -101,6 +107,8 @@ Meanings of_collection() {
       {"stop_reason", {"Why the session was stopped"}},
       {"exclusion_reason", {"Why the session was excluded"}},
       {"replacement_reason", {"Why the participant was replaced"}},
+      {"withdrawal_reason", {"Why the participant withdrew"}},
+      {"largest_force_n", {"Largest force sent in the session's presentations", "N"}},
       {"device_serial", {"Serial number of the haptic device"}},
       {"device_model", {"Model of the haptic device, as it tells it"}},
       {"device_firmware", {"Firmware of the haptic device, as it tells it"}},
@@ -188,13 +196,14 @@ std::string about_study(const DatasetSource& study) {
       "participant; {} that count{}.\n\n",
       commitment.program_version, commitment.protocol, commitment.positions,
       commitment.scored_trials, counted(counts, "completed session"), counts == 1 ? "s" : "");
-  text += study.outcomes != nullptr
-              ? "Participants who withdrew are not in it. A trial enters the report where "
-                "`counted` is 1: its session was completed and not excluded, it is scored, and it "
-                "ended. A trial without a response counts as wrong.\n\n"
-              : "Exported before unblinding: what was presented and answered, and when, is "
-                "sealed, and practice, lead-ins and catch trials cannot be told from scored "
-                "trials.\n\n";
+  text +=
+      study.outcomes != nullptr
+          ? "Participants who had their data erased are not in it. A trial enters the report where "
+            "`counted` is 1: its session was completed and not excluded, it is scored, and it "
+            "ended. A trial without a response counts as wrong.\n\n"
+          : "Exported before unblinding: what was presented and answered, and when, is "
+            "sealed, and practice, lead-ins and catch trials cannot be told from scored "
+            "trials.\n\n";
   return text;
 }
 

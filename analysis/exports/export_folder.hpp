@@ -36,13 +36,12 @@ inline constexpr const char* kExportMark = ".touchtrial-export.json";
 
 /// Writes every file atomically into a folder, which it creates if necessary. Then removes the
 /// files that the last export of this format wrote there and that this export does not have (for
-/// example, those of a participant who has since withdrawn). A mark in the folder keeps the list of
-/// files. The mark is updated before the first file is written, so that an export that was cut
-/// short can be repeated. Concurrent files are written last, as many at a time as there are cores.
-/// \return the files, in the order given
-/// \throws FileError if the folder or a file cannot be written
-/// \throws FileError, before anything is written, if the folder holds the export of another study,
-/// or a file with one of these names that no export of this study wrote
+/// example, those of a participant whose data were erased since). A mark in the folder keeps the
+/// list of files. The mark is updated before the first file is written, so that an export that was
+/// cut short can be repeated. Concurrent files are written last, as many at a time as there are
+/// cores. \return the files, in the order given \throws FileError if the folder or a file cannot be
+/// written \throws FileError, before anything is written, if the folder holds the export of another
+/// study, or a file with one of these names that no export of this study wrote
 std::vector<std::filesystem::path> write_export(const std::filesystem::path& folder,
                                                 const ExportMark& mark,
                                                 const std::vector<ExportFile>& files);

@@ -68,16 +68,16 @@ std::string psych_ds_readme(const DatasetSource& study) {
          "`session`. `dataset_description.json` says what each column means.\n";
 }
 
-/// The table of participants.csv without participants who withdrew. Columns that have the name of a
-/// column of trials.csv but another meaning are renamed, because a variable of a dataset has one
-/// meaning.
+/// The table of participants.csv without participants whose data were erased. Columns that have the
+/// name of a column of trials.csv but another meaning are renamed, because a variable of a dataset
+/// has one meaning.
 DataTable people_table(const store::StudyStore& store, const Collection& collection) {
   DataTable table = participants_table(store, collection);
   std::replace(table.columns.begin(), table.columns.end(), std::string("state"),
                std::string("session_state"));
   std::replace(table.columns.begin(), table.columns.end(), std::string("counted"),
                std::string("counted_session"));
-  const auto column = std::find(table.columns.begin(), table.columns.end(), "withdrawn");
+  const auto column = std::find(table.columns.begin(), table.columns.end(), "erased");
   const auto at = static_cast<std::size_t>(column - table.columns.begin());
   std::erase_if(table.rows, [&](const std::vector<DataCell>& row) {
     return row[at] == DataCell(std::int64_t{1});

@@ -59,16 +59,10 @@ store::InterruptionDetail detail_of(const store::OpenedEvent& opened) {
   return store::interruption_from_json(opened.secret);
 }
 
-/// Events of the file's chain have no sealed part.
-store::OpenedEvent whole(const store::Event& event, const SecretKey& own) {
-  if (belongs_to_file_chain(event.kind)) return {.event = event, .secret = {}};
-  return whole_event(event, own);
-}
-
-int session_of(const store::Event& event) {
-  return event.kind == store::EventKind::participant_noted
-             ? store::note_from_json(event.body).session
-             : event.session;
+store::OpenedEvent whole(const store::Event& event, const store::SessionRow& row,
+                         const store::PersonKeys& keys) {
+  if (!belongs_to_file_chain(event.kind)) return whole_event(event, *keys.participant);
+  return {.event = readable_event(event, row, keys), .secret = {}};
 }
 
 /// Removes carriage returns, because all files of an export end their lines with single line feeds.
@@ -127,29 +121,28 @@ std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
   return write_export(folder, {commitment.study, commitment.study_id, "csv"}, files);
 }
 
-std::vector<std::filesystem::path> export_events(const store::StudyStore& store,
-                                                 const design::StudyKey& key,
-                                                 const Outcomes& outcomes,
-                                                 const std::filesystem::path& folder) {
+std::vector<ExportFile> event_files(const store::StudyStore& store, const design::StudyKey& key,
+                                    const Outcomes& outcomes, const std::string& prefix) {
   std::map<int, const store::SessionRow*> shown;
   for (const SessionOutcome& session : outcomes.sessions) shown[session.row.session] = &session.row;
-  const std::map<int, SecretKey> keys = participant_keys(store, key);
+  const std::map<int, store::PersonKeys> keys = person_keys(store, key);
   DataTable table{{"participant", "session", "event", "kind", "at_s", "body", "safety_fault",
                    "device_fault", "flight", "simulated"},
                   {}};
   std::vector<ExportFile> files;
   store.for_each_of(kKinds, [&](const store::Event& stored) {
-    const auto session = shown.find(session_of(stored));
-    const auto own = keys.find(session_of(stored));
-    if (session == shown.end() || own == keys.end()) return;
+    const auto session = shown.find(store::session_about(stored));
+    if (session == shown.end()) return;
     const store::SessionRow& row = *session->second;
-    const store::OpenedEvent opened = whole(stored, own->second);
+    const store::PersonKeys& own = keys.at(row.session);
+    if (!own.participant) return;
+    const store::OpenedEvent opened = whole(stored, row, own);
     const store::Event& event = opened.event;
     store::InterruptionDetail detail = detail_of(opened);
     std::string flight;
     if (detail.ticks > 0) {
-      flight = fmt::format("{}flight_{}_{}.csv", row.simulated ? "SIMULATED_" : "", row.session,
-                           event.sequence);
+      flight = fmt::format("{}{}flight_{}_{}.csv", prefix, row.simulated ? "SIMULATED_" : "",
+                           row.session, event.sequence);
       files.push_back(flight_file(flight, std::move(detail.flight)));
     }
     table.rows.push_back({row.participant, std::int64_t{row.session}, event.sequence,
@@ -157,7 +150,15 @@ std::vector<std::filesystem::path> export_events(const store::StudyStore& store,
                           detail.safety_fault, detail.device_fault, flight,
                           std::int64_t{row.simulated}});
   });
-  files.insert(files.begin(), text_file("events.csv", csv_text(table)));
+  files.insert(files.begin(), text_file(prefix + "events.csv", csv_text(table)));
+  return files;
+}
+
+std::vector<std::filesystem::path> export_events(const store::StudyStore& store,
+                                                 const design::StudyKey& key,
+                                                 const Outcomes& outcomes,
+                                                 const std::filesystem::path& folder) {
+  const std::vector<ExportFile> files = event_files(store, key, outcomes);
   const store::StudyCommitment& commitment = store.commitment();
   return write_export(folder, {commitment.study, commitment.study_id, "events"}, files);
 }

@@ -2,10 +2,12 @@
 /// "Exports".
 #pragma once
 
+#include "analysis/exports/export_folder.hpp"
 #include "analysis/outcomes.hpp"
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace touchtrial::analysis {
@@ -23,9 +25,8 @@ std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
                                               const std::filesystem::path& folder);
 
 /// Writes events.csv and one file for each flight record. Contains the sessions whose outcomes may
-/// be shown, without those of participants who withdrew. Requires unblinding, because the forces
-/// before a fault can tell textures apart.
-/// \param outcomes  of this store, opened with `key`
+/// be shown, without those of participants whose data were erased. Requires unblinding, because the
+/// forces before a fault can tell textures apart. \param outcomes  of this store, opened with `key`
 /// \return the files, in the order written
 /// \throws VerificationError, naming the event, if a sealed part does not open
 /// \throws FileError if the folder or a file cannot be written
@@ -33,6 +34,14 @@ std::vector<std::filesystem::path> export_events(const store::StudyStore& store,
                                                  const design::StudyKey& key,
                                                  const Outcomes& outcomes,
                                                  const std::filesystem::path& folder);
+
+/// The files that export_events writes.
+/// \param prefix  of every file's name
+/// \throws VerificationError, naming the event, if a sealed part does not open
+[[nodiscard]] std::vector<ExportFile> event_files(const store::StudyStore& store,
+                                                  const design::StudyKey& key,
+                                                  const Outcomes& outcomes,
+                                                  const std::string& prefix = {});
 
 /// Writes study.json: the report (before unblinding, the quality report) and the tables of the CSV
 /// export, with their columns as keys. A missing value is null; times are in seconds. Arguments and

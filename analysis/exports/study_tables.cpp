@@ -54,6 +54,13 @@ constexpr RecordColumn kRecordColumns[] = {
      [](const SessionRecord& record) -> DataCell { return record.exclusion_reason; }},
     {"replacement_reason",
      [](const SessionRecord& record) -> DataCell { return record.replacement_reason; }},
+    {"withdrawal_reason",
+     [](const SessionRecord& record) -> DataCell { return record.withdrawal_reason; }},
+    {"largest_force_n",
+     [](const SessionRecord& record) -> DataCell {
+       if (!record.largest_force_n) return std::monostate{};
+       return *record.largest_force_n;
+     }},
     {"device_serial", [](const SessionRecord& record) -> DataCell { return record.device_serial; }},
     {"device_model", station_text<&store::StationRecord::model>},
     {"device_firmware", station_text<&store::StationRecord::firmware>},
@@ -71,7 +78,7 @@ constexpr RecordColumn kRecordColumns[] = {
 void add_record(std::vector<DataCell>& row, const SessionRecord& record, bool unblinded) {
   for (const RecordColumn& column : kRecordColumns) {
     if (column.after_unblinding && !unblinded) continue;
-    if (record.row.withdrawn) {
+    if (record.row.erased) {
       row.emplace_back(std::monostate{});
     } else {
       row.push_back(column.value(record));
@@ -81,13 +88,14 @@ void add_record(std::vector<DataCell>& row, const SessionRecord& record, bool un
 
 std::vector<DataCell> session_cells(const store::SessionRow& row, const store::StudyStore& store,
                                     const store::StudyState& state) {
-  const bool shown = !state.unblinded || state.shows(row.session);
+  const bool shown = !state.unblinded || state.reports(row.session);
   return {row.participant,
           std::int64_t{row.session},
           std::int64_t{row.enrolment},
           std::string(text_of(row.state)),
           flag(row.excluded),
           flag(row.withdrawn),
+          flag(row.erased),
           flag(row.pilot),
           flag(row.simulated),
           flag(shown && session_counts(row, store.commitment())),
@@ -150,8 +158,8 @@ DataTable study_table(const store::StudyStore& store, const std::optional<Outcom
 }
 
 DataTable participants_table(const store::StudyStore& store, const Collection& collection) {
-  DataTable table{{"participant", "session", "enrolment", "state", "excluded", "withdrawn", "pilot",
-                   "simulated", "counted", "device", "replaced_by", "shown"},
+  DataTable table{{"participant", "session", "enrolment", "state", "excluded", "withdrawn",
+                   "erased", "pilot", "simulated", "counted", "device", "replaced_by", "shown"},
                   {}};
   std::map<int, const SessionRecord*> records;
   for (const SessionRecord& record : collection.sessions) records[record.row.session] = &record;

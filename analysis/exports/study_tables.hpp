@@ -18,8 +18,8 @@ namespace touchtrial::analysis {
                                     const Collection& collection);
 
 /// One row for each session; `counted` is 1 if the session's trials enter the report. For
-/// participants who withdrew, the cells about practice, resumptions, reasons and equipment are
-/// empty.
+/// participants whose data were erased, the cells about practice, resumptions, reasons and
+/// equipment are empty.
 [[nodiscard]] DataTable participants_table(const store::StudyStore& store,
                                            const Collection& collection);
 

@@ -89,14 +89,21 @@ DataCell limited_ticks_of(const TrialView& trial) {
   return *trial.outcome->measures->limited_ticks;
 }
 
+/// Whether the hand was within one of its windows; missing without a trace.
+template <bool store::HandWindows::*kWindow>
+DataCell within(const TrialView& trial) {
+  if (!trial.row.has_trace()) return std::monostate{};
+  return flag(trial.row.hand.*kWindow);
+}
+
 /// The verdict of the validity rule, which judges the trace; missing without a trace. Before
 /// unblinding, the verdict of the part of the rule that is in clear.
 DataCell validity_of(const TrialView& trial) {
-  if (trial.row.seconds == 0) return std::monostate{};
+  if (!trial.row.has_trace()) return std::monostate{};
   return flag(trial.outcome != nullptr ? trial.outcome->valid() : trial.row.valid);
 }
 
-constexpr std::array<TrialColumn, 32> kTrialColumns{{
+constexpr std::array<TrialColumn, 36> kTrialColumns{{
     {"participant", false, [](const TrialView& t) -> DataCell { return t.participant; }},
     {"session", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.session}; }},
     {"trial", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.trial}; }},
@@ -128,6 +135,10 @@ constexpr std::array<TrialColumn, 32> kTrialColumns{{
     {"position", true, number_of<&store::TrialRow::position>},
     {"first_position", true, number_of<&store::TrialRow::first_position>},
     {"valid_in_clear", false, [](const TrialView& t) { return flag(t.row.valid); }},
+    {"contact_ok", false, within<&store::HandWindows::contact>},
+    {"path_ok", false, within<&store::HandWindows::path>},
+    {"force_ok", false, within<&store::HandWindows::force>},
+    {"speed_ok", false, within<&store::HandWindows::speed>},
     {"within_limits", true, limits_of},
     {"limited_ticks", true, limited_ticks_of},
     {"samples", true, [](const TrialView& t) -> DataCell { return t.row.samples; }},
@@ -155,7 +166,7 @@ DataTable blinded_trials(const store::StudyStore& store) {
   DataTable table = trials_header(false);
   std::map<int, store::SessionRow> shown;
   for (const store::SessionRow& session : store.sessions()) {
-    if (!session.withdrawn) shown[session.session] = session;
+    if (!session.erased) shown[session.session] = session;
   }
   for (const store::TrialRow& row : store.trials()) {
     const auto session = shown.find(row.session);

@@ -36,8 +36,8 @@ struct TrialColumn {
 /// The file name of a trial's image, as the study gives it.
 [[nodiscard]] const std::string& image_of(const Outcomes& study, const TrialOutcome& trial);
 
-/// One row for each trial, ordered by session and trial, without participants who withdrew. With
-/// outcomes, the rows are the scored trials, whether or not their session counts
+/// One row for each trial, ordered by session and trial, without participants whose data were
+/// erased. With outcomes, the rows are the scored trials, whether or not their session counts
 /// (participants_table tells). Without outcomes, the rows are all presented trials, because the
 /// seal also covers which of them were practice or lead-ins. The table then has no columns about
 /// stimuli, answers and times, and the columns that could tell stimuli apart by how they felt

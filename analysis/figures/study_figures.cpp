@@ -46,7 +46,7 @@ void add_reasons(std::vector<std::string>& lines, const ParticipantFlow& flow) {
 
 std::vector<std::string> left_out(const ParticipantFlow& flow) {
   std::vector<std::string> lines;
-  add_line(lines, flow.withdrawn, "withdrawn");
+  add_line(lines, flow.erased, "withdrawn, data erased");
   add_line(lines, flow.replaced, "replaced by somebody else");
   add_line(lines, flow.stopped, "stopped before the end");
   add_line(lines, flow.open, "session not ended");

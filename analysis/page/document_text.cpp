@@ -136,7 +136,9 @@ std::string document_text(const Document& document, std::size_t width) {
     text += section_title(section.title, document.stamp);
     for (const Block& block : section.blocks) text += std::visit(blocks, block);
   }
-  text += section_title("This report", document.stamp) + blocks(document.header);
+  if (!document.header.entries.empty()) {
+    text += section_title("This report", document.stamp) + blocks(document.header);
+  }
   if (!document.stamp.empty()) text += '\n' + document.stamp + '\n';
   return text;
 }

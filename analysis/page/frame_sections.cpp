@@ -1,5 +1,6 @@
 #include "analysis/page/frame_sections.hpp"
 
+#include "analysis/collection_records.hpp"
 #include "analysis/page/wording.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/text_figures.hpp"
@@ -47,7 +48,7 @@ void add_excluded(const ParticipantFlow& flow, FlowStep& step) {
 
 Flow flow_of(const ParticipantFlow& flow) {
   FlowStep enrolled{counted(flow.enrolled, "participant") + " enrolled"};
-  add_leaving(flow.withdrawn, "withdrew; the keys of their sealed data were destroyed", enrolled);
+  add_leaving(flow.erased, "withdrew; the keys of their sealed data were destroyed", enrolled);
   add_leaving(flow.replaced, "replaced by somebody else", enrolled);
   add_excluded(flow, enrolled);
   add_leaving(flow.stopped, "stopped before the end", enrolled);
@@ -63,7 +64,7 @@ Flow flow_of(const ParticipantFlow& flow) {
 std::string devices_of(const std::vector<SessionRecord>& sessions) {
   std::map<std::string, int> devices;
   for (const SessionRecord& one : sessions) {
-    if (one.row.withdrawn) continue;
+    if (one.row.erased) continue;
     std::string name = one.row.device;
     if (one.station && !one.station->model.empty()) name += ", " + one.station->model;
     if (!one.device_serial.empty()) name += ", serial " + one.device_serial;
@@ -141,6 +142,10 @@ std::string remark_of(const SessionRecord& one) {
                     (one.replacement_reason.empty() ? "" : ": " + one.replacement_reason));
   }
   if (!one.stop_reason.empty()) parts.push_back("stopped: " + one.stop_reason);
+  if (one.row.withdrawn) {
+    parts.push_back("withdrew, data kept" +
+                    (one.withdrawal_reason.empty() ? "" : ": " + one.withdrawal_reason));
+  }
   if (one.resumed > 0) parts.push_back("resumed " + counted(one.resumed, "time"));
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
@@ -174,10 +179,10 @@ std::optional<Table> sessions_table(const std::vector<SessionRecord>& sessions) 
   for (const SessionRecord& one : sessions) {
     if (!is_remarkable(one)) continue;
     table.rows.push_back({std::to_string(one.row.session),
-                          one.row.withdrawn ? kNoFigure : one.row.participant,
-                          one.row.withdrawn ? "withdrawn" : words_of(one.row.state),
-                          one.row.withdrawn ? kNoFigure : practice_of(one),
-                          one.row.withdrawn ? kNoFigure : remark_of(one)});
+                          one.row.erased ? kNoFigure : one.row.participant,
+                          one.row.erased ? "erased" : words_of(one.row.state),
+                          one.row.erased ? kNoFigure : practice_of(one),
+                          one.row.erased ? kNoFigure : remark_of(one)});
   }
   return table;
 }
@@ -208,6 +213,9 @@ ServoNumbers servo_numbers(const std::vector<ServoTrial>& trials) {
 Section participants_section(const Collection& collection) {
   Section section{"participants", "Participants", {}};
   section.blocks.emplace_back(flow_of(collection.flow));
+  for (const std::string& note : people_notes(collection)) {
+    section.blocks.emplace_back(Cited{note, {}});
+  }
   section.blocks.emplace_back(conditions_of(collection));
   if (auto deviations = deviations_table(collection.sessions)) {
     section.blocks.emplace_back(std::move(*deviations));

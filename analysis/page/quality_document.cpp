@@ -22,7 +22,7 @@ Table sessions_table(const SessionCounts& counts) {
   add("stopped", counts.stopped);
   add("excluded", counts.excluded);
   add("replaced", counts.replaced);
-  add("withdrawn", counts.withdrawn);
+  add("withdrawn, data erased", counts.erased);
   table.notes = {{"Withdrawn before replaced before excluded before a session's own state."}};
   return table;
 }
@@ -68,6 +68,34 @@ Table answers_table(const Collection& collection) {
        "Longest run: answers in a row that name one picture. Median time: from the moment the "
        "plane can be felt to the answer. Somebody who always presses one key shows here; what is "
        "right does not."}};
+  return table;
+}
+
+Table hands_table(const Collection& collection) {
+  Table table{"hands-by-session",
+              "Trials in which the hand was outside a window",
+              {{"session", Align::left},
+               {"with a trace"},
+               {"contact"},
+               {"path"},
+               {"force"},
+               {"speed"},
+               {"saturated"}}};
+  for (const SessionRecord& session : collection.sessions) {
+    const HandCounts& outside = session.outside;
+    if (outside.trials == 0) continue;
+    table.rows.push_back({std::to_string(session.row.session), std::to_string(outside.trials),
+                          std::to_string(outside.contact), std::to_string(outside.path),
+                          std::to_string(outside.force), std::to_string(outside.speed),
+                          session.saturated ? std::to_string(*session.saturated) : kNoFigure});
+  }
+  table.notes = {
+      {"Contact: less than 5 s at the plane, at most 3 mm above it. Path: less than 300 mm along "
+       "it. "
+       "Force: a mean push below 0.2 N or above 2 N. Speed: a mean below 50 or above 150 mm/s. "
+       "Saturated: the force was at its limit in 1% of the time in contact or more; known once the "
+       "session has ended. Somebody who does not press or does not move shows here; what was "
+       "presented does not."}};
   return table;
 }
 
@@ -122,6 +150,7 @@ Document quality_document(const QualityReport& report, const Collection& collect
                         {sessions_table(report.sessions), trials_table(report.quality)}},
                        participants_section(collection),
                        {"answers", "Answers by session", {answers_table(collection)}},
+                       {"hands", "Hands by session", {hands_table(collection)}},
                        servo_section(report, collection)};
   document.colophon = fmt::format("{}touchtrial {}, {}, event {} of the file's chain",
                                   simulated_line(report.simulated), provenance.program_version,

@@ -29,7 +29,7 @@ struct FitCounts {
   int no_response = 0;  ///< counted trials without an answer, which are left out
 };
 
-/// Counts the trials with an answer that enter accuracy (Outcomes leaves out withdrawn, excluded,
+/// Counts the trials with an answer that enter accuracy (Outcomes leaves out erased, excluded,
 /// replaced, stopped and other-kind sessions). Catch trials do not count.
 /// \param schedules  of the sessions, for their layouts
 /// \param stimuli  of the study, sorted

@@ -1,11 +1,15 @@
 #include "analysis/verification/study_files.hpp"
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/text.hpp"
 #include "protocols/store/damage.hpp"
+#include "protocols/store/head_file.hpp"
 
 #include <algorithm>
 #include <array>
 #include <system_error>
+#include <vector>
 
 namespace touchtrial::analysis {
 namespace {
@@ -102,6 +106,36 @@ void put(Verification& verification, const char* name, const Opened<File>& opene
   if (check != verification.checks.end()) *check = {name, opened.state, opened.why};
 }
 
+/// What the database lacks and its head files know. Made only where there are head files.
+void check_heads(const store::StudyStore& store, const StudyFiles& files,
+                 Verification& verification) {
+  std::vector<fs::path> heads = files.heads;
+  const fs::path own = files.database.string() + ".head";
+  if (is_there(own)) heads.insert(heads.begin(), own);
+  if (heads.empty()) return;
+  Check check{"heads", CheckState::passed, "the database has all that its head files know"};
+  try {
+    const store::StudyCommitment& commitment = store.commitment();
+    std::vector<PublicKey> signers = {commitment.investigator};
+    if (commitment.station) signers.push_back(commitment.station->key);
+    for (const fs::path& head : heads) {
+      const auto found = store::HeadFile(head).reading(signers);
+      if (!found) throw VerificationError("there is no " + one_line(head.string()));
+      if (!found->damage.empty()) {
+        verification.notes.push_back(one_line(head.string()) + ": " + found->damage);
+      }
+      const std::vector<store::Loss> missing = store::losses(found->record, store);
+      if (missing.empty()) continue;
+      throw VerificationError(one_line(head.string()) + ": " +
+                              listed(missing, "; ", &store::Loss::what));
+    }
+  } catch (const Error& error) {
+    check.state = CheckState::failed;
+    check.detail = one_line(error.what());
+  }
+  verification.checks.push_back(check);
+}
+
 Verification of_damaged(const store::DamagedStore& error) {
   constexpr std::array kOthers{"key",       "seal",     "configuration", "schedule",
                                "responses", "payloads", "traces",        "pack"};
@@ -127,6 +161,7 @@ Verification verify_files(const StudyFiles& files, const std::optional<Digest>& 
       verify_study(store, key.file ? &*key.file : nullptr, pack.file ? &*pack.file : nullptr, head);
   put(verification, "key", key);
   put(verification, "pack", pack);
+  check_heads(store, files, verification);
   return verification;
 } catch (const store::DamagedStore& error) {
   return of_damaged(error);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <vector>
 
 namespace touchtrial::analysis {
 
@@ -16,6 +17,8 @@ struct StudyFiles {
   /// Whether the user named the key, which must then exist. Otherwise `key` is the path beside the
   /// database, where the key may be missing.
   bool key_named = false;
+  /// Head files beside `<database>.head`, which is read if it exists.
+  std::vector<std::filesystem::path> heads{};
   /// Empty: the pack that the key names, if it exists and belongs to this study.
   std::filesystem::path pack;
 };

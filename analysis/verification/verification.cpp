@@ -3,7 +3,7 @@
 #include "analysis/outcomes.hpp"
 #include "analysis/sealed_sessions.hpp"
 #include "analysis/text_figures.hpp"
-#include "analysis/verification/clock_notes.hpp"
+#include "analysis/verification/chain_notes.hpp"
 #include "analysis/verification/session_course.hpp"
 #include "core/errors.hpp"
 #include "protocols/design/protocol.hpp"
@@ -60,6 +60,8 @@ std::string check_configuration(const store::StudyStore& store, const design::St
   require(key.study.name == commitment.study, "the study's name");
   require(key.study.protocol_name() == commitment.protocol, "the protocol");
   require(key.study.scored_trials() == commitment.scored_trials, "the number of scored trials");
+  require(key.study.registration.safety_record_years == commitment.safety_record_years,
+          "how long safety records are kept");
   require(static_cast<int>(key.study.protocol->choices(key.study).size()) == commitment.positions,
           "the number of pictures");
   // A prepared study may be rehearsed with simulated participants in a separate database. A
@@ -89,10 +91,32 @@ SessionCourse course_of(const store::StudyStore& store, const design::StudyKey& 
   }
 }
 
+/// The station that recorded a session; empty if its file names none.
+std::string station_behind(const store::StudyStore& store, const store::SessionRow& session) {
+  std::optional<store::StationIdentity> station = store.commitment().station;
+  if (session.station > 0) {
+    const store::Event committed = store.station_chain(session.station).front();
+    station = store::commitment_from_json(committed.body).station;
+  }
+  return station ? station->name : std::string();
+}
+
+/// A station records its own numbers alone: it cannot pass another's sessions off as its own.
+void require_own_number(const store::StudyStore& store, const design::StudyKey& key,
+                        const store::SessionRow& session) {
+  const std::string here = station_behind(store, session);
+  const design::Station* const owner = design::station_of(key.stations, session.enrolment);
+  if (here.empty() || owner == nullptr || owner->name == here) return;
+  throw VerificationError(
+      fmt::format("session {}: enrolment {} is station {}'s, and the file is station {}'s",
+                  session.session, session.enrolment, owner->name, here));
+}
+
 std::string check_schedule(const store::StudyStore& store, const design::StudyKey& key) {
   const std::map<int, design::Schedule> schedules = open_schedules(store, key);
   int presentations = 0;
   for (const store::SessionRow& session : store.sessions()) {
+    require_own_number(store, key, session);
     const SessionCourse course = course_of(store, key, session);
     presentations += course.presentations();
     const auto schedule = schedules.find(session.session);
@@ -120,7 +144,49 @@ std::string check_responses(const store::StudyStore& store, const design::StudyK
   return fmt::format("{} answers within the {} pictures", responses, positions);
 }
 
+/// Opens what is left of erased sessions, and the texts about people on the file's chain.
+/// \return how many
+int check_safety_record(const store::StudyStore& store, const design::StudyKey& key) {
+  const std::map<int, store::PersonKeys> keys = person_keys(store, key);
+  int parts = 0;
+  const auto check = [&](const store::Event& event, const store::SessionRow& row) {
+    if (event.sealed.empty()) return;
+    parts += readable_event(event, row, keys.at(row.session)).sealed.empty() ? 1 : 0;
+  };
+  std::map<int, store::SessionRow> rows;
+  for (const store::SessionRow& row : store.sessions()) rows[row.session] = row;
+  for (const auto& [session, row] : rows) {
+    if (!row.erased || !keys.at(session).safety) continue;
+    for (const store::Event& event : store.events(session)) {
+      if (store::is_safety_record(event.kind)) check(event, row);
+    }
+  }
+  for (const store::Event& event : store.events(0)) {
+    const auto row = rows.find(store::session_about(event));
+    if (row != rows.end()) check(event, row->second);
+  }
+  return parts;
+}
+
+/// Whether the station can go on with every open session.
+void require_kept_keys(const store::StudyStore& store, const design::StudyKey& key) {
+  const auto& here = store.commitment().station;
+  const auto station = std::ranges::find_if(
+      key.stations, [&](const design::Station& one) { return here && one.name == here->name; });
+  if (station == key.stations.end()) return;
+  for (const store::SessionRow& session : store.sessions()) {
+    const std::optional<Bytes> kept = store.kept_key(session.session);
+    if (!kept) continue;
+    const auto own = store::kept_participant_key(station->secret, session.own_session, *kept);
+    if (own && own == participant_key(store, key, session)) continue;
+    throw VerificationError(fmt::format(
+        "session {}: the station's copy of the key was altered; the session cannot be resumed",
+        session.session));
+  }
+}
+
 std::string check_payloads(const store::StudyStore& store, const design::StudyKey& key) {
+  require_kept_keys(store, key);
   int parts = 0;
   for (const auto& [session, own] : participant_keys(store, key)) {
     std::chrono::nanoseconds last{0};
@@ -136,6 +202,7 @@ std::string check_payloads(const store::StudyStore& store, const design::StudyKe
     }
   }
   require_sealed_ends(store, key);
+  parts += check_safety_record(store, key);
   return fmt::format("{} sealed parts of events, the ends of chains among them", parts);
 }
 
@@ -255,7 +322,8 @@ Verification verify_study(const store::StudyStore& store, const design::StudyKey
   try {
     verification.head = store.file_head();
     verification.simulated = store.commitment().simulated;
-    verification.notes = clock_notes(store);
+    verification.investigator = store.commitment().investigator;
+    verification.notes = chain_notes(store);
   } catch (const StoreError&) {
     // The first check reports what is wrong with the file's chain.
   }

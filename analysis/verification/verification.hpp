@@ -1,6 +1,7 @@
 /// \file Checks that a study's chain, seal, schedule, payloads and pack are consistent.
 #pragma once
 
+#include "core/public_keys.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/study_store.hpp"
@@ -26,7 +27,8 @@ struct Verification {
   std::vector<Check> checks;
   /// The end of the file's chain. A copy kept elsewhere can show that nothing was cut off.
   std::optional<store::ChainHead> head;
-  /// What is worth knowing and no fault: where a clock went back.
+  PublicKey investigator{};  ///< that the first event names; whose signatures count
+  /// What is worth knowing and no fault: chain_notes.
   std::vector<std::string> notes{};
 
   /// Whether no check failed. A check that was not made does not count as failed.

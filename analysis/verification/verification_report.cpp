@@ -35,6 +35,7 @@ std::string verification_json(const Verification& verification) {
     object["head"] = {{"length", verification.head->length},
                       {"hash", to_hex(verification.head->hash)}};
   }
+  object["investigator"] = to_hex(verification.investigator);
   object["checks"] = nlohmann::ordered_json::array();
   for (const Check& check : verification.checks) {
     object["checks"].push_back(
@@ -53,6 +54,7 @@ std::string verification_text(const Verification& verification) {
     text += fmt::format("{:<13}  {} events, head {}\n", "file's chain", verification.head->length,
                         to_hex(verification.head->hash));
   }
+  text += fmt::format("{:<13}  {}\n", "investigator", to_hex(verification.investigator));
   for (const std::string& note : verification.notes) text += fmt::format("note: {}\n", note);
   return text + unmade_line(verification);
 }

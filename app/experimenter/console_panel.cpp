@@ -268,7 +268,7 @@ void ConsolePanel::send() {
   if (sent == Draft::deviation) return ask(Kind::deviation, text, code);
   if (text.empty()) return;
   if (sent == Draft::pause_reason) return ask(Kind::note, "pause: " + text);
-  if (sent == Draft::stop_reason) return ask(Kind::note, "comfort stop: " + text);
+  if (sent == Draft::stop_reason) return ask(Kind::deviation, text, session::kComfortStopCode);
   ask(Kind::note, text);
 }
 

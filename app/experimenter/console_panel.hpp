@@ -12,8 +12,9 @@
 namespace touchtrial::app {
 
 /// Status, buttons, and a field for text. Pause and comfort stop take effect at once; the reason is
-/// written afterwards and becomes a note. Belongs to one thread at a time. Call `draw` between
-/// ImGui::NewFrame and ImGui::Render, with the fonts of load_fonts.
+/// written afterwards and becomes a note (pause) or a deviation (comfort stop). Belongs to one
+/// thread at a time. Call `draw` between ImGui::NewFrame and ImGui::Render, with the fonts of
+/// load_fonts.
 class ConsolePanel {
  public:
   using Ask = std::function<void(const session::ExperimenterRequest&)>;

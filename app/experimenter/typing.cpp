@@ -136,7 +136,7 @@ void RequestTyping::end_line() {
       if (!text.empty()) ask(Kind::note, "pause: " + text);
       break;
     case Field::stop_reason:
-      if (!text.empty()) ask(Kind::note, "comfort stop: " + text);
+      if (!text.empty()) ask(Kind::deviation, text, session::kComfortStopCode);
       break;
     case Field::note:
       if (!text.empty()) ask(Kind::note, text);

@@ -69,8 +69,8 @@ class TypedLine {
 };
 
 /// Requests by keys: p pause, r resume, c comfort stop, n note, d deviation, a abort. Pause and
-/// comfort stop take effect at once; the reason is typed afterwards and becomes a note. Escape
-/// discards a line. Not thread-safe.
+/// comfort stop take effect at once; the reason is typed afterwards and becomes a note (pause) or a
+/// deviation (comfort stop). Escape discards a line. Not thread-safe.
 class RequestTyping {
  public:
   void take(char key);

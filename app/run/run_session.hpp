@@ -1,6 +1,8 @@
 /// \file One session of a study, from the options of `touchtrial run` to its end.
 #pragma once
 
+#include "app/heads.hpp"
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -24,6 +26,7 @@ struct RunOptions {
   std::filesystem::path certificate;  ///< empty: NAME-certificate.json, if it exists
   bool pilot = false;
   OnExisting on_existing = OnExisting::refuse;
+  HeadOptions heads;
   int enrolment = 0;      ///< 0: the station's next number
   std::string station{};  ///< of a study with several; empty: its only one
   /// A simulated participant instead of a person: a model file, or "default".

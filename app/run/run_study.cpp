@@ -75,6 +75,10 @@ void require_same(const store::StudyCommitment& stored, const store::StudyCommit
            "is the database of another study, or of this one before it was prepared anew; "
            "give another --db");
   }
+  if (stored.station && stored.station != ours.station) {
+    refuse(options, "is the database of station " + one_line(stored.station->name) +
+                        "; give another --db, or that station's file with --station-file");
+  }
   if (stored.pack != ours.pack) {
     refuse(options, "was begun with another pack; name that pack with --pack");
   }
@@ -99,10 +103,11 @@ RunStudy run_study_for(const RunOptions& options) {
     if (options.is_simulated() && options.pack.empty() && !is_there(place.pack)) {
       return simulated_study(options, study);
     }
-    throw UsageError(one_line(file.string()) +
-                     ": there is no such station file; name this station with --station, copy its "
-                     "file here from the investigator's machine, or make it with `touchtrial "
-                     "prepare`");
+    throw UsageError(
+        one_line(file.string()) +
+        ": there is no such station file; name this station with --station, or copy its "
+        "file here from the investigator's machine, where `touchtrial prepare` writes "
+        "it again");
   }
   design::StationKey key = design::load_station_key(file);
   require_unchanged(key, study);
@@ -118,11 +123,15 @@ RunStudy run_study_for(const RunOptions& options) {
   return {std::move(key), std::move(pack), has_key_in_reach(options, place)};
 }
 
-store::StudyStore run_database_for(const RunOptions& options, const RunStudy& study) {
+namespace {
+
+store::StudyStore stored_study(const RunOptions& options, const RunStudy& study) {
   const store::StudyCommitment ours =
       session::commitment_of(study.key, study.pack, options.is_simulated(), options.pilot);
-  if (!is_there(options.database))
-    return store::StudyStore::create(options.database, ours, utc_now());
+  if (!is_there(options.database)) {
+    refuse_lost_database(options.database, ours, options.heads);
+    return store::StudyStore::create(options.database, ours, utc_now(), study.key.signer());
+  }
   store::StudyStore store =
       store::StudyStore::open(options.database, store::StudyStore::Access::read_write);
   require_same(store.commitment(), ours, options);
@@ -131,6 +140,29 @@ store::StudyStore run_database_for(const RunOptions& options, const RunStudy& st
            "was merged from several stations' databases and takes no sessions of its own; run them "
            "in this station's database, and merge again");
   }
+  store.sign_with(study.key.signer());
+  return store;
+}
+
+/// Which of two clocks is wrong, only people can tell. In virtual time sessions are longer than
+/// they took.
+void warn_of_clock(const RunOptions& options, const store::StudyStore& store) {
+  if (options.is_simulated() && !options.real_time) return;
+  const auto last = store.last_event(0);
+  if (!last || utc_now() >= last->at) return;
+  spdlog::warn(
+      "this machine's clock shows {}, which is before the last entry of {} ({}): one of them is "
+      "wrong; set the clock if it is this one",
+      utc_words(utc_now()), one_line(options.database.string()), utc_words(last->at));
+}
+
+}  // namespace
+
+store::StudyStore run_database_for(const RunOptions& options, const RunStudy& study) {
+  store::StudyStore store = stored_study(options, study);
+  keep_heads(store, options.database, study.key.signer(), options.heads, HeadUse::required);
+  warn_of_clock(options, store);
+  if (!options.is_simulated()) print(head_words(store) + ", as on the last day sheet\n");
   return store;
 }
 

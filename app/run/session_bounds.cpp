@@ -191,9 +191,10 @@ void require_young(const RunOptions& options, const RunStudy& study, const std::
   const double limit_h = study.key.study.trials.resume_within_h;
   if (std::chrono::duration<double, std::ratio<3600>>(away).count() <= limit_h) return;
   throw StoreError(
-      fmt::format("{}: {}; the study lets sessions be resumed within {} h; start again with "
+      fmt::format("{}: {}, by this machine's clock, which shows {}; the study lets sessions be "
+                  "resumed within {} h; set the clock if it is wrong, or start again with "
                   "--on-existing restart",
-                  options.database.string(), standing, limit_h));
+                  options.database.string(), standing, utc_words(utc_now()), limit_h));
 }
 
 bool is_visual(const store::SessionOpening& opening) {
@@ -230,7 +231,7 @@ void give_up(const RunOptions& options, const RunStudy& study, store::StudyStore
              const KeptSession& kept, const store::SessionRow& row) {
   const std::unique_ptr<store::EventSink> sink = store.continue_session(row.session);
   session::Session session = restored(options, study, kept, row, *sink);
-  if (session.accepts(session::SessionInput::stop)) session.stop(session.last(), "restarted");
+  if (session.accepts(session::SessionInput::stop)) session.stop(session.last(), "", "restarted");
   session.close(session.last());
 }
 
@@ -245,6 +246,12 @@ EnteredSession begin_anew(const RunOptions& options, const RunStudy& study,
 EnteredSession existing_session(const RunOptions& options, const RunStudy& study,
                                 store::StudyStore& store, const store::SessionRow& row,
                                 const DescribeOpening& describe) {
+  if (row.withdrawn) {
+    throw StoreError(fmt::format(
+        "{}: participant {} has withdrawn (session {}), and takes no further part; give "
+        "another participant id",
+        one_line(options.database.string()), row.participant, row.session));
+  }
   const bool may_be_restarted =
       options.on_existing == OnExisting::restart && row.state == store::SessionState::stopped;
   if (may_be_restarted) return begin_anew(options, study, store, row, describe);
@@ -363,7 +370,8 @@ int conclude_session(const RunOptions& options, int session, const session::Sess
                      const store::StudyStore& store) {
   const bool is_complete =
       store.session_of(options.participant)->state == store::SessionState::completed;
-  print(summary(options, session, tally, is_complete, store));
+  print(summary(options, session, tally, is_complete, store) + head_words(store) +
+        "; write it on the day sheet\n");
   if (tally.left) {
     std::fprintf(stderr,
                  "touchtrial: %s; the session stays open: go on with the same command and "

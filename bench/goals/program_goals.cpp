@@ -4,12 +4,16 @@
 #include "bench/measure/timing.hpp"
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
+#include "core/random.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/registration/registration.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/simulation/simulation.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "protocols/store/head_file.hpp"
+#include "protocols/store/sealing.hpp"
+#include "protocols/store/session_recorder.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <chrono>
@@ -164,8 +168,9 @@ StudyCost simulate_once(const design::StudyKey& key, const engine::Pack& pack,
   const auto start = std::chrono::steady_clock::now();
   simulation::SimulationReport report;
   {
-    store::StudyStore store = store::StudyStore::create(
-        database, session::commitment_of(key, pack, true, false), std::chrono::nanoseconds(0));
+    store::StudyStore store =
+        store::StudyStore::create(database, session::commitment_of(key, pack, true, false),
+                                  std::chrono::nanoseconds(0), key.signer());
     report = simulation::simulate_study(key, pack, subject, options, store);
   }
   const std::chrono::duration<double, std::micro> us = std::chrono::steady_clock::now() - start;
@@ -207,10 +212,94 @@ std::vector<GoalResult> measure_study(int rounds) {
   return results_of(cost);
 }
 
+constexpr int kTraceSamples = 10'000;
+
+/// A trace of 10 s at 1 kHz, as long as the longest exploration of the default study.
+store::Trace long_trace() {
+  RandomStream draws(1, "benchmark trace");
+  store::Trace trace;
+  trace.rate_hz = 1000.0;
+  for (int i = 0; i < kTraceSamples; ++i) {
+    const double t_s = 1e-3 * i;
+    trace.samples.push_back({{40.0 + 30.0 * std::sin(3.0 * t_s), 50.0, -1.0},
+                             {0.05 * draws.normal(), 0.05 * draws.normal(), 0.7}});
+  }
+  return trace;
+}
+
+/// The median time until one answer with its trace is durable, and so may be acknowledged.
+/// \param with_head  whether a head file is synced too
+double acknowledgement_us(const design::StudyKey& key, const engine::Pack& pack,
+                          const fs::path& database, bool with_head) {
+  const Signer signer = key.signer();
+  store::StudyStore store =
+      store::StudyStore::create(database, session::commitment_of(key, pack, true, false),
+                                std::chrono::nanoseconds(0), signer);
+  if (with_head) {
+    const store::HeadFiles heads(database, {signer.public_half()});
+    store.keep_heads([=](const store::HeadChange& change) { heads.update(signer, change); });
+  }
+  const SecretKey participant{};
+  const auto sink =
+      store.begin_session(1, store::wrap_participant_key(key.investigator_box, 1, participant));
+  store::SessionRecorder recorder(1, participant, *sink);
+  store::SessionOpening opening;
+  opening.participant = "P1";
+  opening.enrolment = 1;
+  opening.study_id = key.study_id;
+  opening.seal = key.seal;
+  opening.simulated = true;
+  recorder.opened({}, opening, "{}");
+  const store::Trace trace = long_trace();
+  std::vector<double> times_us;
+  for (int trial = 1; trial <= key.study.scored_trials(); ++trial) {
+    const auto at = std::chrono::seconds(trial);
+    recorder.presented(at, trial, 0);
+    store::TraceBody body;
+    body.trial = trial;
+    body.rate_hz = trace.rate_hz;
+    const store::TrialEvidence evidence = recorder.packed(body, {}, trace);
+    const auto start = std::chrono::steady_clock::now();
+    recorder.answered(at, {.trial = trial, .position = 0, .first_position = {}, .confidence = {}},
+                      evidence);
+    const std::chrono::duration<double, std::micro> us = std::chrono::steady_clock::now() - start;
+    times_us.push_back(us.count());
+  }
+  return median(times_us);
+}
+
+std::vector<GoalResult> measure_acknowledgement(int rounds) {
+  const ScratchFolder folder;
+  registration::register_protocols();
+  const design::Study study =
+      design::load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/classification.json");
+  design::StudyKey key = design::simulated_study_key(study);
+  key.pack_folder = folder.path() / "pack";
+  design::prepare_pack(key, key.pack_folder, {});
+  const engine::Pack pack(key.pack_folder);
+  std::vector<double> with_us;
+  std::vector<double> without_us;
+  for (int round = 0; round < rounds; ++round) {
+    const auto place = [&](const char* name) {
+      return folder.path() / (std::to_string(round) + name + ".db");
+    };
+    with_us.push_back(acknowledgement_us(key, pack, place("with"), true));
+    without_us.push_back(acknowledgement_us(key, pack, place("without"), false));
+  }
+  GoalResult result;
+  result.goal = "an answer with its trace of 10 s until it is acknowledged";
+  result.peer = "without a head file";
+  result.ours_us = median(with_us);
+  result.peer_us = median(without_us);
+  result.ratio = result.ours_us / result.peer_us;
+  return {result};
+}
+
 }  // namespace
 
 std::vector<Goal> program_goals() {
-  return {[](const Effort& effort) { return measure_study(effort.study_rounds); },
+  return {[](const Effort& effort) { return measure_acknowledgement(effort.study_rounds); },
+          [](const Effort& effort) { return measure_study(effort.study_rounds); },
           [](const Effort& effort) { return measure_starts(effort.study_rounds); }};
 }
 

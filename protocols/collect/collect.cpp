@@ -117,7 +117,7 @@ class Collecting {
       const int own = place.own_session;
       StationFile& file = this->file(place.station);
       named(file.name(), [&] {
-        draft_.add_session(session, file.events(own), file.wrapped_key(own));
+        draft_.add_session(session, file.events(own), file.wrapped_keys(own));
         if (traces == TraceUse::fetched) return;
         file.for_each_trace(own,
                             [&](int trial, const Bytes& box) { draft_.add_trace(trial, box); });

@@ -200,7 +200,7 @@ bool ServerConnection::wipe_deleted_keys() noexcept {
                                   "SELECT pg_has_role(relowner, 'USAGE') FROM pg_class WHERE "
                                   "oid = 'participant_keys'::regclass")[0]
                               .as<bool>();
-    if (is_owner) session.exec("VACUUM FULL participant_keys");
+    if (is_owner) session.exec("VACUUM FULL participant_keys, safety_keys");
     return is_owner;
   } catch (const std::exception&) {
     // Everything is committed. docs/several-stations.md tells the owner how to wipe the table.

@@ -157,11 +157,11 @@ class TraceBatch {
   ServerArray trials_, starts_, lengths_;
 };
 
-/// \param row  sequence, kind, at_ns, body, sealed, previous, hash, own_session
+/// \param row  sequence, kind, at_ns, body, sealed, previous, hash, signature, own_session
 store::Event event_of(const pqxx::row& row, int session) {
   const auto sequence = row[0].as<std::int64_t>();
   const store::EventKind kind = store::stored_kind(row[1].as<std::string>(), session, sequence);
-  const auto own = row[7].is_null() ? session : row[7].as<std::int64_t>();
+  const auto own = row[8].is_null() ? session : row[8].as<std::int64_t>();
   if (own < 0 || own > std::numeric_limits<int>::max() || (own == 0) != (session < 0)) {
     throw store::EventFault(session, sequence, "no session of a station has this number");
   }
@@ -172,15 +172,15 @@ store::Event event_of(const pqxx::row& row, int session) {
           .body = row[3].as<std::string>(),
           .sealed = bytes_of(row[4]),
           .previous = store::stored_hash(bytes_of(row[5]), session, sequence),
-          .hash = store::stored_hash(bytes_of(row[6]), session, sequence)};
+          .hash = store::stored_hash(bytes_of(row[6]), session, sequence),
+          .signature = bytes_of(row[7])};
 }
 
 void refuse_large_events(ServerWork& work, int session) {
   const pqxx::result found = work.exec_params(
       "SELECT sequence FROM events WHERE session = $1 AND octet_length(kind) + "
-      "octet_length(body) + octet_length(sealed) + octet_length(previous) + octet_length(hash) > "
-      "$2 "
-      "ORDER BY sequence LIMIT 1",
+      "octet_length(body) + octet_length(sealed) + octet_length(previous) + octet_length(hash) + "
+      "octet_length(signature) > $2 ORDER BY sequence LIMIT 1",
       session, kLargestEvent);
   if (found.empty()) return;
   throw store::EventFault(session, found[0][0].as<std::int64_t>(), "the event is absurdly large");
@@ -192,20 +192,32 @@ void insert_events(ServerWork& work, int session, std::span<const store::Event> 
   RowBatch batch(work, store::Table::events);
   for (const store::Event& event : events) {
     batch.add(session, event.sequence, store::name_of(event.kind), event.at.count(), event.body,
-              event.sealed, event.previous, event.hash, event.own_session());
+              event.sealed, event.previous, event.hash, event.signature, event.own_session());
   }
   batch.send();
 }
 
-void insert_traces(ServerWork& work, int session, StationFile& station, int own_session) {
+std::map<std::int64_t, SentTrace> insert_traces(ServerWork& work, int session, StationFile& station,
+                                                int own_session) {
+  std::map<std::int64_t, SentTrace> sent;
   TraceBatch batch(work, session);
-  station.for_each_trace(own_session, [&](int trial, const Bytes& box) { batch.add(trial, box); });
+  station.for_each_trace(own_session, [&](int trial, const Bytes& box) {
+    sent[trial] = {.digest = blake2b(box), .sha256 = sha256(box)};
+    batch.add(trial, box);
+  });
   batch.send();
+  return sent;
 }
 
-void insert_key(ServerWork& work, int session, const Bytes& wrapped) {
-  work.exec_params0("INSERT INTO participant_keys(session, wrapped) VALUES($1, $2)", session,
-                    binary(wrapped));
+void insert_keys(ServerWork& work, int session, const store::WrappedKeys& keys) {
+  if (keys.participant) {
+    work.exec_params0("INSERT INTO participant_keys(session, wrapped) VALUES($1, $2)", session,
+                      binary(*keys.participant));
+  }
+  if (keys.safety) {
+    work.exec_params0("INSERT INTO safety_keys(session, wrapped) VALUES($1, $2)", session,
+                      binary(*keys.safety));
+  }
 }
 
 void insert_session(ServerWork& work, const store::SessionRow& row) {
@@ -227,7 +239,8 @@ void insert_trials(ServerWork& work, int session, const store::DerivedRows& rows
 std::vector<store::Event> read_events(ServerWork& work, int session, std::int64_t first) {
   refuse_large_events(work, session);
   const pqxx::result rows = work.exec_params(
-      "SELECT sequence, kind, at_ns, body, sealed, previous, hash, own_session FROM events "
+      "SELECT sequence, kind, at_ns, body, sealed, previous, hash, signature, own_session FROM "
+      "events "
       "WHERE session = $1 AND sequence >= $2 ORDER BY sequence",
       session, first);
   std::vector<store::Event> events;
@@ -236,12 +249,15 @@ std::vector<store::Event> read_events(ServerWork& work, int session, std::int64_
   return events;
 }
 
-std::optional<Bytes> read_key(ServerWork& work, int session) {
-  const pqxx::result rows = work.exec_params(
-      "SELECT wrapped FROM participant_keys WHERE session = $1 AND octet_length(wrapped) < 4096",
-      session);
-  if (rows.empty()) return std::nullopt;
-  return bytes_of(rows[0][0]);
+store::WrappedKeys read_keys(ServerWork& work, int session) {
+  const auto read = [&](const std::string& table) -> std::optional<Bytes> {
+    const pqxx::result rows = work.exec_params(
+        "SELECT wrapped FROM " + table + " WHERE session = $1 AND octet_length(wrapped) < 4096",
+        session);
+    if (rows.empty()) return std::nullopt;
+    return bytes_of(rows[0][0]);
+  };
+  return {.participant = read("participant_keys"), .safety = read("safety_keys")};
 }
 
 std::optional<Bytes> read_trace(ServerWork& work, int session, int trial) {

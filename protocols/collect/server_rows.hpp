@@ -17,9 +17,17 @@ namespace touchtrial::collect {
 
 /// \param session  the number on the server; -1, -2, ... for a station's file chain
 void insert_events(ServerWork& work, int session, std::span<const store::Event> events);
+/// A trace as it was sent.
+struct SentTrace {
+  Digest digest{};  ///< as its event names it
+  Digest sha256{};  ///< as a server can compute it
+};
 /// Inserts all traces of a session, a few megabytes at a time.
-void insert_traces(ServerWork& work, int session, StationFile& station, int own_session);
-void insert_key(ServerWork& work, int session, const Bytes& wrapped);
+/// \return what was sent, by trial
+std::map<std::int64_t, SentTrace> insert_traces(ServerWork& work, int session, StationFile& station,
+                                                int own_session);
+/// Those of the two that there are.
+void insert_keys(ServerWork& work, int session, const store::WrappedKeys& keys);
 /// \param row  row.session is the number on the server
 void insert_session(ServerWork& work, const store::SessionRow& row);
 /// Inserts rows of trials.
@@ -31,7 +39,7 @@ void insert_trials(ServerWork& work, int session, const store::DerivedRows& rows
 /// \throws EventFault, by the number on the server, if a row is no event or absurdly large
 [[nodiscard]] std::vector<store::Event> read_events(ServerWork& work, int session,
                                                     std::int64_t first = 0);
-[[nodiscard]] std::optional<Bytes> read_key(ServerWork& work, int session);
+[[nodiscard]] store::WrappedKeys read_keys(ServerWork& work, int session);
 [[nodiscard]] std::optional<Bytes> read_trace(ServerWork& work, int session, int trial);
 
 /// Trials from the first to the last.

@@ -59,8 +59,8 @@ CREATE FUNCTION touchtrial_next_station() RETURNS INTEGER LANGUAGE sql SECURITY 
   $$ SELECT coalesce(touchtrial_station(), 1 + greatest(
        (SELECT coalesce(max(station), 0) FROM stations),
        (SELECT coalesce(max(station), 0) FROM station_roles))) $$;
-CREATE FUNCTION touchtrial_destroy_key(number BIGINT) RETURNS BIGINT LANGUAGE plpgsql
-  SECURITY DEFINER SET search_path = SCHEMA, pg_temp AS $$
+CREATE FUNCTION touchtrial_destroy_key(number BIGINT, of_safety BOOLEAN DEFAULT FALSE)
+  RETURNS BIGINT LANGUAGE plpgsql SECURITY DEFINER SET search_path = SCHEMA, pg_temp AS $$
   DECLARE destroyed BIGINT;
   BEGIN
     IF touchtrial_station_of(number) IS DISTINCT FROM touchtrial_station()
@@ -68,7 +68,11 @@ CREATE FUNCTION touchtrial_destroy_key(number BIGINT) RETURNS BIGINT LANGUAGE pl
       RAISE insufficient_privilege USING MESSAGE =
         'permission denied: the session is another station''s';
     END IF;
-    DELETE FROM participant_keys WHERE session = number;
+    IF of_safety THEN
+      DELETE FROM safety_keys WHERE session = number;
+    ELSE
+      DELETE FROM participant_keys WHERE session = number;
+    END IF;
     GET DIAGNOSTICS destroyed = ROW_COUNT;
     RETURN destroyed;
   END $$;
@@ -82,15 +86,16 @@ CREATE FUNCTION touchtrial_admit(login NAME, number INTEGER DEFAULT NULL) RETURN
     EXECUTE format('GRANT USAGE ON SCHEMA %I TO %I', current_schema(), login);
     EXECUTE format('GRANT SELECT ON touchtrial_schema TO %I', login);
     EXECUTE format('GRANT SELECT, INSERT ON stations, sessions, events, traces, participant_keys, '
-      'trials TO %I', login);
-    EXECUTE format('GRANT UPDATE(excluded, withdrawn, replaced_by) ON sessions TO %I', login);
+      'safety_keys, trials TO %I', login);
+    EXECUTE format('GRANT UPDATE(excluded, withdrawn, erased, replaced_by) ON sessions TO %I',
+      login);
     EXECUTE format('GRANT EXECUTE ON FUNCTION touchtrial_lock_station(BYTEA), '
-      'touchtrial_next_station(), touchtrial_destroy_key(BIGINT) TO %I', login);
+      'touchtrial_next_station(), touchtrial_destroy_key(BIGINT, BOOLEAN) TO %I', login);
     SELECT station INTO admitted FROM station_roles WHERE role = login;
     RETURN admitted;
   END $$;
 REVOKE ALL ON FUNCTION touchtrial_lock_station(BYTEA), touchtrial_next_station(),
-  touchtrial_destroy_key(BIGINT), touchtrial_admit(NAME, INTEGER) FROM PUBLIC;
+  touchtrial_destroy_key(BIGINT, BOOLEAN), touchtrial_admit(NAME, INTEGER) FROM PUBLIC;
 ALTER TABLE stations ENABLE ROW LEVEL SECURITY;
 CREATE POLICY everybody_reads ON stations FOR SELECT USING (TRUE);
 CREATE POLICY station_adds_itself ON stations FOR INSERT
@@ -106,7 +111,7 @@ std::string row_rights_sql(const store::TableDefinition& table) {
   const std::string name(table.name);
   const std::string own = "touchtrial_station_of(session) = (SELECT touchtrial_station())";
   const bool is_sessions = &table == &store::table_definition(store::Table::sessions);
-  const bool is_keys = name == "participant_keys";
+  const bool is_keys = name == "participant_keys" || name == "safety_keys";
   return "ALTER TABLE " + name + " ENABLE ROW LEVEL SECURITY;\nCREATE POLICY everybody_reads ON " +
          name + " FOR SELECT USING (" +
          (is_keys ? "(SELECT touchtrial_station()) IS NULL OR " + own : "TRUE") +

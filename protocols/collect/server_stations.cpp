@@ -57,8 +57,8 @@ class ServerStation final : public StationFile {
                      [](ServerWork& work, int session) { return read_events(work, session); });
   }
 
-  std::optional<Bytes> wrapped_key(int own_session) override {
-    return ask_about(own_session, read_key);
+  store::WrappedKeys wrapped_keys(int own_session) override {
+    return ask_about(own_session, read_keys);
   }
 
   std::optional<Bytes> trace(int own_session, int trial) override {
@@ -96,7 +96,7 @@ class ServerStation final : public StationFile {
 
 /// Refuses rows that belong to nothing that was pushed. No other check would find them.
 void refuse_strays(ServerWork& work, const ServerConnection& server) {
-  for (const char* const table : {"events", "traces", "participant_keys"}) {
+  for (const char* const table : {"events", "traces", "participant_keys", "safety_keys"}) {
     const pqxx::result strays = work.exec(
         "SELECT e.session FROM (SELECT DISTINCT session FROM " + std::string(table) +
         ") e LEFT JOIN sessions s USING(session) LEFT JOIN stations t ON t.station = -e.session "

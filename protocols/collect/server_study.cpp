@@ -67,6 +67,7 @@ std::string opening_of(ServerWork& work, int session) {
 std::optional<std::string> difference(const store::StudyCommitment& there,
                                       store::StudyCommitment here) {
   here.program_version = there.program_version;
+  here.station = there.station;
   if (there == here) return std::nullopt;
   if (there.study_id != here.study_id || there.study != here.study) return "another study";
   if (there.seal != here.seal) return "this study under another seal (its key was made anew)";
@@ -124,23 +125,32 @@ class ArrivedSession {
             "it is another participant's than the file's chain says");
   }
 
+  /// \param digests  that the server computed of what it stored
   void check_traces(std::span<const store::Event> events,
+                    const std::map<std::int64_t, SentTrace>& sent,
                     std::map<std::int64_t, Bytes> digests) const {
     for (const store::Event& event : events) {
       if (event.kind != store::EventKind::trace_stored) continue;
       const store::TraceBody body = store::body_of(event, store::trace_body_from_json);
       const auto found = digests.extract(body.trial);
-      require(!found.empty() && std::equal(body.trace.begin(), body.trace.end(),
-                                           found.mapped().begin(), found.mapped().end()),
+      const auto ours = sent.find(body.trial);
+      require(!found.empty() && ours != sent.end() && ours->second.digest == body.trace &&
+                  std::ranges::equal(ours->second.sha256, found.mapped()),
               "the trace of trial " + std::to_string(body.trial) + " is not the one recorded");
     }
     require(digests.empty(), "there is a trace without an event");
   }
 
-  void check_key(const std::optional<Bytes>& wrapped, const store::SessionOnFile& course,
-                 bool has_key) const {
-    require(wrapped.has_value() == has_key, "the participant's key is missing or too many");
-    require(!wrapped || sha256(*wrapped) == course.opened.key, "the participant's key is another");
+  void check_keys(const store::WrappedKeys& keys, const store::SessionOnFile& course) const {
+    const auto check = [&](const std::optional<Bytes>& key, bool erased, const Digest& digest,
+                           const std::string& name) {
+      require(key.has_value() != erased, name + " is missing or too many");
+      require(!key || sha256(*key) == digest, name + " is another");
+    };
+    check(keys.participant, course.erased_at.has_value(), course.opened.key,
+          "the participant's key");
+    check(keys.safety, course.safety_erased_at.has_value(), course.opened.safety_key,
+          "the safety key");
   }
 
   void check_sealed_end(const Bytes& wrapped, const BoxKeys& investigator,
@@ -279,47 +289,51 @@ void refuse_if_there_or_taken(ServerWork& work, const ServerConnection& server,
   refuse_if_taken(work, server, row);
 }
 
-bool update_session(ServerWork& work, int station, int own_session,
-                    const store::SessionOnFile& course, std::int64_t end) {
-  const auto holds = [&](const std::optional<std::int64_t>& at) { return at && *at < end; };
-  work.exec_params0(
-      "UPDATE sessions SET excluded = $3, withdrawn = $4, replaced_by = nullif($5, '') "
-      "WHERE station = $1 AND own_session = $2",
-      station, own_session, int{holds(course.excluded_at)}, int{holds(course.withdrawn_at)},
-      holds(course.replaced_at) ? course.replaced_by : std::string());
-  if (!holds(course.withdrawn_at)) return false;
-  const pqxx::result destroyed = work.exec_params(
-      "SELECT coalesce(sum(touchtrial_destroy_key(session)), 0) FROM sessions "
-      "WHERE station = $1 AND own_session = $2",
-      station, own_session);
-  return destroyed[0][0].as<int>() > 0;
+bool destroy_key(ServerWork& work, int session, bool of_safety) {
+  return work.exec_params("SELECT touchtrial_destroy_key($1, $2)", session, of_safety)[0][0]
+             .as<int>() > 0;
 }
 
-std::vector<KeyThere> keys_of_station(ServerWork& work, int station) {
-  std::vector<KeyThere> keys;
+bool update_session(ServerWork& work, int station, int own_session,
+                    const store::SessionOnFile& course) {
+  const pqxx::result stored = work.exec_params(
+      "UPDATE sessions SET excluded = $3, withdrawn = $4, erased = $5, "
+      "replaced_by = nullif($6, '') WHERE station = $1 AND own_session = $2 RETURNING session",
+      station, own_session, int{course.excluded_at.has_value()},
+      int{course.withdrawn_at.has_value()}, int{course.erased_at.has_value()}, course.replaced_by);
+  if (stored.empty()) return false;
+  const int session = stored[0][0].as<int>();
+  const bool key = course.erased_at && destroy_key(work, session, /*of_safety=*/false);
+  const bool safety = course.safety_erased_at && destroy_key(work, session, /*of_safety=*/true);
+  return key || safety;
+}
+
+std::vector<std::pair<int, int>> sessions_of_station(ServerWork& work, int station) {
+  std::vector<std::pair<int, int>> sessions;
   for (const pqxx::row& row :
-       work.exec_params("SELECT s.session, s.own_session, coalesce(sha256(k.wrapped), '') FROM "
-                        "sessions s LEFT JOIN participant_keys k USING(session) WHERE s.station = "
-                        "$1 AND s.withdrawn = 0 AND s.own_session IS NOT NULL ORDER BY s.session",
+       work.exec_params("SELECT session, own_session FROM sessions WHERE station = $1 AND "
+                        "own_session IS NOT NULL ORDER BY session",
                         station)) {
-    keys.push_back(
-        {.session = row[0].as<int>(), .own_session = row[1].as<int>(), .digest = bytes_of(row[2])});
+    sessions.emplace_back(row[0].as<int>(), row[1].as<int>());
   }
-  return keys;
+  return sessions;
 }
 
 void check_session_arrival(ServerWork& work, const ServerConnection& server, int session,
                            int own_session, const store::SessionOnFile& course,
                            const store::StudyCommitment& commitment,
-                           const std::optional<BoxKeys>& investigator, bool has_key) {
+                           const std::map<std::int64_t, SentTrace>& sent,
+                           const std::optional<BoxKeys>& investigator) {
   const ArrivedSession arrived(server, own_session);
   const std::vector<store::Event> events = read_events(work, session);
   arrived.check_chain(events, course);
   arrived.check_opening(events.front(), course, commitment);
-  arrived.check_traces(events, trace_digests(work, session));
-  const std::optional<Bytes> wrapped = read_key(work, session);
-  arrived.check_key(wrapped, course, has_key);
-  if (investigator && wrapped) arrived.check_sealed_end(*wrapped, *investigator, events);
+  arrived.check_traces(events, sent, trace_digests(work, session));
+  const store::WrappedKeys keys = read_keys(work, session);
+  arrived.check_keys(keys, course);
+  if (investigator && keys.participant) {
+    arrived.check_sealed_end(*keys.participant, *investigator, events);
+  }
 }
 
 void check_chain_arrival(ServerWork& work, const ServerConnection& server, int station,

@@ -2,11 +2,14 @@
 /// what has arrived. Private to protocols/collect.
 #pragma once
 
-#include "core/cipher.hpp"
+#include "core/public_keys.hpp"
 #include "protocols/collect/server_connection.hpp"
+#include "protocols/collect/server_rows.hpp"
 #include "protocols/collect/station_course.hpp"
 #include "protocols/store/study_store.hpp"
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -50,30 +53,36 @@ void refuse_other_study(ServerWork& work, const ServerConnection& server,
 void refuse_if_there_or_taken(ServerWork& work, const ServerConnection& server,
                               const store::SessionRow& row);
 
-/// Brings a stored session up to date with the chain up to `end`: exclusion, replacement,
-/// withdrawal, which destroys its key.
+/// Brings a stored session up to date with the chain: exclusion, replacement, withdrawal, and the
+/// keys that this destroyed.
+/// \param course  course_until where the chain has been pushed to
 /// \return whether a key was destroyed
 bool update_session(ServerWork& work, int station, int own_session,
-                    const store::SessionOnFile& course, std::int64_t end);
+                    const store::SessionOnFile& course);
 
-/// The key of a stored session that was not withdrawn on the server.
-struct KeyThere {
-  int session = 0;  ///< on the server
-  int own_session = 0;
-  Bytes digest;  ///< SHA-256 of the wrapped key; empty: it is gone
-};
-[[nodiscard]] std::vector<KeyThere> keys_of_station(ServerWork& work, int station);
+/// Destroys a stored session's key.
+/// \param session  on the server
+/// \param of_safety  the safety key, else the participant's
+/// \return whether it was there
+bool destroy_key(ServerWork& work, int session, bool of_safety);
+
+/// The sessions of a station on the server: number there and own number.
+[[nodiscard]] std::vector<std::pair<int, int>> sessions_of_station(ServerWork& work, int station);
 
 /// Reads an arrived session back, in the transaction that brought it, and checks: every hash,
 /// length and head as the file chain says, study and seal those of the commitment, traces those
-/// that the events name, and the key the one that the session was opened with.
+/// that the events name, and the keys those that the session was opened with, less those destroyed
+/// since.
+/// \param course  course_until where the chain has been pushed to
+/// \param sent  insert_traces' result
 /// \param investigator  the investigator's keys, if known: the session's sealed end is then opened
-/// as well \param has_key  whether the session's key must be there \throws StoreError naming what
-/// does not hold
+///   as well
+/// \throws StoreError naming what does not hold
 void check_session_arrival(ServerWork& work, const ServerConnection& server, int session,
                            int own_session, const store::SessionOnFile& course,
                            const store::StudyCommitment& commitment,
-                           const std::optional<BoxKeys>& investigator, bool has_key);
+                           const std::map<std::int64_t, SentTrace>& sent,
+                           const std::optional<BoxKeys>& investigator);
 
 /// Reads an arrived part of a file chain back, in the transaction that brought it, and checks every
 /// hash, and that it ends as the station's chain does.

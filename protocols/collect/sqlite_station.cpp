@@ -39,9 +39,9 @@ class SqliteStation final : public StationFile {
     }
     return events;
   }
-  [[nodiscard]] std::optional<Bytes> wrapped_key(int own_session) override {
+  [[nodiscard]] store::WrappedKeys wrapped_keys(int own_session) override {
     const auto found = sessions_.find(own_session);
-    return found == sessions_.end() ? std::nullopt : store_->wrapped_key(found->second);
+    return found == sessions_.end() ? store::WrappedKeys{} : store_->wrapped_keys(found->second);
   }
   [[nodiscard]] std::optional<Bytes> trace(int own_session, int trial) override {
     const auto found = sessions_.find(own_session);

@@ -10,7 +10,8 @@ namespace {
 /// The least end of a segment that closes this session.
 std::int64_t needed_end(const store::SessionOnFile& session, bool has_key) {
   std::int64_t last = *session.closed_at;
-  if (!has_key && session.withdrawn_at) last = std::max(last, *session.withdrawn_at);
+  if (!has_key && session.erased_at) last = std::max(last, *session.erased_at);
+  if (!has_key && session.safety_erased_at) last = std::max(last, *session.safety_erased_at);
   if (session.replaced_at) last = std::max(last, *session.replaced_at);
   return last + 1;
 }
@@ -23,6 +24,16 @@ bool is_decided_between(const store::SessionOnFile& course, std::int64_t first,
     return at && *at >= first && *at < end;
   };
   return lies(course.excluded_at) || lies(course.withdrawn_at) || lies(course.replaced_at);
+}
+
+store::SessionOnFile course_until(store::SessionOnFile course, std::int64_t end) {
+  for (std::optional<std::int64_t>* at :
+       {&course.excluded_at, &course.withdrawn_at, &course.erased_at, &course.safety_erased_at,
+        &course.replaced_at}) {
+    if (*at && **at >= end) at->reset();
+  }
+  if (!course.replaced_at) course.replaced_by.clear();
+  return course;
 }
 
 std::vector<ChainSegment> segments_of(const Courses& courses, std::int64_t length,

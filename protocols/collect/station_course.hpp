@@ -18,6 +18,9 @@ using Courses = std::map<int, store::SessionOnFile>;
 [[nodiscard]] bool is_decided_between(const store::SessionOnFile& course, std::int64_t first,
                                       std::int64_t end) noexcept;
 
+/// What the chain up to before `end` says of a session.
+[[nodiscard]] store::SessionOnFile course_until(store::SessionOnFile course, std::int64_t end);
+
 /// A piece of a file chain that is pushed in one transaction, with the sessions that it closes.
 struct ChainSegment {
   std::int64_t first = 0;  ///< sequence

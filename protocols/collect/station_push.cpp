@@ -180,8 +180,9 @@ class StationPush {
   [[nodiscard]] std::vector<ChainSegment> segments(std::int64_t stored) {
     // A file without sessions has no identity, and nothing to collect.
     if (chain_.size() < 2) return {};
-    return segments_of(courses_, static_cast<std::int64_t>(chain_.size()), stored,
-                       [&](int session) { return station_.wrapped_key(session).has_value(); });
+    return segments_of(
+        courses_, static_cast<std::int64_t>(chain_.size()), stored,
+        [&](int session) { return station_.wrapped_keys(session).participant.has_value(); });
   }
 
   void push(const ChainSegment& segment) {
@@ -195,7 +196,8 @@ class StationPush {
       for (const auto& [session, course] : courses_) {
         const bool is_there = course.closed_at && *course.closed_at < segment.first;
         if (is_there && is_decided_between(course, segment.first, segment.end)) {
-          keys_destroyed += update_session(work, station, session, course, segment.end) ? 1 : 0;
+          const store::SessionOnFile now = course_until(course, segment.end);
+          keys_destroyed += update_session(work, station, session, now) ? 1 : 0;
         }
       }
       for (const int session : segment.sessions) push_session(work, station, session, segment.end);
@@ -215,18 +217,18 @@ class StationPush {
     const int restored = server_->change([&](ServerWork& work) {
       int count = 0;
       lock_station(work, identity());
-      for (const KeyThere& there : keys_of_station(work, report_.station)) {
-        const auto course = courses_.find(there.own_session);
-        if (course == courses_.end() || course->second.withdrawn_at) continue;
-        const Digest& right = course->second.opened.key;
-        if (std::equal(right.begin(), right.end(), there.digest.begin(), there.digest.end())) {
-          continue;
-        }
-        const std::optional<Bytes> key = station_.wrapped_key(there.own_session);
-        if (!key) continue;
-        work.exec_params("SELECT touchtrial_destroy_key($1)", there.session);
-        insert_key(work, there.session, *key);
-        ++count;
+      for (const auto& [session, own_session] : sessions_of_station(work, report_.station)) {
+        const auto course = courses_.find(own_session);
+        if (course == courses_.end()) continue;
+        // What the file no longer has was erased.
+        store::WrappedKeys lost = station_.wrapped_keys(own_session);
+        const store::WrappedKeys there = read_keys(work, session);
+        if (lost.participant == there.participant) lost.participant.reset();
+        if (lost.safety == there.safety) lost.safety.reset();
+        if (lost.participant) destroy_key(work, session, /*of_safety=*/false);
+        if (lost.safety) destroy_key(work, session, /*of_safety=*/true);
+        insert_keys(work, session, lost);
+        count += lost.participant || lost.safety ? 1 : 0;
       }
       return count;
     });
@@ -247,12 +249,15 @@ class StationPush {
     row.session = server_session(*server_, station, session);
     insert_session(work, row);
     insert_events(work, row.session, events);
-    const std::optional<Bytes> key = row.withdrawn ? std::nullopt : station_.wrapped_key(session);
-    if (key) insert_key(work, row.session, *key);
+    const store::SessionOnFile course = course_until(courses_.at(session), end);
+    store::WrappedKeys keys = station_.wrapped_keys(session);
+    if (course.erased_at) keys.participant.reset();
+    if (course.safety_erased_at) keys.safety.reset();
+    insert_keys(work, row.session, keys);
     insert_trials(work, row.session, rows);
-    insert_traces(work, row.session, station_, session);
-    check_session_arrival(work, *server_, row.session, session, courses_.at(session), commitment_,
-                          options_.investigator, !row.withdrawn);
+    const auto sent = insert_traces(work, row.session, station_, session);
+    check_session_arrival(work, *server_, row.session, session, course, commitment_, sent,
+                          options_.investigator);
   }
 
   /// The session's row as the chain up to `end` has it.
@@ -264,12 +269,12 @@ class StationPush {
       throw StoreError(station_.name() + ": session " + std::to_string(session) +
                        " has no events; run `touchtrial verify`");
     }
-    const store::SessionOnFile& course = courses_.at(session);
-    const auto holds = [&](const std::optional<std::int64_t>& at) { return at && *at < end; };
+    const store::SessionOnFile course = course_until(courses_.at(session), end);
     store::SessionRow row = found->second;
-    row.excluded = holds(course.excluded_at);
-    row.withdrawn = holds(course.withdrawn_at);
-    if (holds(course.replaced_at)) row.replaced_by = course.replaced_by;
+    row.excluded = course.excluded_at.has_value();
+    row.withdrawn = course.withdrawn_at.has_value();
+    row.erased = course.erased_at.has_value();
+    row.replaced_by = course.replaced_by;
     row.own_session = session;
     row.station = station;
     refuse_if_there_or_taken(work, *server_, row);

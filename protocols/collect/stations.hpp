@@ -31,8 +31,8 @@ class StationFile {
   /// A session's events in order; none if there is no such session.
   /// \param own_session  its number at the station
   [[nodiscard]] virtual std::vector<store::Event> events(int own_session) = 0;
-  /// Nothing after a withdrawal.
-  [[nodiscard]] virtual std::optional<Bytes> wrapped_key(int own_session) = 0;
+  /// Those that no withdrawal destroyed.
+  [[nodiscard]] virtual store::WrappedKeys wrapped_keys(int own_session) = 0;
   /// The sealed trace of a trial, if there is one.
   [[nodiscard]] virtual std::optional<Bytes> trace(int own_session, int trial) = 0;
   /// Calls `visit` with every trial and sealed trace of a session, by trial. Only a few traces are

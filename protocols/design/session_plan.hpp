@@ -88,6 +88,9 @@ struct Registration {
   std::string stopping_rule;
   std::string exclusions;
   std::string primary_test;
+  /// That stops, faults, largest forces, reasons and deviations of somebody whose data were erased
+  /// are kept, from the session on.
+  int safety_record_years = 10;
 
   friend bool operator==(const Registration&, const Registration&) = default;
 };

@@ -144,13 +144,6 @@ Signer StationKey::signer() const {
   return station_signer(station.secret);
 }
 
-Bytes station_statement(const std::string& study_id, const std::string& name,
-                        const PublicKey& station) {
-  const Digest statement =
-      FieldHasher().add("touchtrial station 1").add(study_id).add(name).add(station).finish();
-  return {statement.begin(), statement.end()};
-}
-
 StudyKey make_study_key(const Study& study, Entropy& entropy, bool simulated) {
   StudyKey key;
   key.master = entropy.secret("touchtrial study key master");

@@ -65,10 +65,6 @@ struct StationKey : StudyCodes {
   [[nodiscard]] Signer signer() const;
 };
 
-/// What the investigator signs of a station: the study, the station's name, and its public half.
-[[nodiscard]] Bytes station_statement(const std::string& study_id, const std::string& name,
-                                      const PublicKey& station);
-
 /// Makes a new key with one station. `entropy` supplies the master secret, for the purpose
 /// "touchtrial study key master", from which all other secrets and the codes are derived. A code
 /// depends only on the master secret, the class label, the image path as written and the method

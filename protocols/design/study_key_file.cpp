@@ -1,7 +1,8 @@
 /// \file The files of key and station. Their bytes follow entirely from their content and one
 /// checksum over it, so that a change of any byte is detected.
 #include "core/errors.hpp"
-#include "core/files.hpp"
+#include "protocols/design/key_protection.hpp"
+#include "protocols/design/recovery_sheet.hpp"
 #include "protocols/design/study_key.hpp"
 
 #include <algorithm>
@@ -15,7 +16,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kVersion = 2;
-constexpr std::uintmax_t kMaxKeyFileBytes = std::uintmax_t{64} << 20U;
 
 /// One kind of file and its words.
 struct Kind {
@@ -121,16 +121,6 @@ Digest digest_from(const json& value) {
   return *digest;
 }
 
-/// Supplies a stored secret, so that the same code makes and rebuilds a key.
-class StoredEntropy final : public Entropy {
- public:
-  explicit StoredEntropy(const SecretKey& master) : master_(master) {}
-  [[nodiscard]] SecretKey secret(std::string_view) override { return master_; }
-
- private:
-  SecretKey master_;
-};
-
 json document_of(const StudyKey& key, const std::filesystem::path& path) {
   json document = common_document(key, kKey, path);
   document["master"] = to_hex(key.master);
@@ -143,10 +133,6 @@ json document_of(const StudyKey& key, const std::filesystem::path& path) {
 }
 
 StudyKey key_of(const json& document, const std::filesystem::path& path) {
-  const Study study = study_from(document, path);
-  StoredEntropy stored(digest_from(document.at("master")));
-  StudyKey key = make_study_key(study, stored, document.at("simulated").get<bool>());
-  key.pack_folder = found_from_key(document.at("pack_folder").get<std::string>(), path);
   std::vector<std::string> names;
   for (const json& station : document.at("stations")) {
     names.push_back(station.at("name").get<std::string>());
@@ -155,7 +141,9 @@ StudyKey key_of(const json& document, const std::filesystem::path& path) {
   for (std::size_t i = 0; i < stations.size(); ++i) {
     stations[i].ranges = ranges_from(document["stations"][i].at("enrolments"));
   }
-  divide(key, std::move(stations));
+  StudyKey key = key_from_master(digest_from(document.at("master")), study_from(document, path),
+                                 std::move(stations), document.at("simulated").get<bool>());
+  key.pack_folder = found_from_key(document.at("pack_folder").get<std::string>(), path);
   const bool same = key.study_id == document.at("study_id").get<std::string>() &&
                     stimuli_to_json(key) == document.at("stimuli");
   if (!same) refuse_damaged(path, kKey);
@@ -230,28 +218,30 @@ void check_format(const json& document, const std::filesystem::path& path, const
 }
 
 template <typename Key>
-void save(const std::filesystem::path& path, const Key& key) {
-  std::string text;
+std::string text_of_key(const std::filesystem::path& path, const Key& key) {
   try {
-    text = text_of_document(document_of(key, path));
+    return text_of_document(document_of(key, path));
   } catch (const json::exception&) {
     refuse(path, "cannot be written: a folder's name is not UTF-8; rename the folder");
   }
-  replace_file(path, text, FileMode::owner_only);
 }
 
-/// Reads a file of secrets strictly, and lets `made` make the key from it.
-template <typename Make>
-auto loaded(const std::filesystem::path& path, const Kind& kind, Make made) {
-  require_owner_only(path);
-  const std::string text = text_of(read_file(path, kMaxKeyFileBytes));
-  const json document = json::parse(text, nullptr, false);
+/// The document of a file's text, read strictly.
+json whole_document(const std::string& text, const std::filesystem::path& path, const Kind& kind) {
+  json document = json::parse(text, nullptr, false);
   if (document.is_discarded()) {
     if (text.find(kind.format) != std::string::npos) refuse_damaged(path, kind);
     check_format(document, path, kind);
   }
   check_format(document, path, kind);
   if (text_of_document(document) != text) refuse_damaged(path, kind);
+  return document;
+}
+
+/// Reads a file of secrets, and lets `made` make the key from it.
+template <typename Make>
+auto loaded(const std::filesystem::path& path, const Kind& kind, Make made) {
+  const json document = whole_document(read_secret_text(path), path, kind);
   try {
     return made(document, path);
   } catch (const json::exception&) {
@@ -266,11 +256,16 @@ auto loaded(const std::filesystem::path& path, const Kind& kind, Make made) {
 }  // namespace
 
 void save_study_key(const std::filesystem::path& path, const StudyKey& key) {
-  save(path, key);
+  save_secret_text(path, text_of_key(path, key));
+}
+
+void save_study_key(const std::filesystem::path& path, const StudyKey& key,
+                    const std::string& passphrase, const PassphraseCost& cost) {
+  write_secret_text(path, text_of_key(path, key), passphrase, cost);
 }
 
 void save_station_key(const std::filesystem::path& path, const StationKey& key) {
-  save(path, key);
+  save_secret_text(path, text_of_key(path, key));
 }
 
 StudyKey load_study_key(const std::filesystem::path& path) {
@@ -279,6 +274,15 @@ StudyKey load_study_key(const std::filesystem::path& path) {
 
 StationKey load_station_key(const std::filesystem::path& path) {
   return loaded(path, kStation, station_of_document);
+}
+
+void protect(const std::filesystem::path& file, const std::optional<std::string>& passphrase,
+             const PassphraseCost& cost) {
+  const std::string text = read_secret_text(file);
+  const bool is_station =
+      text.find("\"format\": \"" + std::string(kStation.format) + "\"") != std::string::npos;
+  static_cast<void>(whole_document(text, file, is_station ? kStation : kKey));
+  write_secret_text(file, text, passphrase, cost);
 }
 
 }  // namespace touchtrial::design

@@ -155,8 +155,8 @@ nlohmann::json to_json(const PracticePlan& practice) {
 }
 
 Registration read_registration(const JsonValue& place) {
-  const JsonObject object =
-      place.object({"hypothesis", "participants", "stopping_rule", "exclusions", "primary_test"});
+  const JsonObject object = place.object({"hypothesis", "participants", "stopping_rule",
+                                          "exclusions", "primary_test", "safety_record_years"});
   Registration registration;
   read_statement(object, "hypothesis", registration.hypothesis);
   if (const auto member = object.find("participants")) {
@@ -165,6 +165,9 @@ Registration read_registration(const JsonValue& place) {
   read_statement(object, "stopping_rule", registration.stopping_rule);
   read_statement(object, "exclusions", registration.exclusions);
   read_statement(object, "primary_test", registration.primary_test);
+  if (const auto member = object.find("safety_record_years")) {
+    registration.safety_record_years = static_cast<int>(member->integer(0, 100));
+  }
   return registration;
 }
 
@@ -173,7 +176,8 @@ nlohmann::json to_json(const Registration& registration) {
           {"participants", registration.participants},
           {"stopping_rule", registration.stopping_rule},
           {"exclusions", registration.exclusions},
-          {"primary_test", registration.primary_test}};
+          {"primary_test", registration.primary_test},
+          {"safety_record_years", registration.safety_record_years}};
 }
 
 }  // namespace touchtrial::design

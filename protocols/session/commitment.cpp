@@ -80,15 +80,17 @@ std::string hashes_of(const design::StudyCodes& key, const engine::Pack& pack) {
   return line("seal", "`" + to_hex(key.seal) + "`") +
          line("pack", "`" + to_hex(pack.digest()) + "`") +
          line("study identity", "`" + key.study_id + "`") +
+         line("investigator", "`" + to_hex(key.investigator_signature) + "`") +
          line("program", "Touchtrial " + std::string(program_version())) +
          "\nThe seal is SHA-256 over key, schedule rule, seed and configuration; "
          "every database of the study begins with it. With the key, `touchtrial verify` tells "
-         "whether a database is of the study that is registered here.\n";
+         "whether a database is of the study that is registered here; without it, whether all "
+         "of it was signed by this investigator and the stations that the investigator named.\n";
 }
 
 }  // namespace
 
-store::StudyCommitment commitment_of(const design::StudyCodes& key, const engine::Pack& pack,
+store::StudyCommitment commitment_of(const design::StationKey& key, const engine::Pack& pack,
                                      bool simulated, bool pilot) {
   store::StudyCommitment commitment;
   commitment.study = key.study.name;
@@ -101,8 +103,17 @@ store::StudyCommitment commitment_of(const design::StudyCodes& key, const engine
   commitment.positions = static_cast<int>(key.study.protocol->choices(key.study).size());
   commitment.simulated = simulated;
   commitment.pilot = pilot;
+  commitment.safety_record_years = key.study.registration.safety_record_years;
   commitment.program_version = program_version();
+  commitment.investigator = key.investigator_signature;
+  commitment.station = {
+      .name = key.station.name, .key = key.signer().public_half(), .certificate = key.certificate};
   return commitment;
+}
+
+store::StudyCommitment commitment_of(const design::StudyKey& key, const engine::Pack& pack,
+                                     bool simulated, bool pilot) {
+  return commitment_of(design::station_key(key, key.stations.front().name), pack, simulated, pilot);
 }
 
 void require_prepared(const design::Study& study, const design::StudyCodes& key,

@@ -12,7 +12,11 @@
 namespace touchtrial::session {
 
 /// The first event of a study's file chain.
-[[nodiscard]] store::StudyCommitment commitment_of(const design::StudyCodes& key,
+[[nodiscard]] store::StudyCommitment commitment_of(const design::StationKey& key,
+                                                   const engine::Pack& pack, bool simulated,
+                                                   bool pilot);
+/// The same for the key's first station.
+[[nodiscard]] store::StudyCommitment commitment_of(const design::StudyKey& key,
                                                    const engine::Pack& pack, bool simulated,
                                                    bool pilot);
 

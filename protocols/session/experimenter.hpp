@@ -31,8 +31,8 @@ struct ExperimenterRequest {
   enum class Kind {
     pause,         ///< `text` is the reason
     resume,        ///< ends a pause
-    comfort_stop,  ///< zero force within 100 ms; `text` is the reason, which must not describe the
-                   ///< texture; the trial is recorded as interrupted
+    comfort_stop,  ///< zero force within 100 ms; the trial is recorded as interrupted, and a reason
+                   ///< in `text` as the deviation kComfortStopCode
     note,          ///< `text`
     deviation,     ///< `code`, and `text` which may be empty
     abort,         ///< `text` is the reason; the session is stopped and closed
@@ -43,6 +43,9 @@ struct ExperimenterRequest {
   std::string text;
   std::string code;
 };
+
+/// Code of the deviation whose text says why there was a comfort stop.
+inline constexpr const char* kComfortStopCode = "comfort-stop";
 
 /// An item of the day sheet.
 struct DaySheetItem {

@@ -91,10 +91,13 @@ store::ServoHealth health_of(const device::ServoReport& report, std::int64_t los
 /// The sealed part of an interruption: the faults by name, and the ticks before them.
 store::InterruptionDetail detail_of(const device::ServoReport& report,
                                     const std::vector<device::FlightTick>& ticks) {
+  double largest = 0.0;
+  for (const device::FlightTick& tick : ticks) largest = std::max(largest, norm(tick.sent_n));
   return {.safety_fault = std::string(device::name_of(report.fault)),
           .device_fault = std::string(device::name_of(report.device_fault)),
           .ticks = static_cast<std::int64_t>(ticks.size()),
-          .flight = device::flight_csv(ticks)};
+          .flight = device::flight_csv(ticks),
+          .largest_force_n = largest};
 }
 
 }  // namespace

@@ -172,12 +172,14 @@ void Session::interrupt(Time at, const std::string& reason,
                         const std::optional<store::InterruptionDetail>& detail) {
   require(Input::interrupt, at);
   recorder_.interrupted(at, current()->trial, reason, detail);
+  if (detail) note_force(detail->largest_force_n);
   give_up_presentation(at);
   restart_block(at);
 }
 
 void Session::keep_evidence(store::TrialEvidence evidence) {
   require(Input::keep_evidence, last_);
+  note_force(evidence.body.largest_force_n);
   evidence_ = std::move(evidence);
 }
 
@@ -206,11 +208,21 @@ void Session::confirm(Time at, std::optional<int> confidence) {
   finish_presentation(at);
 }
 
+void Session::note_evidence(const store::TraceBody& body) {
+  if (body.saturated) ++saturated_;
+  note_force(body.largest_force_n);
+}
+
 void Session::note_answer(Time at, int position) {
   answers_.push_back({position, at - presented_at_});
 }
 
+void Session::note_force(double largest_n) {
+  largest_force_n_ = std::max(largest_force_n_.value_or(0.0), largest_n);
+}
+
 void Session::finish_presentation(Time at) {
+  if (evidence_) note_evidence(evidence_->body);
   course_.finish();
   evidence_.reset();
   ++done_since_break_;
@@ -288,15 +300,16 @@ void Session::note(Time at, const std::string& text) {
   move_to(phase_, at);
 }
 
-void Session::stop(Time at, const std::string& reason) {
+void Session::stop(Time at, const std::string& reason, const std::string& code) {
   require(Input::stop, at);
-  recorder_.remarked(at, store::EventKind::stopped, reason);
+  recorder_.stopped(at, {.code = code, .text = reason});
   move_to(Phase::stopped, at);
 }
 
 void Session::close(Time at) {
   require(Input::close, at);
-  recorder_.closed(at, phase_ == Phase::finished, summary_of(answers_));
+  recorder_.closed(at, phase_ == Phase::finished, summary_of(answers_), saturated_,
+                   largest_force_n_);
   move_to(Phase::closed, at);
 }
 

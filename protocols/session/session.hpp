@@ -132,8 +132,8 @@ class Session {
   void time_out(Time at);
   /// The presentation was spoilt by a comfort stop or a device fault. The study's on_interruption
   /// decides whether it is repeated. Its evidence is discarded.
-  /// \param reason  in clear: must not depend on the stimulus
-  /// \param detail  sealed
+  /// \param reason  in clear: must not depend on the stimulus, and be nobody's words
+  /// \param detail  sealed but for the faults' names
   void interrupt(Time at, const std::string& reason,
                  const std::optional<store::InterruptionDetail>& detail = std::nullopt);
   /// SessionRecorder::packed. May be called on another thread, except during `restore`.
@@ -169,7 +169,9 @@ class Session {
   /// \param answers  JSON, sealed
   void question(Time at, const std::string& name, const std::string& answers);
   /// Ends the session early. The current presentation remains without an answer.
-  void stop(Time at, const std::string& reason);
+  /// \param reason  in the experimenter's words, sealed; may be empty
+  /// \param code  in clear, if the program stops it
+  void stop(Time at, const std::string& reason, const std::string& code = "");
   void close(Time at);
 
  private:
@@ -184,6 +186,8 @@ class Session {
   void begin_presentation(Time at) noexcept;
   void finish_presentation(Time at);
   void note_answer(Time at, int position);
+  void note_evidence(const store::TraceBody& body);
+  void note_force(double largest_n);
   /// Takes the current presentation off, as the study's on_interruption has it.
   void give_up_presentation(Time at);
   /// Draws, records and begins a block anew, if the course waits for it.
@@ -211,6 +215,8 @@ class Session {
   std::optional<Answer> answer_;
   SessionRemarks remarks_;
   std::vector<GivenAnswer> answers_;
+  int saturated_ = 0;                      ///< trials
+  std::optional<double> largest_force_n_;  ///< sent in presentations
   int begun_ = 0;
   int done_since_break_ = 0;
 };

@@ -13,6 +13,8 @@ constexpr std::chrono::milliseconds kBetweenShows{250};
 /// Pause between two looks for a reply, which leaves the processor to others.
 constexpr std::chrono::milliseconds kBreath{2};
 
+constexpr const char* kComfortStop = "comfort stop";
+
 std::string with_text(const std::string& words, const std::string& text) {
   return text.empty() ? words : words + ": " + text;
 }
@@ -133,9 +135,11 @@ bool SessionDesk::end_is_postponed() const noexcept {
 void SessionDesk::heed(Request request, device::ServoControl& servo) {
   switch (request.kind) {
     case Request::Kind::comfort_stop:
-      reason_ = with_text("comfort stop", request.text);
+      reason_ = kComfortStop;
       servo.comfort_stop();
-      return;  // done
+      if (request.text.empty()) return;  // done
+      request = {Request::Kind::deviation, request.text, kComfortStopCode};
+      break;
     case Request::Kind::abort:
     case Request::Kind::leave:
       reason_ = request.kind == Request::Kind::abort ? "aborted" : "program ended";
@@ -226,13 +230,13 @@ bool SessionDesk::obey_pause(const Request& request) {
 /// No force is on. Interrupts the current presentation, and has the device ask for consent before
 /// there is force again.
 bool SessionDesk::obey_comfort_stop(const Request& request) {
-  const std::string reason = with_text("comfort stop", request.text);
   if (session_.phase() == SessionPhase::paused) session_.resume(now());
-  if (session_.accepts(SessionInput::interrupt)) {
-    session_.interrupt(now(), count_interruption(reason));
-    return false;
+  const bool interrupts = session_.accepts(SessionInput::interrupt);
+  if (interrupts) session_.interrupt(now(), count_interruption(kComfortStop));
+  if (!interrupts || !request.text.empty()) {
+    session_.deviate(now(), {.code = kComfortStopCode, .text = request.text});
   }
-  session_.note(now(), reason);
+  if (interrupts) return false;
   parts_.devices.interrupted();
   return session_.phase() != SessionPhase::ready;
 }
@@ -279,7 +283,7 @@ bool SessionDesk::wait_for_device(SupplyState device) {
   if (device::StopOnSignals::asked()) return leave(device::StopOnSignals::message());
   // The experimenter may have given a reason.
   if (!obey()) return false;
-  session_.stop(now(), "stopped while waiting for the device");
+  session_.stop(now(), "", "stopped while waiting for the device");
   return false;
 }
 

@@ -60,6 +60,7 @@ bool Session::follow_trial(const store::Event& event) {
       had_contact_ = true;
       return true;
     case store::EventKind::trace_stored:
+      note_evidence(store::trace_body_from_json(event.body));
       return true;
     case store::EventKind::timed_out:
       require_current();
@@ -80,6 +81,7 @@ bool Session::follow_trial(const store::Event& event) {
     }
     case store::EventKind::interrupted:
       require_current();
+      note_force(store::trial_from_json(event.body).largest_force_n);
       give_up_presentation(event.at);
       return true;
     case store::EventKind::explored_again:

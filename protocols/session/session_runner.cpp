@@ -172,7 +172,7 @@ void run_trials(SessionDesk& desk, SessionTally& tally) {
     trials.run();
     static_cast<void>(desk.obey());
     if (desk.interruptions() > most_interruptions && session.accepts(SessionInput::stop)) {
-      session.stop(desk.now(), "too many faults");
+      session.stop(desk.now(), "", "too many faults");
     }
   }
 }

@@ -56,8 +56,9 @@ struct SessionParts {
 /// Runs a session that was opened or taken up again until it is closed or left: the opening stages
 /// that are not done yet, the trials, and the closing questions.
 ///
-/// Nothing stored in clear depends on what is presented, except whether trials are valid by the
-/// rule's clear part, and how answers are spread (store::AnswerSummary). An answer is acknowledged
+/// Nothing stored in clear depends on what is presented, except whether the exploration was long
+/// enough and the hand within its windows (store::HandWindows), and what a session's end sums up
+/// (store::ClosedBody). An answer is acknowledged
 /// once it is durable. A presentation that ends in a fault or a comfort stop is recorded as
 /// interrupted, and the study decides whether it is repeated; the session is then paused until the
 /// device supply is ready again. The session is stopped when the supply gives

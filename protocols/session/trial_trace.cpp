@@ -40,6 +40,37 @@ ContactSums sums_of(const store::Trace& trace, double max_force_n, const Validit
   return sums;
 }
 
+/// What the hand did at the plane. No texture's force is used but the one across the plane, which
+/// on average is the hand's own push.
+store::HandWindows hand_windows(const store::Trace& trace, const ValidityRule& rule) {
+  double samples = 0.0;
+  double path_mm = 0.0;
+  double normal_n = 0.0;
+  const store::TraceSample* before = nullptr;  // the previous sample, if it was at the plane
+  for (const store::TraceSample& sample : trace.samples) {
+    if (sample.position_mm.z > kLandingHeightMm) {
+      before = nullptr;
+      continue;
+    }
+    samples += 1.0;
+    normal_n += sample.force_n.z;
+    if (before != nullptr) {
+      const Vec3 way = sample.position_mm - before->position_mm;
+      path_mm += std::hypot(way.x, way.y);
+    }
+    before = &sample;
+  }
+  if (samples == 0.0) return {.contact = false, .path = false, .force = false, .speed = false};
+  const auto is_within = [](double value, double least, double largest) {
+    return value >= least && value <= largest;
+  };
+  const double time_s = samples / trace.rate_hz;
+  return {.contact = time_s >= rule.least_contact_s,
+          .path = path_mm >= rule.least_path_mm,
+          .force = is_within(normal_n / samples, rule.least_median_n, rule.largest_median_n),
+          .speed = is_within(path_mm / time_s, kSlowestMmS, kFastestMmS)};
+}
+
 double exploring_s(const store::Trace& trace) {
   const auto landing = std::ranges::find_if(trace.samples, [](const store::TraceSample& sample) {
     return sample.position_mm.z <= kLandingHeightMm;
@@ -76,7 +107,10 @@ TrialFindings findings_of(const store::Trace& trace, double max_force_n, const V
   measures.within_limits = measures.contact_s >= rule.least_contact_s &&
                            measures.path_mm >= rule.least_path_mm && median_fits &&
                            measures.saturated_share < rule.saturated_share;
-  return {measures, exploring_s(trace) >= rule.least_exploring_s};
+  return {.measures = measures,
+          .long_enough = exploring_s(trace) >= rule.least_exploring_s,
+          .hand = hand_windows(trace, rule),
+          .saturated = measures.saturated_share >= rule.saturated_share};
 }
 
 void TrialTrace::begin() {
@@ -128,6 +162,8 @@ JudgedEvidence TrialTrace::judged(const Session& session, int trial) const {
   if (held_in_contact_ > 0) findings.measures.within_limits = false;
   store::TraceBody body = this->body(trial);
   body.valid = findings.long_enough;
+  body.hand = findings.hand;
+  body.saturated = findings.saturated;
   if (health_) findings.measures.limited_ticks = limited_ticks_;
   return {session.packed(body, findings.measures, trace_), findings.valid()};
 }

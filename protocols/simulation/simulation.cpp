@@ -43,7 +43,7 @@ struct Place {
 /// A session on its way to the database.
 struct FinishedSession {
   store::BufferedEvents events;
-  Bytes wrapped_key;
+  store::NewKeys keys;
   session::SessionTally tally;
 };
 
@@ -85,8 +85,7 @@ FinishedSession run_session(const Setting& setting, const Place& place) {
       setting.population.participant(place.number);
   finished.tally =
       session::run_session_in_virtual_time(session, setting.key, setting.source, *participant);
-  finished.wrapped_key =
-      store::wrap_participant_key(setting.key.investigator_box, place.session, key);
+  finished.keys = store::wrap_participant_key(setting.key.investigator_box, place.session, key);
   return finished;
 }
 
@@ -102,7 +101,7 @@ class Collector {
   void take(const FinishedSession& session) {
     // Virtual sessions follow one another without a pause.
     at_ += session.tally.duration;
-    store_.add_session(session.events, session.wrapped_key, at_);
+    store_.add_session(session.events, session.keys, at_);
     ++report_.sessions;
     report_.presentations += session.tally.presentations;
     report_.invalid_trials += session.tally.invalid_trials;

@@ -13,24 +13,43 @@ namespace {
 
 using Members = std::span<const std::string_view>;
 
+constexpr auto kExcluded = std::to_array<std::string_view>({"after_outcomes", "session"});
+constexpr auto kWithdrawn = std::to_array<std::string_view>({"kept", "not_erased", "session"});
+constexpr auto kReplaced = std::to_array<std::string_view>({"by", "session"});
+constexpr auto kRemarked = std::to_array<std::string_view>({"code", "session"});
 constexpr auto kAnswered = std::to_array<std::string_view>({"trial"});
 constexpr auto kPractised = std::to_array<std::string_view>({"presentation", "round"});
-constexpr auto kDeviated = std::to_array<std::string_view>({"code"});
+constexpr auto kCode = std::to_array<std::string_view>({"code"});
+constexpr auto kInterrupted =
+    std::to_array<std::string_view>({"device_fault", "reason", "safety_fault", "trial"});
 constexpr auto kResumed = std::to_array<std::string_view>({"after", "program_version"});
-constexpr auto kTraceStored = std::to_array<std::string_view>(
-    {"overruns", "rate_hz", "seconds", "servo", "trace", "trial", "valid"});
+constexpr auto kTraceStored =
+    std::to_array<std::string_view>({"contact_ok", "force_ok", "overruns", "path_ok", "rate_hz",
+                                     "servo", "speed_ok", "trace", "trial", "valid"});
 
 /// The members that stay in clear; empty: all do.
 std::optional<Members> clear_members(EventKind kind) {
   switch (kind) {
+    case EventKind::participant_excluded:
+      return kExcluded;
+    case EventKind::participant_withdrawn:
+      return kWithdrawn;
+    case EventKind::participant_replaced:
+      return kReplaced;
+    case EventKind::participant_noted:
+      return kRemarked;
     case EventKind::answered:
       return kAnswered;
+    case EventKind::interrupted:
+      return kInterrupted;
     case EventKind::practised:
       return kPractised;
     case EventKind::noted:
+    case EventKind::paused:
       return Members();
+    case EventKind::stopped:
     case EventKind::deviated:
-      return kDeviated;
+      return kCode;
     case EventKind::resumed:
       return kResumed;
     case EventKind::trace_stored:
@@ -80,6 +99,8 @@ std::size_t sealed_padding(EventKind kind) {
     case EventKind::opened:
     case EventKind::interrupted:
     case EventKind::noted:
+    case EventKind::paused:
+    case EventKind::stopped:
     case EventKind::deviated:
     case EventKind::questioned:
     case EventKind::block_restarted:

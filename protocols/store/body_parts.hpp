@@ -15,7 +15,7 @@ struct BodyParts {
   std::string hidden;  ///< empty if every member is in clear
 };
 
-/// \param body  whole, of an event of a session
+/// \param body  whole, of an event of a session, or about a person
 /// \throws StoreError if the body is not a JSON object
 [[nodiscard]] BodyParts split_body(EventKind kind, const std::string& body);
 /// The whole body again, as `split_body` got it.

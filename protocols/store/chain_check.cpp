@@ -31,6 +31,30 @@ std::optional<Id> first_difference(const std::map<Id, Row>& expected, const std:
   return std::nullopt;
 }
 
+/// The signatures of one file chain. Where not everything is checked, those of the last event,
+/// which vouches for the events before it, and of unblindings.
+class SignatureCheck {
+ public:
+  explicit SignatureCheck(TraceCheck depth) : every_(depth == TraceCheck::full) {}
+
+  void add(const Event& event, bool is_signed) {
+    if (!signatories_) signatories_.emplace(event);
+    if (!is_signed && !event.signature.empty()) {
+      throw EventFault(event, "follows from the stations' chains, but has a signature");
+    }
+    last_ = is_signed ? std::optional(event) : std::nullopt;
+    if (last_ && (every_ || event.kind == EventKind::study_unblinded)) signatories_->require(event);
+  }
+  void finish() const {
+    if (last_) signatories_->require(*last_);
+  }
+
+ private:
+  bool every_;
+  std::optional<Signatories> signatories_;
+  std::optional<Event> last_;
+};
+
 /// Walks through everything once, and throws EventFault at the first thing that does not hold.
 class Inspection {
  public:
@@ -38,12 +62,15 @@ class Inspection {
 
   void run(TraceCheck traces) {
     if (traces == TraceCheck::full) inspect_structure();
-    const std::vector<Event> collected = inspect_stations();
+    const std::vector<Event> collected = inspect_stations(traces);
     if (is_collected_) file_ = FileChain(UniquePlaces::in_the_end);
+    SignatureCheck signatures(traces);
     walk(0, [&](const Event& event) {
       if (!collected.empty()) inspect_collected(event, collected);
       file_.add(event);
+      signatures.add(event, /*is_signed=*/event.sequence >= std::ssize(collected));
     });
+    signatures.finish();
     if (!file_.commitment()) throw EventFault(0, kNoEvent, "the file's chain is empty");
     inspect_length(collected);
     inspect_sessions();
@@ -75,14 +102,14 @@ class Inspection {
   }
 
   /// \return the chain that the stations' chains come to; empty if there are no stations
-  [[nodiscard]] std::vector<Event> inspect_stations() {
+  [[nodiscard]] std::vector<Event> inspect_stations(TraceCheck traces) {
     std::vector<StationChain> stations;
     std::int64_t lowest = 0;
     for (const std::int64_t session : sessions_with_events(database_)) {
       lowest = std::clamp(session, -std::int64_t{std::numeric_limits<int>::max()}, lowest);
     }
     for (int station = 1; station <= -lowest; ++station) {
-      stations.push_back(inspect_station(station));
+      stations.push_back(inspect_station(station, traces));
       if (station > 1 && !comes_before(stations[stations.size() - 2], stations.back())) {
         throw EventFault(-station, kNoEvent, "does not come after that of the station before");
       }
@@ -98,13 +125,16 @@ class Inspection {
     }
   }
 
-  [[nodiscard]] StationChain inspect_station(int station) const {
+  [[nodiscard]] StationChain inspect_station(int station, TraceCheck traces) const {
     StationChain found{.name = "station " + std::to_string(station), .events = {}};
     FileChain file;
+    SignatureCheck signatures(traces);
     walk(-station, [&](const Event& event) {
       file.add(event);
+      signatures.add(event, /*is_signed=*/true);
       found.events.push_back(event);
     });
+    signatures.finish();
     if (!station_identity(found.events)) throw EventFault(-station, kNoEvent, "opens no session");
     return found;
   }
@@ -155,16 +185,17 @@ class Inspection {
   }
 
   void inspect_keys() const {
-    std::map<std::int64_t, Digest> stored;
-    Query query = database_.query("SELECT session, wrapped FROM participant_keys");
-    while (query.step()) stored[query.integer(0)] = sha256(query.blob(1));
     for (const auto& [session, on_file] : file_.sessions()) {
-      const auto key = stored.extract(session);
-      SessionCheck(session, on_file, *file_.commitment())
-          .check_key(key.empty() ? std::nullopt : std::optional(key.mapped()));
+      SessionCheck(session, on_file, *file_.commitment()).check_keys(read_keys(database_, session));
     }
-    if (!stored.empty())
-      throw EventFault(stored.begin()->first, kNoEvent, "a participant's key has no session");
+    Query query = database_.query(
+        "SELECT session FROM participant_keys UNION SELECT session FROM safety_keys ORDER BY 1");
+    while (query.step()) {
+      const std::int64_t session = query.integer(0);
+      const bool known = session > 0 && session <= std::numeric_limits<int>::max() &&
+                         file_.sessions().contains(static_cast<int>(session));
+      if (!known) throw EventFault(session, kNoEvent, "a participant's key has no session");
+    }
     inspect_station_keys();
   }
 
@@ -173,7 +204,8 @@ class Inspection {
     Query query = database_.query("SELECT session FROM station_keys ORDER BY session");
     while (query.step()) {
       const std::int64_t session = query.integer(0);
-      const auto on_file = file_.sessions().find(static_cast<int>(session));
+      const auto on_file = std::ranges::find_if(
+          file_.sessions(), [&](const auto& known) { return known.first == session; });
       const bool is_open = on_file != file_.sessions().end() && !on_file->second.closed &&
                            !on_file->second.withdrawn_at;
       if (is_open) continue;
@@ -197,7 +229,7 @@ class Inspection {
         throw EventFault(id.first, kNoEvent,
                          "trace of trial " + std::to_string(id.second) + " has no event");
       }
-      if (sha256(query.blob(2)) != claim->second.digest) {
+      if (blake2b(query.blob(2)) != claim->second.digest) {
         throw EventFault(id.first, claim->second.sequence, trace_of(claim->first) + " was altered");
       }
       ++claim;
@@ -210,6 +242,16 @@ class Inspection {
                                           [](const SessionRow& row) { return row.session; });
     if (differs)
       throw EventFault(*differs, kNoEvent, "derived table sessions disagrees with the events");
+    inspect_empty_columns();
+  }
+
+  /// What is absent is NULL. Rows read alike without, but queries and indices tell the two apart.
+  void inspect_empty_columns() const {
+    Query query = database_.query(
+        "SELECT session FROM sessions WHERE replaced_by = '' OR own_session = session");
+    if (!query.step()) return;
+    throw EventFault(query.integer(0), kNoEvent,
+                     "derived table sessions has a value where its events give none");
   }
 
   void inspect_trial_rows() const {

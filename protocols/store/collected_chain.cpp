@@ -64,10 +64,15 @@ class Feed {
   int about_ = 0;
 };
 
-/// A station's commitment without the program's version, in which stations may differ.
-StudyCommitment without_version(const StationChain& station) {
-  StudyCommitment commitment = body_of(station.events.front(), commitment_from_json);
+StudyCommitment commitment_of(const StationChain& station) {
+  return body_of(station.events.front(), commitment_from_json);
+}
+
+/// A station's commitment without what stations may differ in.
+StudyCommitment common_commitment(const StationChain& station) {
+  StudyCommitment commitment = commitment_of(station);
   commitment.program_version.clear();
+  commitment.station.reset();
   return commitment;
 }
 
@@ -78,13 +83,14 @@ std::string difference(const StudyCommitment& a, const StudyCommitment& b) {
   if (a.pilot != b.pilot) return "one is of a pilot, the other is not";
   if (a.seal != b.seal) return "their seals differ, as the study was changed between them";
   if (a.pack != b.pack) return "they were recorded with different packs";
+  if (a.investigator != b.investigator) return "they name different investigators";
   return "their studies' configurations differ";
 }
 
 void require_one_study(std::span<const StationChain> stations) {
-  const StudyCommitment first = without_version(stations.front());
+  const StudyCommitment first = common_commitment(stations.front());
   for (const StationChain& station : stations.subspan(1)) {
-    const StudyCommitment other = without_version(station);
+    const StudyCommitment other = common_commitment(station);
     if (other == first) continue;
     throw StoreError(one_line(stations.front().name + " and " + station.name +
                               " cannot be collected into one: " + difference(first, other) +
@@ -118,7 +124,7 @@ class Places {
 class Collection {
  public:
   explicit Collection(std::span<const StationChain> stations) : stations_(stations) {
-    const bool simulated = body_of(stations.front().events.front(), commitment_from_json).simulated;
+    const bool simulated = commitment_of(stations.front()).simulated;
     int number = 0;
     for (const StationChain& station : stations) feeds_.emplace_back(station, ++number, simulated);
     for (const Feed& feed : feeds_) {
@@ -130,9 +136,12 @@ class Collection {
 
   CollectedChain made() {
     const Event& first = stations_.front().events.front();
-    append(EventKind::study_committed, first.at, first.body);
+    StudyCommitment commitment = commitment_of(stations_.front());
+    commitment.station.reset();
+    append(EventKind::study_committed, first.at, to_json(commitment));
     while (Feed* const next = next_feed()) take(*next);
     refuse_taken_twice();
+    look_at_persons();
     end_collection();
     unblind();
     for (const Feed& feed : feeds_) {
@@ -144,9 +153,9 @@ class Collection {
   }
 
  private:
-  void append(EventKind kind, nanoseconds at, std::string body) {
+  void append(EventKind kind, nanoseconds at, std::string body, Bytes sealed = {}) {
     const Event* const last = chain_.events.empty() ? nullptr : &chain_.events.back();
-    chain_.events.push_back(next_on_file(last, kind, at, std::move(body)));
+    chain_.events.push_back(next_on_file(last, kind, at, std::move(body), std::move(sealed)));
   }
 
   /// Whether a feed opens a session whose place another session has at this point of the chain.
@@ -238,18 +247,48 @@ class Collection {
         taken_.remove(session);
         former_.remove(session);
       }
-      append(event.kind, event.at, body_of(event, [&](const std::string& body) {
-               return renumbered(body, numbers_.at(place));
-             }));
+      std::string renumbered_body = body_of(
+          event, [&](const std::string& body) { return renumbered(body, numbers_.at(place)); });
+      append(event.kind, event.at, std::move(renumbered_body), event.sealed);
     }
     feed.advance();
   }
 
-  /// The last event of a kind on a station's chain.
+  /// Whether an event is a look at one participant's outcomes.
+  static bool is_personal(const Event& event) {
+    return event.kind == EventKind::study_unblinded &&
+           !body_of(event, unblinding_from_json).participant.empty();
+  }
+
+  /// The last event of a kind on a station's chain, other than looks at one participant.
   static const Event* last_of(const StationChain& station, EventKind kind) {
-    const auto found = std::find_if(station.events.rbegin(), station.events.rend(),
-                                    [&](const Event& event) { return event.kind == kind; });
+    const auto found =
+        std::find_if(station.events.rbegin(), station.events.rend(),
+                     [&](const Event& event) { return event.kind == kind && !is_personal(event); });
     return found == station.events.rend() ? nullptr : &*found;
+  }
+
+  /// Every look at one participant, with the sessions that it shows, by time and station.
+  void look_at_persons() {
+    std::multimap<nanoseconds, UnblindingBody> looks;
+    for (const Feed& feed : feeds_) {
+      const std::span<const Event> events = feed.station().events;
+      for (std::size_t i = 0; i < events.size(); ++i) {
+        if (!is_personal(events[i])) continue;
+        UnblindingBody body = body_of(events[i], unblinding_from_json);
+        body.sessions.emplace();
+        for (const Event& before : events.first(i)) {
+          if (before.kind != EventKind::session_opened) continue;
+          const SessionOpenedBody opened = body_of(before, session_opened_from_json);
+          const auto number = numbers_.find({feed.number(), opened.session});
+          if (opened.participant != body.participant || number == numbers_.end()) continue;
+          body.sessions->push_back(number->second);
+        }
+        std::ranges::sort(*body.sessions);
+        looks.emplace(events[i].at, std::move(body));
+      }
+    }
+    for (const auto& [at, body] : looks) append(EventKind::study_unblinded, at, to_json(body));
   }
 
   /// The study is closed if all stations closed it.
@@ -284,7 +323,8 @@ class Collection {
         reasons.push_back(state.unblinding_reason);
       }
       for (const auto& [own, session] : feed.sessions()) {
-        if (session.closed && state.shows(own)) shown.push_back(numbers_.at({feed.number(), own}));
+        if (session.closed && state.reports(own))
+          shown.push_back(numbers_.at({feed.number(), own}));
       }
     }
     if (reasons.empty()) return;

@@ -45,13 +45,14 @@ struct CollectedChain {
 [[nodiscard]] bool comes_before(const StationChain& a, const StationChain& b);
 
 /// Makes the collected chain:
-/// - First comes the commitment of the first station.
+/// - First comes the commitment of the first station, without the station.
 /// - Then come the stations' events about sessions that have ended. Each station's events keep
 ///   their order. Of the stations' next events, the earliest comes first; in simulated studies,
 ///   whose times mean nothing, the one about the smallest enrolment number. While any other event
 ///   can come, the opening of a session waits until the former holder of its participant id or
 ///   enrolment number has been replaced. Sessions are numbered in the order in which they are
 ///   opened here.
+/// - Then come the stations' looks at single participants, with the sessions that they show.
 /// - At the end stands that the study is closed, if it is at all stations, and that it is
 ///   unblinded, if it is at all stations with sessions.
 /// \param stations  in the order of comes_before, each chain valid by itself (checked_file_chain)

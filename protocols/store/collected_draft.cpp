@@ -142,7 +142,7 @@ const CollectedChain& CollectedDraft::begin(std::span<const StationChain> statio
 }
 
 void CollectedDraft::add_session(int session, std::span<const Event> events,
-                                 const std::optional<Bytes>& key) {
+                                 const WrappedKeys& keys) {
   impl_->session = session;
   const SessionOnFile& on_file = impl_->on_file.sessions().at(session);
   SessionCheck check(session, on_file, *impl_->on_file.commitment());
@@ -155,14 +155,14 @@ void CollectedDraft::add_session(int session, std::span<const Event> events,
     }
     check.finish(rows);
     impl_->settle(session, rows);
-    check.check_key(key ? std::optional(sha256(*key)) : std::nullopt);
+    check.check_keys(keys);
     impl_->check_kind(here.front());
   });
   impl_->claims = check.claims();
   impl_->database.change([&] {
     for (const Event& event : here) insert_event(impl_->database, event);
     write_rows(impl_->database, rows);
-    if (key) insert_key(impl_->database, session, *key);
+    insert_keys(impl_->database, session, keys);
   });
 }
 
@@ -173,7 +173,7 @@ void CollectedDraft::add_trace(int trial, const Bytes& box) {
     if (claim == impl_->claims.end()) {
       throw EventFault(impl_->session, kNoEvent, name + " has no event, or is there twice");
     }
-    if (sha256(box) != claim->second.digest) {
+    if (blake2b(box) != claim->second.digest) {
       throw EventFault(impl_->session, claim->second.sequence, name + " was altered");
     }
     impl_->claims.erase(claim);

@@ -43,7 +43,7 @@ class CollectedDraft {
   /// \throws EventFault, with the session's own number, if anything does not hold
   /// \throws StoreError if the session is seen on a screen and others are felt, or the other way
   ///   round, or it cannot be written
-  void add_session(int session, std::span<const Event> events, const std::optional<Bytes>& key);
+  void add_session(int session, std::span<const Event> events, const WrappedKeys& keys);
   /// A trace of the session that was added last; traces may come in any order.
   /// \throws the same
   void add_trace(int trial, const Bytes& box);

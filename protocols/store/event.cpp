@@ -9,7 +9,16 @@
 namespace touchtrial::store {
 namespace {
 
-constexpr std::array<std::pair<EventKind, std::string_view>, 30> kNames = {{
+constexpr std::string_view kSignedAs = "touchtrial event 1";
+
+/// What is signed of an event, whose hash stands for the chain up to it.
+auto statement_of(const Event& event) {
+  std::array<std::uint8_t, kSignedAs.size() + Digest{}.size()> statement{};
+  std::ranges::copy(event.hash, std::ranges::copy(kSignedAs, statement.begin()).out);
+  return statement;
+}
+
+constexpr std::array<std::pair<EventKind, std::string_view>, 31> kNames = {{
     {EventKind::study_committed, "study-committed"},
     {EventKind::session_opened, "session-opened"},
     {EventKind::session_closed, "session-closed"},
@@ -19,6 +28,7 @@ constexpr std::array<std::pair<EventKind, std::string_view>, 30> kNames = {{
     {EventKind::study_unblinded, "study-unblinded"},
     {EventKind::participant_replaced, "participant-replaced"},
     {EventKind::participant_noted, "participant-noted"},
+    {EventKind::loss_accepted, "loss-accepted"},
     {EventKind::opened, "opened"},
     {EventKind::calibrated, "calibrated"},
     {EventKind::instructed, "instructed"},
@@ -58,11 +68,11 @@ std::optional<EventKind> event_kind_from_name(std::string_view name) {
 }
 
 bool belongs_to_file_chain(EventKind kind) {
-  return kind <= EventKind::participant_noted;
+  return kind <= EventKind::loss_accepted;
 }
 
 Digest event_hash(const Event& event) {
-  return FieldHasher()
+  return FieldHasher(HashFunction::blake2b)
       .add(std::int64_t{event.own_session()})
       .add(event.sequence)
       .add(name_of(event.kind))
@@ -73,18 +83,28 @@ Digest event_hash(const Event& event) {
       .finish();
 }
 
-Event next_on_file(const Event* last, EventKind kind, std::chrono::nanoseconds at,
-                   std::string body) {
+Event next_on_file(const Event* last, EventKind kind, std::chrono::nanoseconds at, std::string body,
+                   Bytes sealed) {
   Event event{.session = 0,
               .sequence = last == nullptr ? 0 : last->sequence + 1,
               .kind = kind,
               .at = at,
               .body = std::move(body),
-              .sealed = {},
+              .sealed = std::move(sealed),
               .previous = last == nullptr ? Digest{} : last->hash,
               .hash = {}};
   event.hash = event_hash(event);
   return event;
+}
+
+Event signed_event(Event event, const Signer& signer) {
+  const Signature signature = signer.sign(statement_of(event));
+  event.signature.assign(signature.begin(), signature.end());
+  return event;
+}
+
+bool is_event_signed_by(const PublicKey& signer, const Event& event) {
+  return is_signed_by(signer, statement_of(event), event.signature);
 }
 
 ChainLink ChainLink::after(const Event& last) {
@@ -98,6 +118,8 @@ std::optional<std::string> ChainLink::broken_by(const Event& next) const {
   if (next.session != session_ || next.own_session() != own_session_) {
     return "the event belongs to another chain";
   }
+  // So that one content has one form.
+  if (next.renumbered_from == next.session) return "the event says its own number twice";
   if (next.sequence > length_) {
     return "sequence gap: event " + std::to_string(length_) + " is missing";
   }
@@ -111,6 +133,7 @@ std::optional<std::string> ChainLink::broken_by(const Event& next) const {
     return "an event of kind '" + std::string(name_of(next.kind)) + "' does not belong here";
   }
   if (session_ > 0 && next.at.count() != 0) return "the time of the event is not sealed";
+  if (session_ > 0 && !next.signature.empty()) return "an event of a session has a signature";
   return std::nullopt;
 }
 

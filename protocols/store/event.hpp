@@ -4,6 +4,7 @@
 
 #include "core/bytes.hpp"
 #include "core/hash.hpp"
+#include "core/public_keys.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -25,6 +26,7 @@ enum class EventKind {
   study_unblinded,
   participant_replaced,  ///< another participant takes this one's place in the order of enrolment
   participant_noted,     ///< a remark or deviation that is recorded after or outside a session
+  loss_accepted,         ///< the database lacks what its head file knows, and goes on without it
 
   opened,
   calibrated,
@@ -55,9 +57,10 @@ enum class EventKind {
 /// Whether events of this kind stand on the file's chain; all others stand on a session's.
 [[nodiscard]] bool belongs_to_file_chain(EventKind kind);
 
-/// One event. Anybody can read `body`, which says nothing about stimuli and answers; `sealed` is
-/// ciphertext under the participant's key: a session's event has there its time and the rest of its
-/// body. `opened_event` (sealing.hpp) returns the event as it was recorded.
+/// One event. Anybody can read `body`, which says nothing about stimuli and answers. `sealed` is
+/// ciphertext: a session's event has there its time and the rest of its body (sealing.hpp), an
+/// event of the file's chain the texts about a person (person_texts.hpp). Opened, it is the event
+/// as it was recorded.
 struct Event {
   int session = 0;            ///< 0: the file's chain; from 1: a session;
                               ///< -1, -2, ...: the file chain of a collected station
@@ -66,9 +69,12 @@ struct Event {
   /// File's chain: UTC since 1970. Session: 0 as stored; opened, the time since its opening.
   std::chrono::nanoseconds at{};
   std::string body;   ///< compact JSON object with sorted keys
-  Bytes sealed;       ///< empty on the file's chain, and in an event that was opened
+  Bytes sealed;       ///< empty in an event that was opened, or says nothing about a person
   Digest previous{};  ///< hash of the event before; zeros for the first
   Digest hash{};      ///< event_hash of this one
+  /// File's chain: the station's or the investigator's Ed25519 signature, see signed_event. Empty
+  /// in sessions, and where a collected study's chain follows from its stations' chains.
+  Bytes signature{};
   /// In a collected database: the session's number in the station's file. Empty if it is the same.
   std::optional<int> renumbered_from{};
 
@@ -77,17 +83,29 @@ struct Event {
   [[nodiscard]] int own_session() const noexcept { return renumbered_from.value_or(session); }
   /// When it happened, if that can be read: not in a session's event as it is stored.
   [[nodiscard]] std::optional<std::chrono::nanoseconds> time() const {
-    return sealed.empty() ? std::optional(at) : std::nullopt;
+    return session <= 0 || sealed.empty() ? std::optional(at) : std::nullopt;
   }
 };
 
-/// SHA-256 over own_session() and all other members, ciphertext included.
+/// BLAKE2b over own_session() and all other members but the signature, ciphertext included.
 [[nodiscard]] Digest event_hash(const Event& event);
 
 /// The event that follows `last` on a file's chain, with its hash.
 /// \param last  null: the event is the first
 [[nodiscard]] Event next_on_file(const Event* last, EventKind kind, std::chrono::nanoseconds at,
-                                 std::string body);
+                                 std::string body, Bytes sealed = {});
+
+/// The event with its signature, which vouches for the whole chain up to here.
+[[nodiscard]] Event signed_event(Event event, const Signer& signer);
+[[nodiscard]] bool is_event_signed_by(const PublicKey& signer, const Event& event);
+
+/// The end of a chain.
+struct ChainHead {
+  std::int64_t length = 0;  ///< number of events
+  Digest hash{};            ///< of the last; zeros if there is none
+
+  friend bool operator==(const ChainHead&, const ChainHead&) = default;
+};
 
 /// The growing end of one chain. It checks how events are linked; `fold` checks what they mean.
 class ChainLink {

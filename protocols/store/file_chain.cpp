@@ -10,11 +10,26 @@ namespace touchtrial::store {
 StudyState state_of_chain(std::span<const Event> chain) {
   StudyState state;
   std::set<int> ended;
+  std::multimap<std::string, int> sessions;  ///< by participant
   for (const Event& event : chain) {
     if (event.kind == EventKind::study_closed) state.closed = true;
     if (event.kind == EventKind::session_closed) ended.insert(session_about(event));
+    if (event.kind == EventKind::session_opened) {
+      const SessionOpenedBody body = body_of(event, session_opened_from_json);
+      sessions.emplace(body.participant, body.session);
+    }
     if (event.kind != EventKind::study_unblinded) continue;
     const UnblindingBody body = body_of(event, unblinding_from_json);
+    if (!body.participant.empty()) {
+      state.looks.push_back({body.participant, body.reason, event.at});
+      if (body.sessions) {
+        state.looked_at.insert(body.sessions->begin(), body.sessions->end());
+      } else {
+        const auto [first, last] = sessions.equal_range(body.participant);
+        for (auto own = first; own != last; ++own) state.looked_at.insert(own->second);
+      }
+      continue;
+    }
     state.unblinded = true;
     state.unblinding_reason = body.reason;
     state.interim = body.interim ? std::optional(ended) : std::nullopt;
@@ -43,14 +58,15 @@ void FileChain::add(const Event& event) {
       known(event).excluded_at = event.sequence;
       return;
     case EventKind::participant_withdrawn:
-      static_cast<void>(body_of(event, participant_from_json));
-      known(event).withdrawn_at = event.sequence;
-      return;
+      return withdraw(event);
     case EventKind::participant_replaced:
       return replace(event);
     case EventKind::participant_noted:
       static_cast<void>(body_of(event, note_from_json));
       static_cast<void>(known(event));
+      return;
+    case EventKind::loss_accepted:
+      static_cast<void>(body_of(event, loss_from_json));
       return;
     case EventKind::study_closed:
       if (closed_) throw EventFault(event, "the study is closed twice");
@@ -96,6 +112,22 @@ void FileChain::close_session(const Event& event) {
   session.closed_at = event.sequence;
 }
 
+void FileChain::withdraw(const Event& event) {
+  const WithdrawalBody body = body_of(event, withdrawal_from_json);
+  SessionOnFile& session = known(event);
+  const auto refuse = [&](const std::string& why) {
+    throw EventFault(event, "session " + std::to_string(body.session) + " " + why);
+  };
+  if (body.kept == Kept::data && session.erased_at) refuse("keeps data that were erased before");
+  if (body.kept == Kept::safety_record && session.erased_at) refuse("is erased twice");
+  if (body.kept == Kept::nothing && !session.erased_at) {
+    refuse("loses its safety record before its outcomes");
+  }
+  session.withdrawn_at = event.sequence;
+  if (body.kept == Kept::safety_record) session.erased_at = event.sequence;
+  if (body.kept == Kept::nothing) session.safety_erased_at = event.sequence;
+}
+
 void FileChain::replace(const Event& event) {
   const ReplacementBody body = body_of(event, replacement_from_json);
   SessionOnFile& session = known(event);
@@ -118,12 +150,37 @@ SessionOnFile& FileChain::known(const Event& event) {
   return found->second;
 }
 
+Signatories::Signatories(const Event& committed) {
+  const StudyCommitment commitment = body_of(committed, commitment_from_json);
+  investigator_ = commitment.investigator;
+  if (!commitment.station) return;
+  const StationIdentity& station = *commitment.station;
+  if (!is_signed_by(investigator_,
+                    station_statement(commitment.study_id, station.name, station.key),
+                    station.certificate)) {
+    throw EventFault(committed, "the investigator did not sign for station " + station.name);
+  }
+  station_ = station.key;
+}
+
+void Signatories::require(const Event& event) const {
+  const bool by_station =
+      station_ && event.kind != EventKind::study_unblinded && is_event_signed_by(*station_, event);
+  if (by_station || is_event_signed_by(investigator_, event)) return;
+  throw EventFault(event, event.kind == EventKind::study_unblinded
+                              ? "the investigator did not sign the event"
+                              : "neither the station nor the investigator signed the event");
+}
+
 FileChain checked_file_chain(std::span<const Event> chain) {
   ChainLink link(0);
   FileChain file;
+  std::optional<Signatories> signatories;
   for (const Event& event : chain) {
     link.extend(event);
     file.add(event);
+    if (!signatories) signatories.emplace(event);
+    signatories->require(event);
   }
   if (!file.commitment()) throw EventFault(0, kNoEvent, "the file's chain is empty");
   return file;
@@ -187,17 +244,18 @@ void SessionCheck::finish(const DerivedRows& rows) const {
   }
 }
 
-void SessionCheck::check_key(const std::optional<Digest>& wrapped) const {
-  if (!wrapped && !on_file_.withdrawn_at) {
-    throw EventFault(session_, kNoEvent, "the participant's key is missing without a withdrawal");
-  }
-  if (!wrapped) return;
-  if (on_file_.withdrawn_at) {
-    throw EventFault(session_, kNoEvent, "the participant withdrew, but the key is still there");
-  }
-  if (*wrapped != on_file_.opened.key) {
-    throw EventFault(session_, kNoEvent, "the participant's key was altered");
-  }
+void SessionCheck::check_keys(const WrappedKeys& stored) const {
+  const auto check = [&](const std::optional<Bytes>& key, const Digest& digest, bool erased,
+                         const std::string& name, const std::string& short_name) {
+    const auto refuse = [&](const std::string& why) { throw EventFault(session_, kNoEvent, why); };
+    if (!key && !erased) refuse(name + " is missing without a withdrawal");
+    if (key && erased) refuse("the participant withdrew, but " + short_name + " is still there");
+    if (key && sha256(*key) != digest) refuse(name + " was altered");
+  };
+  check(stored.participant, on_file_.opened.key, on_file_.erased_at.has_value(),
+        "the participant's key", "the key");
+  check(stored.safety, on_file_.opened.safety_key, on_file_.safety_erased_at.has_value(),
+        "the safety key", "the safety key");
 }
 
 }  // namespace touchtrial::store

@@ -4,6 +4,7 @@
 
 #include "protocols/store/fold.hpp"
 #include "protocols/store/payload.hpp"
+#include "protocols/store/sealing.hpp"
 
 #include <cstdint>
 #include <map>
@@ -11,21 +12,38 @@
 #include <set>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace touchtrial::store {
+
+/// A recorded look at one participant's outcomes.
+struct PersonLook {
+  std::string participant;
+  std::string reason;
+  std::chrono::nanoseconds at{};  ///< UTC since 1970
+
+  friend bool operator==(const PersonLook&, const PersonLook&) = default;
+};
 
 /// The state of data collection, from the file's chain.
 struct StudyState {
   bool closed = false;
-  bool unblinded = false;         ///< outcomes may be shown (an interim look counts)
-  std::string unblinding_reason;  ///< of the last unblinding
+  bool unblinded = false;         ///< the study's outcomes may be shown (an interim look counts)
+  std::string unblinding_reason;  ///< of the last unblinding of the study
   /// If the last unblinding was an interim look: the sessions that had ended before it.
   std::optional<std::set<int>> interim;
 
-  /// Whether a session's outcomes may be shown. An interim look shows nothing of sessions that end
+  std::vector<PersonLook> looks;  ///< at one participant each, in order
+  std::set<int> looked_at;        ///< the sessions that they show
+
+  /// Whether the study's results have a session. An interim look shows nothing of sessions that end
   /// after it.
-  [[nodiscard]] bool shows(int session) const {
+  [[nodiscard]] bool reports(int session) const {
     return unblinded && (!interim || interim->contains(session));
+  }
+  /// Whether a session's outcomes may be shown, if only to look at that participant.
+  [[nodiscard]] bool shows(int session) const {
+    return reports(session) || looked_at.contains(session);
   }
 };
 
@@ -44,6 +62,8 @@ struct SessionOnFile {
   std::optional<std::int64_t> closed_at;
   std::optional<std::int64_t> excluded_at;
   std::optional<std::int64_t> withdrawn_at;
+  std::optional<std::int64_t> erased_at;         ///< the participant's key was destroyed
+  std::optional<std::int64_t> safety_erased_at;  ///< the safety key was destroyed
   std::optional<std::int64_t> replaced_at;
 
   /// The number that the session has in the file that it was recorded in.
@@ -79,6 +99,7 @@ class FileChain {
  private:
   void open_session(const Event& event);
   void close_session(const Event& event);
+  void withdraw(const Event& event);
   void replace(const Event& event);
   [[nodiscard]] SessionOnFile& known(const Event& event);
   void take_place(const Event& event, const SessionOpenedBody& body);
@@ -92,7 +113,24 @@ class FileChain {
   bool closed_ = false;
 };
 
-/// A station's file chain, checked by itself: links, hashes, and what the events say of each other.
+/// Whose signatures count on a file's chain: the station's that the file belongs to, and the
+/// investigator's. Unblinding is the investigator's alone.
+class Signatories {
+ public:
+  /// \param committed  the chain's first event
+  /// \throws EventFault if it cannot be read, or the investigator did not sign for the station
+  explicit Signatories(const Event& committed);
+
+  /// \throws EventFault if none of them signed the event
+  void require(const Event& event) const;
+
+ private:
+  PublicKey investigator_;
+  std::optional<PublicKey> station_;
+};
+
+/// A station's file chain, checked by itself: links, hashes, signatures, and what the events say of
+/// each other.
 /// \throws EventFault at the first fault
 [[nodiscard]] FileChain checked_file_chain(std::span<const Event> chain);
 
@@ -115,8 +153,8 @@ class SessionCheck {
   void add(const Event& event, DerivedRows& rows);
   /// After the last event: whether the session ends as the file's chain says.
   void finish(const DerivedRows& rows) const;
-  /// \param wrapped  SHA-256 of the stored key, or nothing if there is none
-  void check_key(const std::optional<Digest>& wrapped) const;
+  /// Whether the stored keys are those that the session began with, less those destroyed since.
+  void check_keys(const WrappedKeys& stored) const;
 
   /// All traces that the events name, by trial.
   [[nodiscard]] const std::map<int, TraceClaim>& claims() const noexcept { return claims_; }

@@ -24,6 +24,7 @@ void open_session(DerivedRows& rows, const Event& event) {
                                   .pilot = opening.pilot,
                                   .excluded = false,
                                   .withdrawn = false,
+                                  .erased = false,
                                   .device = opening.device,
                                   .replaced_by = {},
                                   .own_session = event.own_session(),
@@ -56,7 +57,7 @@ void present_trial(DerivedRows& rows, const Event& event) {
     if (row.state == TrialState::answered) {
       refuse_trial(event, body.trial, "is presented again after its answer");
     }
-    if (row.seconds > 0) refuse_trial(event, body.trial, "is presented again after its trace");
+    if (row.has_trace()) refuse_trial(event, body.trial, "is presented again after its trace");
   }
   TrialRow row;
   row.session = event.session;
@@ -107,8 +108,8 @@ void measure_trial(DerivedRows& rows, const Event& event) {
   const TraceBody body = body_of(event, trace_body_from_json);
   TrialRow& row = presented_row(rows, event, body.trial);
   row.valid = body.valid;
+  row.hand = body.hand;
   row.overruns = body.overruns;
-  row.seconds = body.seconds;
   row.samples = body.samples;
   row.rate_hz = body.rate_hz;
 }
@@ -157,6 +158,13 @@ void replace_participant(DerivedRows& rows, const Event& event) {
     throw EventFault(event, "session " + std::to_string(body.session) + " is replaced twice");
   }
   row.replaced_by = body.by;
+}
+
+void withdraw_participant(DerivedRows& rows, const Event& event) {
+  const WithdrawalBody body = body_of(event, withdrawal_from_json);
+  SessionRow& row = named_row(rows, event);
+  row.withdrawn = true;
+  row.erased = row.erased || body.kept != Kept::data;
 }
 
 /// In a collected study the file's chain says which station a session comes from.
@@ -219,6 +227,7 @@ FoldScope scope_of(const Event& event) {
     case EventKind::study_closed:
     case EventKind::study_unblinded:
     case EventKind::participant_noted:
+    case EventKind::loss_accepted:
       return {};
     default:
       break;
@@ -243,8 +252,7 @@ void fold(DerivedRows& rows, const Event& event) {
       named_row(rows, event).excluded = true;
       return;
     case EventKind::participant_withdrawn:
-      named_row(rows, event).withdrawn = true;
-      return;
+      return withdraw_participant(rows, event);
     case EventKind::participant_replaced:
       return replace_participant(rows, event);
     default:

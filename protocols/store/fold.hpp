@@ -4,6 +4,7 @@
 #pragma once
 
 #include "protocols/store/event.hpp"
+#include "protocols/store/payload.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -24,7 +25,8 @@ struct SessionRow {
   bool simulated = false;
   bool pilot = false;
   bool excluded = false;
-  bool withdrawn = false;
+  bool withdrawn = false;  ///< the participant takes no further part
+  bool erased = false;     ///< and the participant's key is destroyed
   std::string device;
   /// The participant who took this one's place in the order of enrolment; the same participant if
   /// the session was restarted; empty if nobody did.
@@ -47,9 +49,9 @@ struct TrialRow {
   int block = 0;
   TrialState state{};
   bool valid = true;
+  HandWindows hand{};
   std::int64_t overruns = 0;
-  int seconds = 0;  ///< of the trace, rounded up; 0: there is none
-  double rate_hz = 0.0;
+  double rate_hz = 0.0;  ///< of the trace; 0: there is none
   int explorations = 1;  ///< of the last presentation
 
   // From opened events alone; else 0 and empty, as in the tables.
@@ -61,6 +63,7 @@ struct TrialRow {
   std::optional<int> confidence;
   std::int64_t samples = 0;
 
+  [[nodiscard]] bool has_trace() const noexcept { return rate_hz > 0.0; }
   friend bool operator==(const TrialRow&, const TrialRow&) = default;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/hash.hpp"
+#include "core/public_keys.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -10,6 +11,15 @@
 #include <vector>
 
 namespace touchtrial::store {
+
+/// The station that a file belongs to.
+struct StationIdentity {
+  std::string name;
+  PublicKey key{};          ///< verifies what the station signed
+  Signature certificate{};  ///< the investigator's, under station_statement
+
+  friend bool operator==(const StationIdentity&, const StationIdentity&) = default;
+};
 
 /// `study-committed`, the first event of the file's chain: what this database is about, fixed
 /// before any trial.
@@ -24,7 +34,10 @@ struct StudyCommitment {
   int positions = 0;          ///< pictures to choose from
   bool simulated = false;
   bool pilot = false;
+  int safety_record_years = 10;  ///< that the safety record of an erased person is kept
   std::string program_version;
+  PublicKey investigator{};                  ///< verifies what the investigator signed
+  std::optional<StationIdentity> station{};  ///< empty: several stations' files were collected
 
   friend bool operator==(const StudyCommitment&, const StudyCommitment&) = default;
 };
@@ -34,8 +47,11 @@ struct SessionOpenedBody {
   int session = 0;
   std::string participant;
   int enrolment = 0;
-  Digest first{};  ///< hash of the session's `opened`
-  Digest key{};    ///< SHA-256 of the wrapped participant key
+  Digest first{};       ///< hash of the session's `opened`
+  Digest key{};         ///< SHA-256 of the wrapped participant key
+  Digest safety_key{};  ///< SHA-256 of the wrapped safety key
+  PublicKey remarks{};  ///< seals remarks about the participant
+  PublicKey reasons{};  ///< seals reasons and deviations
   /// In a collected study: the session's station, from 1, and its number there; 0 elsewhere.
   int station = 0;
   int own_session = 0;
@@ -49,10 +65,28 @@ struct SessionClosedBody {
   bool complete = false;
 };
 
-/// `participant-excluded`, `participant-withdrawn`.
+// The texts of the bodies about a person are sealed: empty where the event is not opened.
+
+/// `participant-excluded`.
 struct ParticipantBody {
   int session = 0;
   std::string reason;
+  bool after_outcomes = false;  ///< the participant's outcomes had been seen
+};
+
+/// What a withdrawal keeps of the participant. What is gone never comes back.
+enum class Kept {
+  data,           ///< everything; the participant takes no further part
+  safety_record,  ///< stops, faults, largest forces, reasons and deviations
+  nothing         ///< nothing that is sealed
+};
+
+/// `participant-withdrawn`.
+struct WithdrawalBody {
+  int session = 0;
+  Kept kept{};
+  std::string reason;
+  std::string not_erased{};  ///< what the erasure could not reach; in clear
 };
 
 /// `participant-replaced`.
@@ -62,19 +96,27 @@ struct ReplacementBody {
   std::string reason;
 };
 
-/// `participant-noted`.
+/// `participant-noted`. A deviation's text belongs to the safety record, a remark's does not.
 struct NoteBody {
   int session = 0;
   std::string code;  ///< of a deviation; empty: a remark
   std::string text;
 };
 
+/// `loss-accepted`.
+struct LossBody {
+  std::string reason;
+  std::string missing;       ///< what the database lacks, in words; names no outcome
+  std::int64_t answers = 0;  ///< acknowledged answers that are lost
+};
+
 /// `study-unblinded`.
 struct UnblindingBody {
   std::string reason;
   bool interim = false;
-  /// In a collected study: the sessions that the stations' interim looks show.
+  /// In a collected study: the sessions that the stations' looks show.
   std::optional<std::vector<int>> sessions{};
+  std::string participant{};  ///< whose outcomes alone are looked at; empty: everybody's
 };
 
 /// `opened`, in real time: the device that the hand was on. Says nothing about stimuli.
@@ -125,6 +167,12 @@ struct PracticeBody {
   std::optional<bool> correct;  ///< sealed
 };
 
+/// `stopped`: why a session ended early.
+struct StopBody {
+  std::string code{};  ///< the program's reason, in clear; empty: the experimenter stopped it
+  std::string text{};  ///< the experimenter's words; may be empty; sealed
+};
+
 /// `deviated`, and `participant-noted` where `code` is not empty.
 struct DeviationBody {
   std::string code;  ///< for instance "no-masking-noise"; see docs/data-dictionary.md
@@ -140,9 +188,12 @@ struct ResumedBody {
 
 /// `presented`, `first-contact`, `interrupted`, `timed-out`.
 struct TrialBody {
-  int trial = 0;       ///< from 1
-  int block = 0;       ///< `presented` only
-  std::string reason;  ///< `interrupted` only
+  int trial = 0;                 ///< from 1
+  int block = 0;                 ///< `presented` only
+  std::string reason;            ///< `interrupted` only, and what follows
+  std::string safety_fault{};    ///< as InterruptionDetail has it
+  std::string device_fault{};    ///< likewise
+  double largest_force_n = 0.0;  ///< before the interruption; sealed: 0 if not opened
 };
 
 /// `block-restarted`: which block, from 0, and the number of its first trial from now on.
@@ -165,15 +216,30 @@ struct ServoHealth {
   friend bool operator==(const ServoHealth&, const ServoHealth&) = default;
 };
 
-/// `trace-stored`: the servo's health in clear; the sealed part (TrialMeasures) says what was felt.
+/// `trace-stored`: whether the hand did what the instructions ask for, each within its window or
+/// not. It counts what the hand did, and not what the texture did to it: with the forces of the
+/// texture, the same windows would tell rough textures from smooth ones.
+struct HandWindows {
+  bool contact = true;  ///< long enough at the plane
+  bool path = true;     ///< far enough along it
+  bool force = true;    ///< pressed neither too lightly nor too hard
+  bool speed = true;    ///< moved neither too slowly nor too fast
+
+  friend bool operator==(const HandWindows&, const HandWindows&) = default;
+};
+
+/// `trace-stored`: the hand's windows and the servo's health in clear; the sealed part
+/// (TrialMeasures) says what was felt.
 struct TraceBody {
   int trial = 0;
   std::int64_t samples = 0;  ///< sealed: 0 if not opened
-  int seconds = 0;           ///< of the trace, rounded up
   double rate_hz = 0.0;
   std::int64_t overruns = 0;
   bool valid = true;  ///< by the clear part of the validity rule; the other part is sealed
-  Digest trace{};     ///< SHA-256 of the stored (encrypted) trace
+  HandWindows hand{};
+  bool saturated = false;        ///< too often at the force limit; sealed: false if not opened
+  Digest trace{};                ///< BLAKE2b of the stored (encrypted) trace
+  double largest_force_n = 0.0;  ///< of the trace; sealed: 0 if not opened
   /// Samples of each exploration, if the participant explored again; they add up to `samples`.
   /// Sealed: empty if not opened.
   std::vector<std::int64_t> explorations{};
@@ -193,12 +259,14 @@ struct TrialMeasures {
   friend bool operator==(const TrialMeasures&, const TrialMeasures&) = default;
 };
 
-/// Sealed part of `interrupted`, in real time: what happened, and the last seconds before it.
+/// `interrupted`, in real time: what happened, and the last seconds before it. The faults' names
+/// are in clear too.
 struct InterruptionDetail {
-  std::string safety_fault;  ///< name of the device layer's SafetyFault
-  std::string device_fault;  ///< name of its DeviceFault
-  std::int64_t ticks = 0;    ///< rows of the flight record
-  std::string flight;        ///< CSV, one row a tick under a row of names; may be empty
+  std::string safety_fault;      ///< name of the device layer's SafetyFault
+  std::string device_fault;      ///< name of its DeviceFault
+  std::int64_t ticks = 0;        ///< rows of the flight record
+  std::string flight;            ///< CSV, one row a tick under a row of names; may be empty
+  double largest_force_n = 0.0;  ///< of these ticks; a sealed member of the body
 
   friend bool operator==(const InterruptionDetail&, const InterruptionDetail&) = default;
 };
@@ -219,6 +287,9 @@ struct AnswerSummary {
 struct ClosedBody {
   bool complete = false;                   ///< whether the schedule was finished
   std::optional<AnswerSummary> answers{};  ///< empty: no answers
+  int saturated = 0;                       ///< trials that were too often at the force limit
+  /// That was sent in all presentations, to tenths of a newton; empty: there was none.
+  std::optional<double> largest_force_n{};
 };
 
 /// Sealed part of `closed`: the chain before it. Nobody without the key can give another chain this

@@ -4,18 +4,26 @@
 
 #include "core/errors.hpp"
 #include "core/hash.hpp"
+#include "core/public_keys.hpp"
+#include "protocols/store/payload.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 namespace touchtrial::store {
+
+/// By enumerator.
+inline constexpr std::array<std::string_view, 3> kKeptNames = {"data", "safety-record", "nothing"};
 
 /// Takes the members of a body from one JSON object. Every function throws StoreError, naming the
 /// key, if the value is missing or not what is asked for.
@@ -48,6 +56,20 @@ class BodyReader {
         found.is_string() ? digest_from_hex(found.get_ref<const std::string&>()) : std::nullopt;
     if (!digest) refuse(key, "is not 64 hexadecimal digits");
     value = *digest;
+  }
+  void operator()(const char* key, Signature& value) const {
+    const nlohmann::json& found = at(key);
+    const std::optional<Bytes> bytes =
+        found.is_string() ? from_hex(found.get_ref<const std::string&>()) : std::nullopt;
+    if (!bytes || bytes->size() != value.size()) refuse(key, "is not 128 hexadecimal digits");
+    std::copy(bytes->begin(), bytes->end(), value.begin());
+  }
+  void operator()(const char* key, Kept& value) const {
+    std::string name;
+    (*this)(key, name);
+    const auto* const found = std::ranges::find(kKeptNames, name);
+    if (found == kKeptNames.end()) refuse(key, "is none of data, safety-record and nothing");
+    value = static_cast<Kept>(found - kKeptNames.begin());
   }
   /// A whole number, at least `least`.
   void operator()(const char* key, std::int64_t& value, std::int64_t least = 0) const {
@@ -137,6 +159,12 @@ class BodyWriter {
     object_[key] = value;
   }
   void operator()(const char* key, const Digest& value) { object_[key] = to_hex(value); }
+  void operator()(const char* key, const Signature& value) {
+    object_[key] = to_hex(ByteView(value));
+  }
+  void operator()(const char* key, Kept value) {
+    object_[key] = kKeptNames.at(static_cast<std::size_t>(value));
+  }
   /// JSON has no infinities.
   void operator()(const char* key, double value) {
     if (!std::isfinite(value)) {

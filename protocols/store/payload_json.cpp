@@ -35,6 +35,13 @@ Value member_of(const std::string& text, const char* key, Least... least) {
 // What each body holds: key, member, and the least value of a whole number unless it is 0.
 
 template <typename Io>
+void members(Io& io, In<Io, StationIdentity>& body) {
+  io("name", body.name);
+  io("key", body.key);
+  io("certificate", body.certificate);
+}
+
+template <typename Io>
 void members(Io& io, In<Io, StudyCommitment>& body) {
   io("study", body.study);
   io("protocol", body.protocol);
@@ -46,7 +53,10 @@ void members(Io& io, In<Io, StudyCommitment>& body) {
   io("positions", body.positions);
   io("simulated", body.simulated);
   io("pilot", body.pilot);
+  io("safety_record_years", body.safety_record_years);
   io("program_version", body.program_version);
+  io("investigator", body.investigator);
+  io.part("station", body.station);
 }
 
 template <typename Io>
@@ -91,6 +101,12 @@ void members(Io& io, In<Io, PracticeBody>& body) {
 }
 
 template <typename Io>
+void members(Io& io, In<Io, StopBody>& body) {
+  io.if_any("code", body.code);
+  io.sealed("text", body.text);
+}
+
+template <typename Io>
 void members(Io& io, In<Io, DeviationBody>& body) {
   io("code", body.code);
   io.sealed("text", body.text);
@@ -118,11 +134,16 @@ template <typename Io>
 void members(Io& io, In<Io, TraceBody>& body) {
   io("trial", body.trial, 1);
   io.sealed("samples", body.samples);
-  io("seconds", body.seconds);
   io("rate_hz", body.rate_hz);
   io("overruns", body.overruns);
   io("valid", body.valid);
+  io("contact_ok", body.hand.contact);
+  io("path_ok", body.hand.path);
+  io("force_ok", body.hand.force);
+  io("speed_ok", body.hand.speed);
+  io.sealed("saturated", body.saturated);
   io("trace", body.trace);
+  io.sealed("largest_force_n", body.largest_force_n);
   io.if_any("explorations", body.explorations);
   io.part("servo", body.servo);
 }
@@ -158,6 +179,8 @@ template <typename Io>
 void members(Io& io, In<Io, ClosedBody>& body) {
   io("complete", body.complete);
   io.part("answers", body.answers);
+  io.if_any("saturated", body.saturated);
+  io("largest_force_n", body.largest_force_n);
 }
 
 template <typename Io>
@@ -173,6 +196,9 @@ void members(Io& io, In<Io, SessionOpenedBody>& body) {
   io("enrolment", body.enrolment, 1);
   io("first", body.first);
   io("key", body.key);
+  io("safety_key", body.safety_key);
+  io("remarks", body.remarks);
+  io("reasons", body.reasons);
   io.if_any("station", body.station, 1);
   io.if_any("own_session", body.own_session, 1);
 }
@@ -188,21 +214,30 @@ void members(Io& io, In<Io, SessionClosedBody>& body) {
 template <typename Io>
 void members(Io& io, In<Io, ParticipantBody>& body) {
   io("session", body.session, 1);
-  io("reason", body.reason);
+  io.sealed("reason", body.reason);
+  io.if_any("after_outcomes", body.after_outcomes);
+}
+
+template <typename Io>
+void members(Io& io, In<Io, WithdrawalBody>& body) {
+  io("session", body.session, 1);
+  io("kept", body.kept);
+  io.sealed("reason", body.reason);
+  io.if_any("not_erased", body.not_erased);
 }
 
 template <typename Io>
 void members(Io& io, In<Io, ReplacementBody>& body) {
   io("session", body.session, 1);
   io("by", body.by);
-  io("reason", body.reason);
+  io.sealed("reason", body.reason);
 }
 
 template <typename Io>
 void members(Io& io, In<Io, NoteBody>& body) {
   io("session", body.session, 1);
   io("code", body.code);
-  io("text", body.text);
+  io.sealed("text", body.text);
 }
 
 template <typename Io>
@@ -210,6 +245,14 @@ void members(Io& io, In<Io, UnblindingBody>& body) {
   io("reason", body.reason);
   io("interim", body.interim);
   io("sessions", body.sessions);
+  io.if_any("participant", body.participant);
+}
+
+template <typename Io>
+void members(Io& io, In<Io, LossBody>& body) {
+  io("reason", body.reason);
+  io("missing", body.missing);
+  io("answers", body.answers);
 }
 
 // Only read: those who write these leave members out by kind of event.
@@ -219,6 +262,9 @@ void members(Io& io, In<Io, TrialBody>& body) {
   io("trial", body.trial, 1);
   io.if_any("block", body.block);
   io.if_any("reason", body.reason);
+  io.if_any("safety_fault", body.safety_fault);
+  io.if_any("device_fault", body.device_fault);
+  io.if_any("largest_force_n", body.largest_force_n);
 }
 
 template <typename Io>
@@ -246,6 +292,7 @@ template std::string to_json(const StudyCommitment&);
 template std::string to_json(const SessionOpening&);
 template std::string to_json(const AnswerBody&);
 template std::string to_json(const PracticeBody&);
+template std::string to_json(const StopBody&);
 template std::string to_json(const DeviationBody&);
 template std::string to_json(const ResumedBody&);
 template std::string to_json(const TraceBody&);
@@ -256,14 +303,17 @@ template std::string to_json(const ChainEnd&);
 template std::string to_json(const SessionOpenedBody&);
 template std::string to_json(const SessionClosedBody&);
 template std::string to_json(const ParticipantBody&);
+template std::string to_json(const WithdrawalBody&);
 template std::string to_json(const ReplacementBody&);
 template std::string to_json(const NoteBody&);
 template std::string to_json(const UnblindingBody&);
+template std::string to_json(const LossBody&);
 
 template StudyCommitment from_json(const std::string&);
 template SessionOpening from_json(const std::string&);
 template AnswerBody from_json(const std::string&);
 template PracticeBody from_json(const std::string&);
+template StopBody from_json(const std::string&);
 template DeviationBody from_json(const std::string&);
 template ResumedBody from_json(const std::string&);
 template TraceBody from_json(const std::string&);
@@ -273,9 +323,11 @@ template ChainEnd from_json(const std::string&);
 template SessionOpenedBody from_json(const std::string&);
 template SessionClosedBody from_json(const std::string&);
 template ParticipantBody from_json(const std::string&);
+template WithdrawalBody from_json(const std::string&);
 template ReplacementBody from_json(const std::string&);
 template NoteBody from_json(const std::string&);
 template UnblindingBody from_json(const std::string&);
+template LossBody from_json(const std::string&);
 template TrialBody from_json(const std::string&);
 template BlockBody from_json(const std::string&);
 
@@ -290,8 +342,15 @@ std::string presented_to_json(int trial, int block) {
   return compact({{"trial", trial}, {"block", block}});
 }
 
-std::string interrupted_to_json(int trial, const std::string& reason) {
-  return compact({{"trial", trial}, {"reason", reason}});
+std::string interrupted_to_json(int trial, const std::string& reason,
+                                const InterruptionDetail* detail) {
+  json body{{"trial", trial}, {"reason", reason}};
+  if (detail != nullptr) {
+    body["safety_fault"] = detail->safety_fault;
+    body["device_fault"] = detail->device_fault;
+    body["largest_force_n"] = detail->largest_force_n;
+  }
+  return compact(body);
 }
 
 std::string trial_to_json(int trial) {

@@ -15,7 +15,9 @@ namespace touchtrial::store {
 template <typename Body>
 [[nodiscard]] std::string to_json(const Body& body);
 [[nodiscard]] std::string presented_to_json(int trial, int block);
-[[nodiscard]] std::string interrupted_to_json(int trial, const std::string& reason);
+/// \param detail  null: not in real time
+[[nodiscard]] std::string interrupted_to_json(int trial, const std::string& reason,
+                                              const InterruptionDetail* detail);
 [[nodiscard]] std::string trial_to_json(int trial);
 [[nodiscard]] std::string block_to_json(int block, int first_trial);
 [[nodiscard]] std::string remark_to_json(const std::string& text);
@@ -35,6 +37,7 @@ inline constexpr auto* commitment_from_json = &from_json<StudyCommitment>;
 inline constexpr auto* opening_from_json = &from_json<SessionOpening>;
 inline constexpr auto* answer_from_json = &from_json<AnswerBody>;
 inline constexpr auto* practice_from_json = &from_json<PracticeBody>;
+inline constexpr auto* stop_from_json = &from_json<StopBody>;
 inline constexpr auto* deviation_from_json = &from_json<DeviationBody>;
 inline constexpr auto* resumed_from_json = &from_json<ResumedBody>;
 inline constexpr auto* trace_body_from_json = &from_json<TraceBody>;
@@ -44,10 +47,12 @@ inline constexpr auto* chain_end_from_json = &from_json<ChainEnd>;
 inline constexpr auto* session_opened_from_json = &from_json<SessionOpenedBody>;
 inline constexpr auto* session_closed_from_json = &from_json<SessionClosedBody>;
 inline constexpr auto* participant_from_json = &from_json<ParticipantBody>;
+inline constexpr auto* withdrawal_from_json = &from_json<WithdrawalBody>;
 inline constexpr auto* replacement_from_json = &from_json<ReplacementBody>;
 inline constexpr auto* note_from_json = &from_json<NoteBody>;
 inline constexpr auto* unblinding_from_json = &from_json<UnblindingBody>;
-/// `block` and `reason` where the body has them.
+inline constexpr auto* loss_from_json = &from_json<LossBody>;
+/// The other members where the body has them.
 inline constexpr auto* trial_from_json = &from_json<TrialBody>;
 inline constexpr auto* block_from_json = &from_json<BlockBody>;
 [[nodiscard]] TrialMeasures measures_from_json(const std::string& text);

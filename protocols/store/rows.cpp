@@ -49,7 +49,8 @@ Event event_of_row(const Query& row) {
           .sealed = row.blob(5),
           .previous = stored_hash(row.blob(6), session, sequence),
           .hash = stored_hash(row.blob(7), session, sequence),
-          .renumbered_from = renumbered_from(row, 8)};
+          .signature = row.blob(8),
+          .renumbered_from = renumbered_from(row, 9)};
 }
 
 /// "|opened|closed|": the database searches it for a kind between bars.
@@ -134,6 +135,7 @@ void insert_event(const Database& database, const Event& event) {
       .bind(event.sealed)
       .bind(event.previous)
       .bind(event.hash)
+      .bind(event.signature)
       .bind(event.renumbered_from)
       .run();
 }
@@ -143,9 +145,24 @@ void insert_trace(const Database& database, const SealedTrace& trace) {
   database.query(sql.c_str()).bind(trace.session).bind(trace.trial).bind(trace.box).run();
 }
 
-void insert_key(const Database& database, int session, const Bytes& wrapped) {
-  static const std::string sql = insertion(Table::participant_keys);
-  database.query(sql.c_str()).bind(session).bind(wrapped).run();
+void insert_keys(const Database& database, int session, const WrappedKeys& keys) {
+  static const std::string participant = insertion(Table::participant_keys);
+  static const std::string safety = insertion(Table::safety_keys);
+  if (keys.participant) {
+    database.query(participant.c_str()).bind(session).bind(*keys.participant).run();
+  }
+  if (keys.safety) database.query(safety.c_str()).bind(session).bind(*keys.safety).run();
+}
+
+WrappedKeys read_keys(const Database& database, int session) {
+  const auto read = [&](const char* sql) -> std::optional<Bytes> {
+    Query query = database.query(sql);
+    query.bind(session);
+    if (!query.step()) return std::nullopt;
+    return query.blob(0);
+  };
+  return {.participant = read("SELECT wrapped FROM participant_keys WHERE session = ?"),
+          .safety = read("SELECT wrapped FROM safety_keys WHERE session = ?")};
 }
 
 void insert_station_key(const Database& database, int session, const Bytes& kept) {

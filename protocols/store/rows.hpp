@@ -18,8 +18,11 @@ using EventVisitor = std::function<void(const Event&)>;
 
 void insert_event(const Database& database, const Event& event);
 void insert_trace(const Database& database, const SealedTrace& trace);
-void insert_key(const Database& database, int session, const Bytes& wrapped);
+/// Those of the two that there are.
+void insert_keys(const Database& database, int session, const WrappedKeys& keys);
 void insert_station_key(const Database& database, int session, const Bytes& kept);
+
+[[nodiscard]] WrappedKeys read_keys(const Database& database, int session);
 
 /// The events that are asked for: those with all of the members that are given.
 struct EventFilter {

@@ -28,6 +28,10 @@ std::string participant_key_context(int own_session) {
   return "participant-key|" + std::to_string(own_session);
 }
 
+std::string safety_key_context(int own_session) {
+  return "safety-key|" + std::to_string(own_session);
+}
+
 std::string event_context(const Event& event) {
   return "event|" + std::to_string(event.own_session()) + "|" + std::to_string(event.sequence) +
          "|" + std::string(name_of(event.kind)) + "|" + to_hex(event.previous) + "|" + event.body;
@@ -56,17 +60,68 @@ std::uint64_t number_in(ByteView bytes) {
   return number;
 }
 
+Bytes wrapped_for(const PublicKey& investigator, const std::string& context, const SecretKey& key) {
+  return seal_box(investigator, context, key,
+                  derive_key(key, "wrapping for " + to_hex(investigator)));
+}
+
+/// The key that seals a session's events of a kind.
+SecretKey key_of_kind(EventKind kind, const SecretKey& participant_key) {
+  return is_safety_record(kind) ? safety_key(participant_key) : participant_key;
+}
+
+/// \param key  that the event was sealed with
+std::optional<OpenedEvent> opened_with(const Event& event, const SecretKey& key) {
+  const std::optional<Bytes> plain = unseal(key, event_context(event), event.sealed, kSealedUnit);
+  if (!plain || plain->size() < kBeforeTexts) return std::nullopt;
+  const ByteView bytes(*plain);
+  const std::uint64_t length = number_in(bytes.subspan(kTimeSize, kLengthSize));
+  const ByteView texts = bytes.subspan(kBeforeTexts);
+  if (length > texts.size()) return std::nullopt;
+  OpenedEvent opened{.event = event, .secret = text_of(texts.subspan(length))};
+  opened.event.at =
+      std::chrono::nanoseconds(static_cast<std::int64_t>(number_in(bytes.first(kTimeSize))));
+  opened.event.body = joined_body({event.body, text_of(texts.first(length))});
+  opened.event.sealed.clear();
+  return opened;
+}
+
 }  // namespace
 
-Bytes wrap_participant_key(const PublicKey& investigator, int own_session,
-                           const SecretKey& participant_key) {
-  return seal_box(investigator, participant_key_context(own_session), participant_key,
-                  derive_key(participant_key, "wrapping for " + to_hex(investigator)));
+SecretKey safety_key(const SecretKey& participant_key) {
+  return derive_key(participant_key, "safety");
+}
+
+bool is_safety_record(EventKind kind) {
+  return kind == EventKind::stopped || kind == EventKind::deviated;
+}
+
+NewKeys wrap_participant_key(const PublicKey& investigator, int own_session,
+                             const SecretKey& participant_key) {
+  const SecretKey safety = safety_key(participant_key);
+  return {.participant =
+              wrapped_for(investigator, participant_key_context(own_session), participant_key),
+          .safety = wrapped_for(investigator, safety_key_context(own_session), safety),
+          .remarks = remarks_box(participant_key).public_half,
+          .reasons = reasons_box(safety).public_half};
 }
 
 std::optional<SecretKey> unwrap_participant_key(const BoxKeys& investigator, int own_session,
                                                 const Bytes& wrapped) {
   return key_from(open_box(investigator, participant_key_context(own_session), wrapped));
+}
+
+std::optional<SecretKey> unwrap_safety_key(const BoxKeys& investigator, int own_session,
+                                           const Bytes& wrapped) {
+  return key_from(open_box(investigator, safety_key_context(own_session), wrapped));
+}
+
+BoxKeys reasons_box(const SecretKey& safety_key) {
+  return box_keys(derive_key(safety_key, "reasons"));
+}
+
+BoxKeys remarks_box(const SecretKey& participant_key) {
+  return box_keys(derive_key(participant_key, "remarks"));
 }
 
 Bytes keep_participant_key(const SecretKey& station_secret, int own_session,
@@ -92,7 +147,8 @@ Event sealed_event(Event event, const std::string& secret, const SecretKey& part
   }
   event.at = {};
   event.body = std::move(parts.clear);
-  event.sealed = seal(participant_key, event_context(event), plain, padding);
+  event.sealed =
+      seal(key_of_kind(event.kind, participant_key), event_context(event), plain, padding);
   event.hash = event_hash(event);
   return event;
 }
@@ -103,19 +159,12 @@ Event sealed_event(Event event, const std::string& secret, const SecretKey& part
 }
 
 std::optional<OpenedEvent> opened_event(const Event& event, const SecretKey& participant_key) {
-  const std::optional<Bytes> plain =
-      unseal(participant_key, event_context(event), event.sealed, kSealedUnit);
-  if (!plain || plain->size() < kBeforeTexts) return std::nullopt;
-  const ByteView bytes(*plain);
-  const std::uint64_t length = number_in(bytes.subspan(kTimeSize, kLengthSize));
-  const ByteView texts = bytes.subspan(kBeforeTexts);
-  if (length > texts.size()) return std::nullopt;
-  OpenedEvent opened{.event = event, .secret = text_of(texts.subspan(length))};
-  opened.event.at =
-      std::chrono::nanoseconds(static_cast<std::int64_t>(number_in(bytes.first(kTimeSize))));
-  opened.event.body = joined_body({event.body, text_of(texts.first(length))});
-  opened.event.sealed.clear();
-  return opened;
+  return opened_with(event, key_of_kind(event.kind, participant_key));
+}
+
+std::optional<OpenedEvent> opened_safety_event(const Event& event, const SecretKey& safety_key) {
+  if (!is_safety_record(event.kind)) return std::nullopt;
+  return opened_with(event, safety_key);
 }
 
 std::optional<std::string> unsealed(const Event& event, const SecretKey& participant_key) {

@@ -4,6 +4,7 @@
 #include "protocols/store/body_parts.hpp"
 #include "protocols/store/payload_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -25,19 +26,30 @@ bool is_remark(EventKind kind) {
   }
 }
 
-/// The padding of an interruption: a function of its flight record's ticks alone, in whole
-/// thousands, so that the size tells neither rough textures from smooth ones nor how long they were
-/// felt.
+/// The padding of an interruption: that of a flight record of three seconds, which the usual record
+/// never exceeds, or of its ticks in whole thousands if it is longer. So the size tells neither
+/// rough textures from smooth ones nor how long they were felt.
 std::size_t interruption_padding(std::int64_t ticks) {
   // A row has 21 values, 14 of them of up to 24 characters; ordinary rows need 330 bytes or less.
   constexpr std::size_t kBytesAThousand = 384'000;
   constexpr std::size_t kBytesBefore = 1024;
-  return kBytesBefore + kBytesAThousand * ((static_cast<std::size_t>(ticks) + 999) / 1000);
+  constexpr std::size_t kUsualThousands = 3;
+  const std::size_t thousands = (static_cast<std::size_t>(ticks) + 999) / 1000;
+  return kBytesBefore + kBytesAThousand * std::max(kUsualThousands, thousands);
 }
 static_assert(1024 % kSealedUnit == 0 && 384'000 % kSealedUnit == 0);
 
-int whole_seconds(const Trace& trace) {
-  return static_cast<int>(std::ceil(static_cast<double>(trace.samples.size()) / trace.rate_hz));
+double largest_force_in(const Trace& trace) {
+  double largest = 0.0;  // squared
+  for (const TraceSample& sample : trace.samples) {
+    largest = std::max(largest, dot(sample.force_n, sample.force_n));
+  }
+  return std::sqrt(largest);
+}
+
+/// A multiple of 0.1 that has one decimal when it is printed.
+double in_tenths(double number) {
+  return std::round(10.0 * number) / 10.0;
 }
 
 }  // namespace
@@ -70,7 +82,8 @@ void SessionRecorder::answered(std::chrono::nanoseconds at, const AnswerBody& an
 
 void SessionRecorder::interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
                                   const std::optional<InterruptionDetail>& detail) {
-  Draft draft{EventKind::interrupted, interrupted_to_json(trial, reason)};
+  Draft draft{EventKind::interrupted,
+              interrupted_to_json(trial, reason, detail ? &*detail : nullptr)};
   if (detail) {
     draft.secret = to_json(*detail);
     draft.padding = interruption_padding(detail->ticks);
@@ -87,8 +100,8 @@ TrialEvidence SessionRecorder::packed(TraceBody body, const TrialMeasures& measu
                                       const Trace& trace) const {
   SealedTrace sealed = seal_trace(session_, body.trial, trace, participant_key_);
   body.samples = static_cast<std::int64_t>(trace.samples.size());
-  body.seconds = whole_seconds(trace);
-  body.trace = sha256(sealed.box);
+  body.largest_force_n = largest_force_in(trace);
+  body.trace = blake2b(sealed.box);
   return {std::move(body), measures, std::move(sealed)};
 }
 
@@ -132,11 +145,21 @@ void SessionRecorder::remarked(std::chrono::nanoseconds at, EventKind kind,
   append(at, {kind, remark_to_json(text)});
 }
 
+void SessionRecorder::stopped(std::chrono::nanoseconds at, const StopBody& why) {
+  append(at, {EventKind::stopped, to_json(why)});
+}
+
 void SessionRecorder::closed(std::chrono::nanoseconds at, bool complete,
-                             const std::optional<AnswerSummary>& answers) {
+                             const std::optional<AnswerSummary>& answers, int saturated,
+                             std::optional<double> largest_force_n) {
+  if (largest_force_n) largest_force_n = in_tenths(*largest_force_n);
   // Sealing this takes the key: a chain that somebody makes anew without it ends differently.
-  append(at, {EventKind::closed, to_json(ClosedBody{.complete = complete, .answers = answers}),
-              to_json(ChainEnd{.length = length_, .head = head_})});
+  const ClosedBody body{.complete = complete,
+                        .answers = answers,
+                        .saturated = saturated,
+                        .largest_force_n = largest_force_n};
+  append(at,
+         {EventKind::closed, to_json(body), to_json(ChainEnd{.length = length_, .head = head_})});
 }
 
 void SessionRecorder::go_on_after(const Event& last) {

@@ -66,16 +66,17 @@ class SessionRecorder {
   /// \param evidence  of the same presentation, stored with the answer or not at all
   void answered(std::chrono::nanoseconds at, const AnswerBody& answer,
                 const std::optional<TrialEvidence>& evidence = std::nullopt);
-  /// \param reason  in clear: must say nothing about the stimulus
-  /// \param detail  sealed, with a padding that follows from the flight record's ticks, rounded up
-  ///   to whole thousands
+  /// \param reason  in clear: must say nothing about the stimulus, and be nobody's words
+  /// \param detail  sealed but for the faults' names, with a padding that does not depend on a
+  /// flight
+  ///   record of up to 3,000 ticks, and of a longer one depends on whole thousands
   void interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
                    const std::optional<InterruptionDetail>& detail = std::nullopt);
   void timed_out(std::chrono::nanoseconds at, int trial,
                  const std::optional<TrialEvidence>& evidence = std::nullopt);
-  /// Encodes and seals a trace, and fills `body.trace`, `body.samples` and `body.seconds`. Takes a
-  /// few milliseconds for each second of exploration. Another thread may call it while this one
-  /// records.
+  /// Encodes and seals a trace, and fills `body.trace`, `body.samples` and `body.largest_force_n`.
+  /// Takes a few milliseconds for each second of exploration. Another thread may call it while this
+  /// one records.
   [[nodiscard]] TrialEvidence packed(TraceBody body, const TrialMeasures& measures,
                                      const Trace& trace) const;
   /// Stores what `packed` makes of these, without an answer.
@@ -93,13 +94,15 @@ class SessionRecorder {
                        const std::string& secret_schedule);
   void resumed(std::chrono::nanoseconds at, const ResumedBody& body);
   /// \param kind  calibrated, instructed, break_taken, paused, stopped, noted or ticked
-  /// \param text  one line, or empty
+  /// \param text  one line, or empty; sealed if a person may have typed it: paused, stopped, noted
   void remarked(std::chrono::nanoseconds at, EventKind kind, const std::string& text);
+  void stopped(std::chrono::nanoseconds at, const StopBody& why);
   /// Seals the chain's length and head up to here into the event, see ChainEnd.
   /// \param complete  whether the schedule was finished
-  /// \param answers  in clear; empty: there are none
+  /// \param answers, saturated, largest_force_n  in clear, see ClosedBody; empty: there are none
   void closed(std::chrono::nanoseconds at, bool complete,
-              const std::optional<AnswerSummary>& answers = std::nullopt);
+              const std::optional<AnswerSummary>& answers = std::nullopt, int saturated = 0,
+              std::optional<double> largest_force_n = std::nullopt);
 
   /// Goes on with a chain that is stored already.
   /// \param last  its last event, opened

@@ -33,6 +33,39 @@ std::string title_of(const SessionRow& row) {
   return "session " + std::to_string(row.session) + " (participant " + row.participant + ")";
 }
 
+/// Whether nobody explores after an event of this kind, so that the log can be emptied.
+bool is_rest(EventKind kind) {
+  return kind == EventKind::break_taken || kind == EventKind::paused;
+}
+
+/// What is acknowledged, and where a session may end.
+bool is_known_by_heads(EventKind kind) {
+  return kind == EventKind::opened || kind == EventKind::answered || kind == EventKind::timed_out ||
+         kind == EventKind::stopped || kind == EventKind::closed || is_rest(kind);
+}
+
+/// The same day of another year; of 29 February the 28th if that year has no other.
+std::chrono::nanoseconds years_after(std::chrono::nanoseconds utc, int years) {
+  using namespace std::chrono;
+  const sys_time<nanoseconds> time(utc);
+  const sys_days day = floor<days>(time);
+  year_month_day date(day);
+  date += std::chrono::years(years);
+  if (!date.ok()) date = date.year() / date.month() / last;
+  return (sys_days(date) + (time - day)).time_since_epoch();
+}
+
+/// "2036-01-31"
+std::string day_of(std::chrono::nanoseconds utc) {
+  using namespace std::chrono;
+  const year_month_day date(floor<days>(sys_time<nanoseconds>(utc)));
+  const auto digits = [](unsigned number) {
+    return (number < 10 ? "0" : "") + std::to_string(number);
+  };
+  return std::to_string(int{date.year()}) + "-" + digits(unsigned{date.month()}) + "-" +
+         digits(unsigned{date.day()});
+}
+
 /// A trace comes with the event that names it, and with no other.
 void require_match(const Event& event, const SealedTrace* trace) {
   if (event.kind != EventKind::trace_stored) {
@@ -77,28 +110,28 @@ void StoredStudy::admit(const Event& opened, const SessionKeys& keys, std::chron
                                            .participant = opening.participant,
                                            .enrolment = opening.enrolment,
                                            .first = opened.hash,
-                                           .key = sha256(keys.wrapped)}));
-  insert_key(database_, opened.session, keys.wrapped);
+                                           .key = sha256(keys.wrapped.participant),
+                                           .safety_key = sha256(keys.wrapped.safety),
+                                           .remarks = keys.wrapped.remarks,
+                                           .reasons = keys.wrapped.reasons}));
+  insert_keys(database_, opened.session,
+              {.participant = keys.wrapped.participant, .safety = keys.wrapped.safety});
   if (!keys.kept.empty()) insert_station_key(database_, opened.session, keys.kept);
 }
 
-void StoredStudy::conclude(const Event& closed, std::chrono::nanoseconds at) {
-  database_.query("DELETE FROM station_keys WHERE session = ?").bind(closed.session).run();
+bool StoredStudy::conclude(const Event& closed, std::chrono::nanoseconds at) {
+  Query kept = database_.query("DELETE FROM station_keys WHERE session = ? RETURNING session");
+  const bool erased = kept.bind(closed.session).step();
   append_to_file(
       EventKind::session_closed, at,
       to_json(SessionClosedBody{.session = closed.session,
                                 .length = closed.sequence + 1,
                                 .head = closed.hash,
                                 .complete = body_of(closed, closed_from_json).complete}));
+  return erased;
 }
 
-bool StoredStudy::keeps_key(int session) const {
-  Query query = database_.query("SELECT 1 FROM station_keys WHERE session = ?");
-  query.bind(session);
-  return query.step();
-}
-
-void StoredStudy::forget_erased_keys() const {
+void StoredStudy::empty_log() const {
   try {
     database_.checkpoint();
   } catch (const SQLite::Exception&) {
@@ -208,9 +241,9 @@ void StoredStudy::check_whole(const BufferedEvents& session) const {
   }
 }
 
-void StoredStudy::store_whole(const BufferedEvents& session, const Bytes& wrapped_key,
+void StoredStudy::store_whole(const BufferedEvents& session, const NewKeys& keys,
                               std::chrono::nanoseconds at) {
-  admit(session.events.front(), {.wrapped = wrapped_key, .kept = {}}, at);
+  admit(session.events.front(), {.wrapped = keys, .kept = {}}, at);
   DerivedRows rows;
   for (const Event& event : session.events) {
     fold(rows, event);
@@ -221,14 +254,38 @@ void StoredStudy::store_whole(const BufferedEvents& session, const Bytes& wrappe
   conclude(session.events.back(), at);
 }
 
-void StoredStudy::withdraw(int session, std::chrono::nanoseconds at, const std::string& reason) {
-  if (this->session(session).withdrawn) {
-    refuse("the participant of session " + std::to_string(session) + " has already withdrawn");
+void StoredStudy::withdraw(const WithdrawalBody& withdrawal, std::chrono::nanoseconds at) {
+  const int session = withdrawal.session;
+  const SessionRow row = this->session(session);
+  const std::string whose = "the participant of session " + std::to_string(session);
+  if (withdrawal.kept == Kept::data && row.withdrawn) {
+    refuse(whose + " has already withdrawn" + (row.erased ? ", and the data are erased" : ""));
   }
-  database_.query("DELETE FROM participant_keys WHERE session = ?").bind(session).run();
-  database_.query("DELETE FROM station_keys WHERE session = ?").bind(session).run();
-  append_to_file(EventKind::participant_withdrawn, at,
-                 to_json(ParticipantBody{.session = session, .reason = reason}));
+  if (withdrawal.kept == Kept::safety_record && row.erased) {
+    refuse(whose + " has already withdrawn, and the data are erased");
+  }
+  if (withdrawal.kept == Kept::nothing) refuse_while_kept(session, at);
+  const auto destroy = [&](const char* sql) { database_.query(sql).bind(session).run(); };
+  destroy("DELETE FROM station_keys WHERE session = ?");  // the session cannot go on
+  if (withdrawal.kept != Kept::data) destroy("DELETE FROM participant_keys WHERE session = ?");
+  if (withdrawal.kept == Kept::nothing) destroy("DELETE FROM safety_keys WHERE session = ?");
+  append_about(session, EventKind::participant_withdrawn, at, to_json(withdrawal));
+}
+
+/// The safety record goes last, and only when the study's years have passed.
+void StoredStudy::refuse_while_kept(int session, std::chrono::nanoseconds at) const {
+  const std::string whose = "the safety record of session " + std::to_string(session);
+  if (!this->session(session).erased) {
+    refuse(whose + " is kept as long as the data are; erase those first (withdraw --erase)");
+  }
+  Query key = database_.query("SELECT 1 FROM safety_keys WHERE session = ?");
+  key.bind(session);
+  if (!key.step()) refuse(whose + " is already erased");
+  const auto until = years_after(opening_on_file(session).at, commitment().safety_record_years);
+  if (at >= until) return;
+  refuse(whose + " is kept until " + day_of(until) + ", for " +
+         std::to_string(commitment().safety_record_years) +
+         " years, as the study says; come back then");
 }
 
 void StoredStudy::replace(const ReplacementBody& replacement, std::chrono::nanoseconds at) {
@@ -236,7 +293,7 @@ void StoredStudy::replace(const ReplacementBody& replacement, std::chrono::nanos
   const SessionRow row = session(replacement.session);
   check_replaced(row);
   check_replacement(row, replacement.by);
-  append_to_file(EventKind::participant_replaced, at, to_json(replacement));
+  append_about(replacement.session, EventKind::participant_replaced, at, to_json(replacement));
 }
 
 void StoredStudy::check_replaced(const SessionRow& row) const {
@@ -287,20 +344,24 @@ void StoredSession::accept(const Event& event, const std::optional<SealedTrace>&
 
 void StoredSession::accept_together(std::span<const RecordedEvent> events) {
   ChainLink chain = chain_;
-  bool erases_key = false;
+  bool erased_key = false;
   study_.database().change([&] {
     if (chain_.length() > 0) refuse_if_others_wrote(events.front().event.session);
-    erases_key = events.back().event.kind == EventKind::closed &&
-                 study_.keeps_key(events.back().event.session);
     for (const auto& [event, trace] : events) {
       const bool first = chain.length() == 0;
       chain.extend(event);
       require_match(event, trace ? &*trace : nullptr);
-      store(event, trace, first);
+      erased_key = store(event, trace, first);
     }
   });
   chain_ = chain;
-  if (erases_key) study_.forget_erased_keys();
+  const EventKind last = events.back().event.kind;
+  if (is_known_by_heads(last)) {
+    study_.tell_heads({.session = events.back().event.session,
+                       .ended = last == EventKind::closed,
+                       .answers = last == EventKind::answered ? 1 : 0});
+  }
+  if (erased_key || is_rest(last)) study_.empty_log();
 }
 
 /// If two programs recorded one session, each would lose what the other records.
@@ -311,10 +372,10 @@ void StoredSession::refuse_if_others_wrote(int session) const {
                 " was continued by another program, which has it now; end this one");
 }
 
-void StoredSession::store(const Event& event, const std::optional<SealedTrace>& trace, bool first) {
+bool StoredSession::store(const Event& event, const std::optional<SealedTrace>& trace, bool first) {
   if (first) study_.admit(event, keys_, utc_());
   study_.append(event, trace);
-  if (event.kind == EventKind::closed) study_.conclude(event, utc_());
+  return event.kind == EventKind::closed && study_.conclude(event, utc_());
 }
 
 }  // namespace touchtrial::store

@@ -1,6 +1,7 @@
 #include "protocols/store/stored_study.hpp"
 
 #include "protocols/store/payload_json.hpp"
+#include "protocols/store/person_texts.hpp"
 #include "protocols/store/rows.hpp"
 
 #include <algorithm>
@@ -107,10 +108,81 @@ ChainHead StoredStudy::head(int session) const {
   return {.length = last->sequence + 1, .hash = last->hash};
 }
 
+void StoredStudy::sign_with(const Signer& signer) {
+  const StudyCommitment& known = commitment();
+  const bool is_station = known.station && known.station->key == signer.public_half();
+  if (!is_station && known.investigator != signer.public_half()) {
+    refuse(known.station ? "is the database of station " + known.station->name +
+                               "; give that station's file, or the study's key"
+                         : "was merged from several stations' databases; what is recorded in it "
+                           "takes the investigator's key, name it with --key");
+  }
+  signer_ = signer;
+}
+
+void StoredStudy::keep_heads(HeadKeeper keeper, HeadRecord now) {
+  heads_ = std::move(keeper);
+  first_record_ = std::move(now);
+}
+
+void StoredStudy::tell_heads(const HeadNews& news) const {
+  if (!heads_) return;
+  const auto [file, session] = database_.run(
+      [&] { return std::pair(head(0), news.session == 0 ? ChainHead{} : head(news.session)); });
+  heads_([&](HeadRecord& record) {
+    if (record.count == 0) {
+      record = first_record_;
+    } else {
+      record.acknowledged += news.answers;
+    }
+    record.know_file(file);
+    if (news.ended) {
+      record.sessions.erase(news.session);
+    } else if (news.session != 0) {
+      record.know_session(news.session, session);
+    }
+  });
+}
+
 void StoredStudy::append_to_file(EventKind kind, std::chrono::nanoseconds at,
-                                 const std::string& body) {
+                                 const std::string& body, Bytes sealed) {
+  if (!signer_) {
+    refuse("what is recorded is signed; give this station's file, or the investigator's key");
+  }
   const std::optional<Event> last = last_event(0);
-  append(next_on_file(last ? &*last : nullptr, kind, at, body), std::nullopt);
+  if (last) require_signed(*last);
+  const bool is_investigator = signer_->public_half() == commitment().investigator;
+  if (kind == EventKind::study_unblinded && !is_investigator) {
+    refuse("unblinding takes the investigator's key; name it with --key");
+  }
+  append(signed_event(next_on_file(last ? &*last : nullptr, kind, at, body, std::move(sealed)),
+                      *signer_),
+         std::nullopt);
+}
+
+void StoredStudy::append_about(int session, EventKind kind, std::chrono::nanoseconds at,
+                               const std::string& body) {
+  const SessionOpenedBody opened = body_of(opening_on_file(session), session_opened_from_json);
+  PersonText text = sealed_person_text(kind, at, body, opened);
+  append_to_file(kind, at, text.clear, std::move(text.sealed));
+}
+
+Event StoredStudy::opening_on_file(int session) const {
+  constexpr EventKind kKind = EventKind::session_opened;
+  std::optional<Event> found;
+  for_each_event(database_, {.session = 0, .kinds = std::span(&kKind, 1)}, [&](const Event& event) {
+    if (session_about(event) == session) found = event;
+  });
+  if (!found) throw EventFault(session, kNoEvent, "the file's chain knows no such session");
+  return *std::move(found);
+}
+
+/// A signature vouches for all events before it: nobody signs on top of a chain that was made anew.
+void StoredStudy::require_signed(const Event& last) const {
+  if (last.signature.empty() && stations() > 0) return;  // it follows from the stations' chains
+  const std::optional<Event> committed = read_event(database_, 0, 0);
+  if (!committed) refuse("its first event is missing; restore it from a backup");
+  Signatories(*committed).require(last);
 }
 
 void StoredStudy::append(const Event& event, const std::optional<SealedTrace>& trace) {

@@ -18,10 +18,17 @@
 
 namespace touchtrial::store {
 
-/// A session's key in both forms. See sealing.hpp.
+/// A session's keys as a database keeps them. See sealing.hpp.
 struct SessionKeys {
-  Bytes wrapped;  ///< for the investigator
-  Bytes kept;     ///< at the station, while the session is open; may be empty
+  NewKeys wrapped;  ///< for the investigator
+  Bytes kept;       ///< at the station, while the session is open; may be empty
+};
+
+/// What a commit means to head files, beside the end of the file's chain.
+struct HeadNews {
+  int session = 0;  ///< whose chain grew; 0: none
+  bool ended = false;
+  std::int64_t answers = 0;  ///< how many came
 };
 
 class StoredStudy {
@@ -49,8 +56,21 @@ class StoredStudy {
   /// \throws StoreError if there is no such session
   [[nodiscard]] SessionRow session(int session) const;
 
-  /// Adds an event to the file's chain, and brings the derived rows up to date.
-  void append_to_file(EventKind kind, std::chrono::nanoseconds at, const std::string& body);
+  /// \throws StoreError if neither the file's station nor its investigator signs so
+  void sign_with(const Signer& signer);
+  /// Adds a signed event to the file's chain, and brings the derived rows up to date.
+  /// \throws StoreError if nobody signs, or the event is for the investigator alone
+  /// \throws EventFault if the last event is signed by none of the two
+  void append_to_file(EventKind kind, std::chrono::nanoseconds at, const std::string& body,
+                      Bytes sealed = {});
+  /// \param now  record_of this database
+  void keep_heads(HeadKeeper keeper, HeadRecord now);
+  /// Tells the keeper of heads, if there is one, what was committed.
+  void tell_heads(const HeadNews& news) const;
+  /// The same for an event about a person, whose texts are sealed.
+  /// \param body  whole
+  void append_about(int session, EventKind kind, std::chrono::nanoseconds at,
+                    const std::string& body);
   /// Adds an event of a session, and brings the derived rows up to date.
   void append(const Event& event, const std::optional<SealedTrace>& trace);
 
@@ -65,23 +85,22 @@ class StoredStudy {
   [[nodiscard]] Event last_of_open(int session) const;
   /// Records a session's end on the file's chain, and erases the station's copy of its key.
   /// \param closed  its last event
-  void conclude(const Event& closed, std::chrono::nanoseconds at);
-  /// Whether the station has a copy of the session's key.
-  [[nodiscard]] bool keeps_key(int session) const;
-  /// Empties the log, which still has pages with a station's copy of a key that was erased. Does
-  /// nothing if the disk fails or another program reads. Call it outside of Database::change.
-  void forget_erased_keys() const;
+  /// \return whether there was a copy to erase
+  bool conclude(const Event& closed, std::chrono::nanoseconds at);
+  /// Empties the log into the file, so that less is lost with a damaged log, and pages with a
+  /// station's copy of a key that was erased are gone. Does nothing if the disk fails or another
+  /// program reads. Call it outside of Database::change.
+  void empty_log() const;
 
   /// Holds the events of a finished session against each other.
   /// \throws StoreError, EventFault
   void check_whole(const BufferedEvents& session) const;
   /// \pre check_whole found no fault
-  void store_whole(const BufferedEvents& session, const Bytes& wrapped_key,
-                   std::chrono::nanoseconds at);
+  void store_whole(const BufferedEvents& session, const NewKeys& keys, std::chrono::nanoseconds at);
 
-  /// Destroys a participant's key.
-  /// \throws StoreError if the participant has withdrawn already
-  void withdraw(int session, std::chrono::nanoseconds at, const std::string& reason);
+  /// Records a withdrawal, and destroys the keys of what it does not keep.
+  /// \throws StoreError if no more is kept already, or the safety record is not to be erased yet
+  void withdraw(const WithdrawalBody& withdrawal, std::chrono::nanoseconds at);
   /// \throws StoreError if the session may still go on or was replaced, or `by` is taken
   void replace(const ReplacementBody& replacement, std::chrono::nanoseconds at);
 
@@ -94,7 +113,11 @@ class StoredStudy {
   /// \throws StoreError if the database takes no more sessions: it was collected, or is closed
   void refuse_if_over() const;
   void require_participant_id(const std::string& id) const;
+  void require_signed(const Event& last) const;
   void refuse_after_withdrawal(const DerivedRows& rows, const Event& event) const;
+  /// The first event about a session on the file's chain.
+  [[nodiscard]] Event opening_on_file(int session) const;
+  void refuse_while_kept(int session, std::chrono::nanoseconds at) const;
   void check_opening(const SessionOpening& opening) const;
   /// A database holds pilots or others, and sessions that are seen or sessions that are felt.
   void refuse_mixture(const SessionOpening& opening) const;
@@ -108,6 +131,9 @@ class StoredStudy {
 
   Database database_;
   mutable std::optional<StudyCommitment> commitment_;
+  std::optional<Signer> signer_;
+  HeadKeeper heads_;
+  HeadRecord first_record_;  ///< for a head file that is not there
 };
 
 /// The durable sink: every event, or group of events, is one transaction.
@@ -125,7 +151,8 @@ class StoredSession final : public EventSink {
  private:
   StoredSession(StoredStudy& study, ChainLink chain, SessionKeys keys, UtcClock utc);
   void refuse_if_others_wrote(int session) const;
-  void store(const Event& event, const std::optional<SealedTrace>& trace, bool first);
+  /// \return whether the station's copy of the session's key was erased
+  bool store(const Event& event, const std::optional<SealedTrace>& trace, bool first);
 
   StoredStudy& study_;
   ChainLink chain_;

@@ -7,6 +7,7 @@
 #include "protocols/store/schema.hpp"
 #include "protocols/store/stored_study.hpp"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -57,6 +58,7 @@ struct StudyStore::Impl {
   template <typename Work>
   void change(Work&& work) {
     database().change(std::forward<Work>(work));
+    study.tell_heads({});
   }
 
   [[nodiscard]] const Database& database() const { return study.database(); }
@@ -71,27 +73,33 @@ StudyStore::StudyStore(StudyStore&&) noexcept = default;
 StudyStore& StudyStore::operator=(StudyStore&&) noexcept = default;
 
 StudyStore StudyStore::create(const std::filesystem::path& path, const StudyCommitment& commitment,
-                              std::chrono::nanoseconds at) {
+                              std::chrono::nanoseconds at, const Signer& signer) {
   if (is_there(path)) refuse_taken(path);
   // The file gets its name when it is whole, so that no early end of the program leaves half of it.
   const std::filesystem::path draft = path.string() + ".new" + std::to_string(::getpid());
   remove_database(draft);
   try {
-    fill_new(draft, commitment, at);
+    fill_new(draft, commitment, at, signer);
     if (!move_to_free_name(draft, path)) refuse_taken(path);
   } catch (...) {
     remove_database(draft);
     throw;
   }
-  return open(path, Access::read_write);
+  StudyStore store = open(path, Access::read_write);
+  store.sign_with(signer);
+  return store;
 }
 
 void StudyStore::fill_new(const std::filesystem::path& draft, const StudyCommitment& commitment,
-                          std::chrono::nanoseconds at) {
+                          std::chrono::nanoseconds at, const Signer& signer) {
   Impl impl(Database::create(draft));
   make_tables(impl.database());
-  impl.change(
-      [&] { impl.study.append_to_file(EventKind::study_committed, at, to_json(commitment)); });
+  impl.change([&] {
+    impl.study.append(
+        signed_event(next_on_file(nullptr, EventKind::study_committed, at, to_json(commitment)),
+                     signer),
+        std::nullopt);
+  });
   // From its birth the file is whole without its log.
   impl.run([&] { return impl.database().checkpoint(); });
 }
@@ -111,6 +119,17 @@ StudyStore CollectedDraft::store_of(Database database, TraceFetch fetch) {
 
 const StudyCommitment& StudyStore::commitment() const {
   return impl_->run([&]() -> const StudyCommitment& { return impl_->study.commitment(); });
+}
+
+void StudyStore::sign_with(const Signer& signer) {
+  impl_->run([&] { impl_->study.sign_with(signer); });
+}
+
+void StudyStore::keep_heads(HeadKeeper keeper) {
+  const std::optional<StationIdentity>& station = commitment().station;
+  HeadRecord now = record_of(*this, station ? station->name : std::string());
+  impl_->study.keep_heads(std::move(keeper), std::move(now));
+  impl_->study.tell_heads({});
 }
 
 StudyState StudyStore::state() const {
@@ -133,6 +152,18 @@ std::vector<SessionRow> StudyStore::sessions_of(const std::string& participant) 
 
 std::optional<Event> StudyStore::last_event(int session) const {
   return impl_->run([&] { return impl_->study.last_event(session); });
+}
+
+std::optional<Event> StudyStore::event_at(int session, std::int64_t sequence) const {
+  return impl_->run([&] { return read_event(impl_->database(), session, sequence); });
+}
+
+std::int64_t StudyStore::answers() const {
+  return impl_->run([&] {
+    Query query = impl_->database().query("SELECT count(*) FROM events WHERE kind = ?");
+    query.bind(name_of(EventKind::answered));
+    return query.step() ? query.integer(0) : 0;
+  });
 }
 
 std::vector<SessionRow> StudyStore::sessions() const {
@@ -177,13 +208,12 @@ int StudyStore::enrolment_for(const std::string& participant) const {
   return impl_->run([&] { return impl_->study.enrolment_for(participant); });
 }
 
+WrappedKeys StudyStore::wrapped_keys(int session) const {
+  return impl_->run([&] { return read_keys(impl_->database(), session); });
+}
+
 std::optional<Bytes> StudyStore::wrapped_key(int session) const {
-  return impl_->run([&]() -> std::optional<Bytes> {
-    Query query = impl_->database().query("SELECT wrapped FROM participant_keys WHERE session = ?");
-    query.bind(session);
-    if (!query.step()) return std::nullopt;
-    return query.blob(0);
-  });
+  return wrapped_keys(session).participant;
 }
 
 std::optional<Bytes> StudyStore::kept_key(int session) const {
@@ -223,15 +253,15 @@ std::vector<Event> StudyStore::station_chain(int station) const {
   return chain;
 }
 
-void StudyStore::add_session(const BufferedEvents& session, const Bytes& wrapped_key,
+void StudyStore::add_session(const BufferedEvents& session, const NewKeys& keys,
                              std::chrono::nanoseconds at) {
   impl_->run([&] { impl_->study.check_whole(session); });
-  impl_->change([&] { impl_->study.store_whole(session, wrapped_key, at); });
+  impl_->change([&] { impl_->study.store_whole(session, keys, at); });
 }
 
-std::unique_ptr<EventSink> StudyStore::begin_session(int session, const Bytes& wrapped_key,
-                                                     UtcClock utc, const Bytes& kept_key) {
-  return std::make_unique<StoredSession>(impl_->study, session, SessionKeys{wrapped_key, kept_key},
+std::unique_ptr<EventSink> StudyStore::begin_session(int session, const NewKeys& keys, UtcClock utc,
+                                                     const Bytes& kept_key) {
+  return std::make_unique<StoredSession>(impl_->study, session, SessionKeys{keys, kept_key},
                                          std::move(utc));
 }
 
@@ -265,26 +295,56 @@ void StudyStore::unblind(std::chrono::nanoseconds at, const std::string& reason,
   });
 }
 
+void StudyStore::look_at(const std::string& participant, std::chrono::nanoseconds at,
+                         const std::string& reason) {
+  const std::vector<SessionRow> rows = sessions_of(participant);
+  impl_->change([&] {
+    const std::string whose = "participant " + participant;
+    impl_->study.require_reason(reason, "a look at outcomes");
+    if (rows.empty()) impl_->study.refuse(whose + " has no session; check the participant id");
+    if (std::ranges::all_of(rows, &SessionRow::erased)) {
+      impl_->study.refuse(whose +
+                          " has withdrawn, and the data are erased; there is nothing to see");
+    }
+    for (const SessionRow& row : rows) {
+      if (row.state != SessionState::open || row.withdrawn || !row.replaced_by.empty()) continue;
+      impl_->study.refuse("session " + std::to_string(row.session) + " (" + whose +
+                          ") may still go on; look at it when it has ended");
+    }
+    const bool interim = !impl_->study.state().closed;
+    impl_->study.append_to_file(
+        EventKind::study_unblinded, at,
+        to_json(UnblindingBody{.reason = reason, .interim = interim, .participant = participant}));
+  });
+}
+
 void StudyStore::exclude(int session, std::chrono::nanoseconds at, const std::string& reason) {
   impl_->change([&] {
     impl_->study.require_reason(reason, "an exclusion");
     if (impl_->study.session(session).excluded) {
       impl_->study.refuse("session " + std::to_string(session) + " is already excluded");
     }
-    impl_->study.append_to_file(EventKind::participant_excluded, at,
-                                to_json(ParticipantBody{.session = session, .reason = reason}));
+    const bool seen = impl_->study.state().shows(session);
+    impl_->study.append_about(
+        session, EventKind::participant_excluded, at,
+        to_json(ParticipantBody{.session = session, .reason = reason, .after_outcomes = seen}));
   });
 }
 
-void StudyStore::withdraw(int session, std::chrono::nanoseconds at, const std::string& reason) {
-  withdraw(std::span(&session, 1), at, reason);
+void StudyStore::withdraw(int session, std::chrono::nanoseconds at, const std::string& reason,
+                          Kept kept, const std::string& not_erased) {
+  withdraw(std::span(&session, 1), at, reason, kept, not_erased);
 }
 
 void StudyStore::withdraw(std::span<const int> sessions, std::chrono::nanoseconds at,
-                          const std::string& reason) {
+                          const std::string& reason, Kept kept, const std::string& not_erased) {
   impl_->change([&] {
-    for (const int session : sessions) impl_->study.withdraw(session, at, reason);
+    for (const int session : sessions) {
+      impl_->study.withdraw(
+          {.session = session, .kept = kept, .reason = reason, .not_erased = not_erased}, at);
+    }
   });
+  if (kept == Kept::data) return impl_->run([&] { impl_->study.empty_log(); });
   // The log still holds the pages with the keys.
   const bool emptied = impl_->run([&] { return impl_->database().checkpoint(); });
   if (!emptied) {
@@ -307,8 +367,22 @@ void StudyStore::note(int session, std::chrono::nanoseconds at, const std::strin
   impl_->change([&] {
     static_cast<void>(impl_->study.session(session));
     if (code.empty() && text.empty()) impl_->study.refuse("the note is empty; give it a text");
-    impl_->study.append_to_file(EventKind::participant_noted, at,
-                                to_json(NoteBody{.session = session, .code = code, .text = text}));
+    impl_->study.append_about(session, EventKind::participant_noted, at,
+                              to_json(NoteBody{.session = session, .code = code, .text = text}));
+  });
+}
+
+void StudyStore::accept_loss(const LossBody& loss, std::span<const int> sessions,
+                             std::chrono::nanoseconds at) {
+  impl_->change([&] {
+    impl_->study.require_reason(loss.reason, "going on without what is lost");
+    impl_->study.append_to_file(EventKind::loss_accepted, at, to_json(loss));
+    for (const int session : sessions) {
+      static_cast<void>(impl_->study.session(session));
+      impl_->study.append_to_file(
+          EventKind::participant_noted, at,
+          to_json(NoteBody{.session = session, .code = "answers-lost", .text = loss.missing}));
+    }
   });
 }
 

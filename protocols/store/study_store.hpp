@@ -5,6 +5,7 @@
 
 #include "protocols/store/file_chain.hpp"
 #include "protocols/store/fold.hpp"
+#include "protocols/store/head_file.hpp"
 #include "protocols/store/session_recorder.hpp"
 
 #include <chrono>
@@ -17,14 +18,6 @@
 #include <vector>
 
 namespace touchtrial::store {
-
-/// The end of a chain.
-struct ChainHead {
-  std::int64_t length = 0;  ///< number of events
-  Digest hash{};            ///< of the last; zeros if there is none
-
-  friend bool operator==(const ChainHead&, const ChainHead&) = default;
-};
 
 /// How much of a database is checked. `skip` leaves out the file's pages and the traces, which are
 /// nearly all of a file.
@@ -48,10 +41,11 @@ class StudyStore {
  public:
   /// Makes a new database with its first event. The file appears under its name when it is whole
   /// and synced; a kill or a power cut before that leaves no file of this name.
+  /// \param signer  the commitment's station, or its investigator; as sign_with
   /// \throws StoreError if the file exists or cannot be made
   [[nodiscard]] static StudyStore create(const std::filesystem::path& path,
                                          const StudyCommitment& commitment,
-                                         std::chrono::nanoseconds at);
+                                         std::chrono::nanoseconds at, const Signer& signer);
 
   enum class Access { read_only, read_write };
 
@@ -63,6 +57,17 @@ class StudyStore {
   /// \throws DamagedStore if it is truncated, lacks tables or cannot be read by SQLite
   /// \throws StoreError if it is missing, no Touchtrial database, or of another schema
   [[nodiscard]] static StudyStore open(const std::filesystem::path& path, Access access);
+
+  /// Whose signature stands under all that is recorded on the file's chain from now on. Functions
+  /// that record there throw StoreError before.
+  /// \throws StoreError if neither the file's station nor its investigator signs so
+  void sign_with(const Signer& signer);
+
+  /// From now on `keeper` gets the ends of the chains after each commit to the file's chain, and of
+  /// a session after each answer, each pause, and its beginning and end. What it throws comes
+  /// through; what was committed stays.
+  /// \pre sign_with
+  void keep_heads(HeadKeeper keeper);
 
   ~StudyStore();
   StudyStore(StudyStore&&) noexcept;
@@ -79,6 +84,12 @@ class StudyStore {
   [[nodiscard]] std::vector<SessionRow> sessions_of(const std::string& participant) const;
   /// The last event of one chain (0: the file's). The events before it are not read.
   [[nodiscard]] std::optional<Event> last_event(int session) const;
+  /// One event of a chain (0: the file's), by its place in it, from 0; nothing if it has none
+  /// there.
+  [[nodiscard]] std::optional<Event> event_at(int session, std::int64_t sequence) const;
+  /// How many answers the database holds, those of restarted blocks included. Reads the kind of
+  /// every event: count on from it during a session.
+  [[nodiscard]] std::int64_t answers() const;
   /// All trials of all sessions, by session and trial: without answers and times, which are sealed.
   [[nodiscard]] std::vector<TrialRow> trials() const;
   /// Events of one chain in order (0: the file's).
@@ -91,12 +102,11 @@ class StudyStore {
 
   /// Stores a finished session in one transaction: its key, events and traces, its opening and
   /// closing on the file's chain, and its derived rows.
-  /// \param wrapped_key  wrap_participant_key's result
+  /// \param keys  wrap_participant_key's result
   /// \throws StoreError if participant or enrolment is already taken (by which session), the study
   ///   is closed, the session is a pilot and the study not (or the other way round), its device is
   ///   seen and others' are felt, or the chain does not hold; nothing is stored then
-  void add_session(const BufferedEvents& session, const Bytes& wrapped_key,
-                   std::chrono::nanoseconds at);
+  void add_session(const BufferedEvents& session, const NewKeys& keys, std::chrono::nanoseconds at);
 
   /// Starts a session whose events are stored one by one, each in its own transaction. The file
   /// holds the session from its event `opened` on; storing that event throws the errors of
@@ -105,7 +115,7 @@ class StudyStore {
   /// \param kept_key  keep_participant_key's result, erased when the session ends; empty: the
   ///   session cannot be resumed without the investigator's key
   /// \return the sink; it must not outlive the store
-  [[nodiscard]] std::unique_ptr<EventSink> begin_session(int session, const Bytes& wrapped_key,
+  [[nodiscard]] std::unique_ptr<EventSink> begin_session(int session, const NewKeys& keys,
                                                          UtcClock utc = {},
                                                          const Bytes& kept_key = {});
 
@@ -131,18 +141,32 @@ class StudyStore {
   /// \throws StoreError if the study is open and `interim` is false, if it is closed and `interim`
   ///   is true, or if `reason` is empty
   void unblind(std::chrono::nanoseconds at, const std::string& reason, bool interim);
+  /// A look at one participant's outcomes, while the study is open or after. It shows the sessions
+  /// that the participant has had so far.
+  /// \throws StoreError if the participant has none, one of them may still go on, all are erased,
+  /// or
+  ///   `reason` is empty
+  void look_at(const std::string& participant, std::chrono::nanoseconds at,
+               const std::string& reason);
 
-  /// Marks a session as left out of outcomes.
+  // The reasons and texts that follow are sealed for the investigator (person_texts.hpp).
+
+  /// Marks a session as left out of outcomes. Whether they had been seen is recorded in clear.
   /// \throws StoreError if there is no such session, it is already excluded, or `reason` is empty
   void exclude(int session, std::chrono::nanoseconds at, const std::string& reason);
-  /// Destroys the participant's key, so that no sealed payload can ever be read again. The chain,
-  /// which hashes ciphertext, still holds. Copies of the file keep the key: destroy those yourself.
-  /// \throws StoreError if there is no such session or its participant has already withdrawn; also,
-  ///   after the withdrawal, if another program keeps a page with the key in the write-ahead log
-  void withdraw(int session, std::chrono::nanoseconds at, const std::string& reason);
+  /// The participant takes no further part: a session that is open cannot go on. Destroys the keys
+  /// of what is not kept, so that nobody can ever read it again. The chain, which hashes
+  /// ciphertext, still holds. Copies of the file keep the keys: destroy those yourself. \param
+  /// not_erased  what this cannot reach; recorded in clear \throws StoreError if there is no such
+  /// session, no more is kept already, or the safety record
+  ///   is to be erased before the data or before the study's years have passed; also, after the
+  ///   withdrawal, if another program keeps a page with a key in the write-ahead log
+  void withdraw(int session, std::chrono::nanoseconds at, const std::string& reason,
+                Kept kept = Kept::safety_record, const std::string& not_erased = "");
   /// The same for all sessions of one participant: all of them or none.
   void withdraw(std::span<const int> sessions, std::chrono::nanoseconds at,
-                const std::string& reason);
+                const std::string& reason, Kept kept = Kept::safety_record,
+                const std::string& not_erased = "");
 
   /// Lets `by` take the place of a session's participant: the next session under that id inherits
   /// the enrolment number. The replaced session stays as it is, but enters no outcomes.
@@ -159,7 +183,15 @@ class StudyStore {
   void note(int session, std::chrono::nanoseconds at, const std::string& code,
             const std::string& text);
 
-  /// The participant's wrapped key; empty after withdrawal.
+  /// Records that the study goes on without what the database lost, and notes it as a deviation
+  /// "answers-lost" of the sessions concerned.
+  /// \throws StoreError if there is no such session, or the reason is empty
+  void accept_loss(const LossBody& loss, std::span<const int> sessions,
+                   std::chrono::nanoseconds at);
+
+  /// A session's keys, as far as they were not destroyed.
+  [[nodiscard]] WrappedKeys wrapped_keys(int session) const;
+  /// The participant's wrapped key alone.
   [[nodiscard]] std::optional<Bytes> wrapped_key(int session) const;
   /// The station's copy of an open session's key; empty if there is none, or the session has ended.
   [[nodiscard]] std::optional<Bytes> kept_key(int session) const;
@@ -182,7 +214,7 @@ class StudyStore {
  private:
   struct Impl;
   static void fill_new(const std::filesystem::path& draft, const StudyCommitment& commitment,
-                       std::chrono::nanoseconds at);
+                       std::chrono::nanoseconds at, const Signer& signer);
   friend class CollectedDraft;
   explicit StudyStore(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;

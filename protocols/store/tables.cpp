@@ -21,6 +21,7 @@ constexpr auto kEvents = std::to_array<TableColumn>({{"session", integer},
                                                      {"sealed", blob},
                                                      {"previous", blob},
                                                      {"hash", blob},
+                                                     {"signature", blob},
                                                      {"own_session", integer, true}});
 constexpr auto kTraces = std::to_array<TableColumn>(
     {{"session", integer}, {"trial", integer}, {"box", blob, false, {}, true}});
@@ -34,6 +35,7 @@ constexpr auto kSessions = std::to_array<TableColumn>({{"session", integer},
                                                        {"pilot", integer},
                                                        {"excluded", integer},
                                                        {"withdrawn", integer},
+                                                       {"erased", integer},
                                                        {"device", text},
                                                        {"replaced_by", text, true},
                                                        {"own_session", integer, true},
@@ -43,8 +45,11 @@ constexpr auto kTrials = std::to_array<TableColumn>({{"session", integer},
                                                      {"block", integer},
                                                      {"state", text},
                                                      {"valid", integer},
+                                                     {"contact_ok", integer},
+                                                     {"path_ok", integer},
+                                                     {"force_ok", integer},
+                                                     {"speed_ok", integer},
                                                      {"overruns", integer},
-                                                     {"seconds", integer},
                                                      {"rate_hz", real},
                                                      {"explorations", integer}});
 
@@ -62,6 +67,7 @@ constexpr auto kTables = std::to_array<TableDefinition>({
     {"events", kEvents, kOfEvent, true},
     {"traces", kTraces, kOfTrial, true},
     {"participant_keys", kKeys, kOfSession},
+    {"safety_keys", kKeys, kOfSession},
     {"station_keys", kStationKeys, kOfSession, false, {}, {}, true},
     {"sessions", kSessions, kOfSession, false, kTakenOnce},
     {"trials", kTrials, kOfTrial, false, {}, kTrialsRefer},
@@ -191,6 +197,7 @@ Cells session_cells(const SessionRow& row, OwnNumber own) {
           cell_of(row.pilot),
           cell_of(row.excluded),
           cell_of(row.withdrawn),
+          cell_of(row.erased),
           row.device,
           row.replaced_by.empty() ? Cell() : Cell(row.replaced_by),
           says_own ? Cell(std::int64_t{row.own_session}) : Cell(),
@@ -203,8 +210,11 @@ Cells trial_cells(const TrialRow& row) {
           std::int64_t{row.block},
           state_cell(kTrialStates, row.state),
           cell_of(row.valid),
+          cell_of(row.hand.contact),
+          cell_of(row.hand.path),
+          cell_of(row.hand.force),
+          cell_of(row.hand.speed),
           row.overruns,
-          std::int64_t{row.seconds},
           row.rate_hz,
           std::int64_t{row.explorations}};
 }
@@ -229,6 +239,7 @@ SessionRow session_row(std::span<const Cell> cells) {
           .pilot = row.flag(),
           .excluded = row.flag(),
           .withdrawn = row.flag(),
+          .erased = row.flag(),
           .device = row.text(),
           .replaced_by = row.text_or_empty(),
           .own_session = row.optional_whole().value_or(session),
@@ -243,8 +254,11 @@ TrialRow trial_row(std::span<const Cell> cells) {
   row.block = trial.whole();
   row.state = trial.state<TrialState>(kTrialStates);
   row.valid = trial.flag();
+  row.hand.contact = trial.flag();
+  row.hand.path = trial.flag();
+  row.hand.force = trial.flag();
+  row.hand.speed = trial.flag();
   row.overruns = trial.integer();
-  row.seconds = trial.whole();
   row.rate_hz = trial.real();
   row.explorations = trial.whole();
   return row;

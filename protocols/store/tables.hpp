@@ -17,9 +17,9 @@
 namespace touchtrial::store {
 
 /// Counts every change of the tables, in files and on servers.
-inline constexpr int kSchemaVersion = 4;
+inline constexpr int kSchemaVersion = 5;
 /// The oldest version that can be brought forward; earlier ones were never released.
-inline constexpr int kOldestSchemaVersion = 4;
+inline constexpr int kOldestSchemaVersion = 5;
 
 /// integer: 64 bits, signed. real: 64 bits. text: UTF-8. blob: bytes.
 enum class ColumnType { integer, real, text, blob };
@@ -58,7 +58,7 @@ struct TableDefinition {
 };
 
 /// Each table comes after those that it refers to.
-enum class Table { events, traces, participant_keys, station_keys, sessions, trials };
+enum class Table { events, traces, participant_keys, safety_keys, station_keys, sessions, trials };
 
 [[nodiscard]] std::span<const TableDefinition> table_definitions();
 [[nodiscard]] const TableDefinition& table_definition(Table table);

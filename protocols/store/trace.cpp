@@ -271,8 +271,9 @@ Trace decode_trace(ByteView bytes) {
 }
 
 std::size_t trace_padding(std::size_t sample_count) {
-  const std::size_t thousands = (std::min(sample_count, kMaxSamples) + 999) / 1000;
-  return 2048 + 8000 * thousands;
+  constexpr std::size_t kBytesAStep = 2048 + 8 * kPaddingStep;
+  const std::size_t count = std::clamp(sample_count, std::size_t{1}, kMaxSamples);
+  return kBytesAStep * ((count + kPaddingStep - 1) / kPaddingStep);
 }
 
 }  // namespace touchtrial::store

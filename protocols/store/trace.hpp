@@ -4,6 +4,7 @@
 #include "core/bytes.hpp"
 #include "core/vec.hpp"
 
+#include <cstddef>
 #include <vector>
 
 namespace touchtrial::store {
@@ -27,9 +28,13 @@ struct Trace {
 /// \throws StoreError if the bytes are no trace, are truncated, or claim an absurd length
 [[nodiscard]] Trace decode_trace(ByteView bytes);
 
-/// The padding under which traces are sealed, in bytes. It depends on the number of samples rounded
-/// up to whole thousands (seconds, at the servo's rate), so that the size of a stored trace tells
-/// neither rough textures from smooth ones nor how long exactly they were felt.
+/// The padding under which traces are sealed, in bytes. It depends on the number of samples in
+/// steps of kPaddingStep alone, so that the size of a stored trace tells neither rough textures
+/// from smooth ones nor for how many seconds they were felt. Source:
+/// docs/decisions/0054-what-a-trial-shows.md.
 [[nodiscard]] std::size_t trace_padding(std::size_t sample_count);
+
+/// Ten seconds at the servo's rate.
+inline constexpr std::size_t kPaddingStep = 10'000;
 
 }  // namespace touchtrial::store

@@ -23,8 +23,8 @@ store::StationRecord falcon() {
 }
 
 int sum_of(const analysis::ParticipantFlow& flow) {
-  return flow.withdrawn + flow.replaced + flow.excluded + flow.stopped + flow.open +
-         flow.other_kind + flow.unseen + flow.analysed;
+  return flow.erased + flow.replaced + flow.excluded + flow.stopped + flow.open + flow.other_kind +
+         flow.unseen + flow.analysed;
 }
 
 }  // namespace
@@ -156,13 +156,18 @@ TEST_CASE("Every participant is counted once, by the session that stands") {
   store.replace(6, "again", milliseconds(40), "power cut");
   study.add(session_of("again", 6));
 
-  const analysis::Collection collection = analysis::load_collection(store);
+  const analysis::Collection blind = analysis::load_collection(store);
+  CHECK(blind.flow.exclusion_reasons == std::vector<std::string>{"(sealed)"});
+  CHECK(blind.sessions[1].stop_reason == "(sealed)");
+  CHECK(blind.sessions[4].replacement_reason == "(sealed)");
+  const analysis::Collection collection = analysis::load_collection(store, &study.key());
   const analysis::ParticipantFlow& flow = collection.flow;
   CHECK(flow.enrolled == 7);
   CHECK(flow.analysed == 3);  // complete, successor, again
   CHECK(flow.stopped == 1);
   CHECK(flow.excluded == 1);
   CHECK(flow.exclusion_reasons == std::vector<std::string>{"fell asleep"});
+  CHECK(flow.erased == 1);
   CHECK(flow.withdrawn == 1);
   CHECK(flow.replaced == 1);
   CHECK(flow.open == 0);
@@ -173,7 +178,7 @@ TEST_CASE("Every participant is counted once, by the session that stands") {
   CHECK(collection.sessions[4].replacement_reason == "did not finish");
 }
 
-TEST_CASE("A collection holds nothing about a withdrawn participant except the withdrawal") {
+TEST_CASE("A collection holds nothing about an erased participant except the withdrawal") {
   FakeStudy study(design::identification::classification(), {.simulated = false});
   FakeSession session = session_of("P01", 1);
   session.station = falcon();
@@ -184,7 +189,7 @@ TEST_CASE("A collection holds nothing about a withdrawn participant except the w
   study.add(session);
   study.store().exclude(1, milliseconds(10), "told a name");
   study.store().withdraw(1, milliseconds(20), "");
-  const analysis::Collection collection = analysis::load_collection(study.store());
+  const analysis::Collection collection = analysis::load_collection(study.store(), &study.key());
   REQUIRE(collection.sessions.size() == 1);
   const analysis::SessionRecord& record = collection.sessions[0];
   CHECK(record.row.withdrawn);
@@ -193,8 +198,27 @@ TEST_CASE("A collection holds nothing about a withdrawn participant except the w
   CHECK(record.exclusion_reason.empty());
   CHECK_FALSE(record.station);
   CHECK(collection.servo_trials.empty());
-  CHECK(collection.flow.withdrawn == 1);
+  CHECK(collection.flow.erased == 1);
   CHECK(collection.flow.exclusion_reasons.empty());
+}
+
+TEST_CASE("Who withdraws and lets the data be used is counted like the others, and told apart") {
+  FakeStudy study(design::identification::classification());
+  study.add(session_of("P01", 1));
+  study.add(session_of("P02", 2));
+  study.store().withdraw(1, milliseconds(10), "moves away", store::Kept::data);
+  const analysis::Collection blind = analysis::load_collection(study.store());
+  CHECK(blind.flow.analysed == 2);
+  CHECK(blind.flow.withdrawn == 1);
+  CHECK(blind.flow.erased == 0);
+  CHECK(blind.sessions[0].row.participant == "P01");
+  CHECK(blind.sessions[0].withdrawal_reason == "(sealed)");
+  CHECK(analysis::quality_text(analysis::make_quality(study.store()))
+            .find("1 participant withdrew and let the data be used") != std::string::npos);
+  const analysis::Collection opened = analysis::load_collection(study.store(), &study.key());
+  CHECK(opened.sessions[0].withdrawal_reason == "moves away");
+  study.store().withdraw(1, milliseconds(20), "changed her mind");
+  CHECK(analysis::load_collection(study.store()).flow.erased == 1);
 }
 
 TEST_CASE("A participant who completes after an interim look is not analysed yet") {

@@ -18,7 +18,13 @@ design::StudyKey fake_key(const design::Protocol& protocol, const FakeOptions& o
   if (!options.trials.empty()) text["trials"].update(nlohmann::json::parse(options.trials));
   const design::Study study = design::parse_study(text.dump(), ".", "fake.json");
   SeededEntropy entropy(11);
-  return design::make_study_key(study, entropy, options.simulated);
+  design::StudyKey key = design::make_study_key(study, entropy, options.simulated);
+  if (!options.stations.empty()) {
+    std::vector<design::Station> stations = design::stations_named(options.stations);
+    design::hand_out_enrolments(stations, 8);
+    design::divide(key, std::move(stations));
+  }
+  return key;
 }
 
 store::StudyCommitment fake_commitment(const design::StudyKey& key, const FakeOptions& options,
@@ -35,6 +41,11 @@ store::StudyCommitment fake_commitment(const design::StudyKey& key, const FakeOp
   commitment.simulated = key.simulated;
   commitment.pilot = options.pilot;
   commitment.program_version = "0.0.0";
+  commitment.investigator = key.investigator_signature;
+  const design::StationKey station = design::station_key(key, key.stations.front().name);
+  commitment.station = {.name = station.station.name,
+                        .key = station.signer().public_half(),
+                        .certificate = station.certificate};
   return commitment;
 }
 
@@ -57,7 +68,7 @@ store::StudyStore fake_store(const design::StudyKey& key, const FakeOptions& opt
   const auto pack = folder / "study.pack";
   if (options.with_pack) fake_pack(key, pack);
   return store::StudyStore::create(folder / "study.db", fake_commitment(key, options, pack),
-                                   milliseconds(0));
+                                   milliseconds(0), key.signer());
 }
 
 store::Trace fake_trace() {
@@ -95,6 +106,7 @@ void record_trial(store::SessionRecorder& recorder, const FakeSession& session,
   body.trial = shown.trial;
   body.rate_hz = 1000.0;
   body.valid = session.valid;
+  if (shown.trial % 2 == 0) body.hand = session.hand;
   body.servo = session.servo;
   recorder.trace_stored(start + milliseconds(4500), body,
                         {4.0, 300.5, 0.125, 0.001 * shown.trial, session.within_limits},
@@ -153,7 +165,7 @@ void FakeStudy::add(const FakeSession& session) {
     }
   }
   if (again != nullptr) record_trial(recorder, session, schedule, *again, ++place);
-  recorder.closed(milliseconds(10'000'000), session.complete, session.summary);
+  recorder.closed(milliseconds(10'000'000), session.complete, session.summary, session.saturated);
   store_.add_session(buffer, store::wrap_participant_key(key_.investigator_box, number, own),
                      milliseconds(number));
 }

@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace touchtrial {
 
@@ -34,6 +35,8 @@ struct FakeSession {
   std::function<void(store::SessionRecorder&)> before_trials{};
   std::optional<store::AnswerSummary> summary{};  ///< that the session ends with
   FakeTraces traces{};                            ///< empty: a touch too short to feel anything
+  store::HandWindows hand{};                      ///< of every second trial
+  int saturated = 0;                              ///< that the session ends with
 };
 
 struct FakeOptions {
@@ -42,6 +45,8 @@ struct FakeOptions {
   bool pilot = false;
   std::string trials{};    ///< JSON that changes the study's trials; may be empty
   bool with_pack = false;  ///< tiny fields in `folder() / "study.pack"`
+  /// Divides eight enrolment numbers between stations of these names; the file is the first's.
+  std::vector<std::string> stations{};
 };
 
 /// Three classes, each with one image, four presentations a method.

@@ -9,7 +9,6 @@
 
 using namespace touchtrial;
 using namespace touchtrial::analysis;
-using namespace touchtrial::analysis::identification;
 
 TEST_CASE("gnuplot draws what a script prints") {
   const TempFolder folder;

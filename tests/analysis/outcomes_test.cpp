@@ -83,12 +83,12 @@ TEST_CASE("Sessions that were stopped do not count") {
   CHECK_FALSE(outcomes.sessions[1].counted);
 }
 
-TEST_CASE("Excluded, withdrawn and foreign sessions do not count") {
+TEST_CASE("Excluded, erased and foreign sessions do not count") {
   store::StudyCommitment real;
   store::SessionRow row;
   row.state = store::SessionState::completed;
   CHECK(analysis::session_counts(row, real));
-  for (bool store::SessionRow::*mark : {&store::SessionRow::excluded, &store::SessionRow::withdrawn,
+  for (bool store::SessionRow::*mark : {&store::SessionRow::excluded, &store::SessionRow::erased,
                                         &store::SessionRow::pilot, &store::SessionRow::simulated}) {
     store::SessionRow marked = row;
     marked.*mark = true;
@@ -99,6 +99,28 @@ TEST_CASE("Excluded, withdrawn and foreign sessions do not count") {
   CHECK_FALSE(analysis::session_counts(row, pilot));
   row.pilot = true;
   CHECK(analysis::session_counts(row, pilot));
+}
+
+TEST_CASE("A look at one participant shows that participant's sessions alone") {
+  FakeStudy study(design::identification::classification());
+  for (const char* const participant : {"P01", "P02"}) {
+    study.add({.participant = participant,
+               .enrolment = participant[2] - '0',
+               .answers = FakeStudy::always_right()});
+  }
+  store::StudyStore& store = study.store();
+  CHECK_THROWS_WITH(analysis::load_outcomes(store, study.key(), "P01"),
+                    holds_text("unblind DB --participant P01"));
+  store.look_at("P01", std::chrono::milliseconds(10), "asked for the data");
+  CHECK(analysis::load_outcomes(store, study.key(), "P01").trials.size() == 12);
+  CHECK(analysis::load_outcomes(store, study.key(), "P01").sessions.size() == 1);
+  CHECK_THROWS_AS(analysis::load_outcomes(store, study.key(), "P02"), StoreError);
+  CHECK_THROWS_AS(analysis::load_outcomes(store, study.key()), StoreError);
+  REQUIRE(analysis::load_collection(store).looks.size() == 1);
+  CHECK(analysis::load_collection(store).looks[0].reason == "asked for the data");
+  study.close_and_unblind();
+  CHECK(analysis::load_outcomes(store, study.key()).sessions.size() == 2);
+  CHECK(analysis::load_outcomes(store, study.key(), "P02").sessions.size() == 1);
 }
 
 TEST_CASE("load_outcomes keeps outcomes shut until the study is unblinded") {

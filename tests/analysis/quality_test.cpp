@@ -71,6 +71,28 @@ TEST_CASE("A quality report shows by session how answers are spread") {
   CHECK_FALSE(json["responses"].contains("changed"));
 }
 
+TEST_CASE("A quality report shows by session in how many trials the hand was outside a window") {
+  FakeStudy study(design::identification::classification());
+  FakeSession session{.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()};
+  session.hand = {.path = false, .speed = false};
+  session.saturated = 3;
+  study.add(session);
+  study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P03", .enrolment = 3, .answers = FakeStudy::always_right()});
+  study.store().withdraw(3, std::chrono::milliseconds(40), "");
+  const analysis::QualityReport report = analysis::make_quality(study.store());
+  const auto& sessions = report.collection.sessions;
+  CHECK(sessions.at(0).outside == analysis::HandCounts{.trials = 12, .path = 6, .speed = 6});
+  CHECK(sessions.at(1).outside == analysis::HandCounts{.trials = 12});
+  CHECK(sessions.at(2).outside == analysis::HandCounts{});
+  const auto outside = nlohmann::json::parse(analysis::quality_json(report))["outside"];
+  REQUIRE(outside.size() == 2);
+  CHECK(outside[0]["speed"] == 6);
+  CHECK(outside[0]["saturated"] == 3);
+  CHECK(outside[1]["saturated"] == 0);
+  CHECK(contains(analysis::quality_text(report), "trials outside a window, by session"));
+}
+
 TEST_CASE("make_quality counts every session once, and replaced ones apart") {
   FakeStudy study(design::identification::classification());
   fill(study);

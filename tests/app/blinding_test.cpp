@@ -148,7 +148,8 @@ VisibleTrials visible_trials(const OddStudy& study) {
     json body = json::parse(events.getColumn(1).getString());
     if (!body.contains("trial")) continue;
     const int trial = body.at("trial");
-    for (const char* own : {"trial", "position", "first_position", "confidence", "trace"}) {
+    // What the hand did by itself (decision 54) differs between trials, whatever was felt.
+    for (const char* own : {"trial", "trace", "contact_ok", "force_ok", "path_ok", "speed_ok"}) {
       body.erase(own);
     }
     trials[trial] += events.getColumn(0).getString() + body.dump() +

@@ -5,6 +5,7 @@
 #include "core/cipher.hpp"
 #include "core/files.hpp"
 #include "protocols/design/study_key.hpp"
+#include "protocols/store/payload_json.hpp"
 #include "protocols/store/personal_data.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
@@ -204,7 +205,8 @@ TEST_CASE("an excluded participant is left out of outcomes, and the reason is re
   REQUIRE(excluded.exit_code == 0);
   CHECK(excluded.output.find("P002: excluded") != std::string::npos);
   CHECK(session_of(study.store(), "P002").excluded);
-  CHECK(study.store().events(0).back().body.find("fell asleep") != std::string::npos);
+  CHECK(study.store().events(0).back().body.find("fell asleep") == std::string::npos);
+  CHECK_FALSE(study.store().events(0).back().sealed.empty());
   CHECK(study.quality().at("participants") == 3);
   CHECK(study.quality().at("sessions").at("excluded") == 1);
   check_verified(study);
@@ -229,8 +231,7 @@ TEST_CASE("an exclusion after outcomes were seen is accepted only if that is rec
   REQUIRE(
       study.people("exclude", "P001", {"--reason", "bad figures", "--after-outcomes"}).exit_code ==
       0);
-  CHECK(study.store().events(0).back().body.find("after outcomes were seen: bad figures") !=
-        std::string::npos);
+  CHECK(participant_from_json(study.store().events(0).back().body).after_outcomes);
   CHECK(study.quality().at("participants") == 3);
 }
 
@@ -283,7 +284,7 @@ TEST_CASE(
                               .contact = "somebody@example.org"});
   const Bytes wrapped =
       study.store().wrapped_key(session_of(study.store(), "P001").session).value();
-  const std::vector<std::string> reason = {"--reason", "asked to"};
+  const std::vector<std::string> reason = {"--erase", "--reason", "asked to"};
   {
     SQLite::Database reader(study.in("study.db"), SQLite::OPEN_READONLY);
     reader.exec("BEGIN");
@@ -322,12 +323,15 @@ TEST_CASE(
 
 TEST_CASE("a withdrawal says and records what it could not erase") {
   const PeopleStudy study;
-  const ProgramResult withdrawn = study.people("withdraw", "P001", {"--reason", "asked to"});
+  const ProgramResult withdrawn =
+      study.people("withdraw", "P001", {"--erase", "--reason", "asked to"});
   CHECK(withdrawn.output.find("every other copy of the database") != std::string::npos);
   CHECK(withdrawn.output.find("run `touchtrial sync` now") != std::string::npos);
-  CHECK(study.store().events(0).back().body.find("asked to [not erased by this: other copies") !=
-        std::string::npos);
-  check_refused(study.people("withdraw", "P002", {"--reason", ""}), 1, {"reason"});
+  const WithdrawalBody body = withdrawal_from_json(study.store().events(0).back().body);
+  CHECK(body.kept == Kept::safety_record);
+  CHECK(body.not_erased.find("other copies and backups") != std::string::npos);
+  CHECK(body.reason.empty());  // sealed
+  check_refused(study.people("withdraw", "P002", {"--erase", "--reason", ""}), 1, {"reason"});
   check_verified(study);
 }
 
@@ -352,7 +356,8 @@ TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") 
   REQUIRE(files_with(study, wrapped).contains("study.db"));
   REQUIRE_FALSE(files_with(study, bytes_of("somebody@example.org")).empty());
 
-  const ProgramResult withdrawn = study.people("withdraw", "P005", {"--reason", "asked to"});
+  const ProgramResult withdrawn =
+      study.people("withdraw", "P005", {"--erase", "--reason", "asked to"});
   INFO(withdrawn.errors);
   REQUIRE(withdrawn.exit_code == 0);
   CHECK(withdrawn.output.find("cannot be read again") != std::string::npos);
@@ -395,13 +400,18 @@ TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") 
 
 TEST_CASE("a participant who withdrew can be replaced, and copies must be destroyed") {
   const PeopleStudy study;
-  const ProgramResult withdrawn = study.people("withdraw", "P001", {"--reason", "asked to"});
+  const ProgramResult withdrawn =
+      study.people("withdraw", "P001", {"--erase", "--reason", "asked to"});
   REQUIRE(withdrawn.exit_code == 0);
   CHECK(withdrawn.output.find("destroy every other copy of the database") != std::string::npos);
-  check_refused(study.people("withdraw", "P001", {"--reason", "again"}), 1,
+  check_refused(study.people("withdraw", "P001", {"--erase", "--reason", "again"}), 1,
                 {"P001", "already withdrawn"});
-  check_refused(study.people("withdraw", "P9", {"--reason", "who"}), 1, {"P9", "no session"});
-  check_refused(study.people("withdraw", "P002"), 2, {"--reason"});
+  check_refused(study.people("withdraw", "P9", {"--erase", "--reason", "who"}), 1,
+                {"P9", "no session"});
+  check_refused(study.people("withdraw", "P002"), 2, {"--reason", "--keep-data", "--erase"});
+  check_refused(study.people("withdraw", "P002", {"--erase"}), 2, {"--reason"});
+  check_refused(study.people("withdraw", "P002", {"--reason", "asked to"}), 2,
+                {"--keep-data", "--erase"});
   REQUIRE(study.people("replace", "P001", {"--with", "P031", "--reason", "place is wanted"})
               .exit_code == 0);
   check_refused(study.session_of("P001"), 1, {"P001"});
@@ -411,6 +421,86 @@ TEST_CASE("a participant who withdrew can be replaced, and copies must be destro
   const json sessions = study.quality().at("sessions");
   CHECK(sessions.at("withdrawn") == 1);
   CHECK(sessions.at("replaced") == 0);
+}
+
+TEST_CASE("who lets the data be used stays in the report, and may have them erased later") {
+  const PeopleStudy study;
+  const Bytes key = study.store().wrapped_key(session_of(study.store(), "P001").session).value();
+  const ProgramResult kept =
+      study.people("withdraw", "P001", {"--keep-data", "--reason", "moves away"});
+  INFO(kept.errors);
+  REQUIRE(kept.exit_code == 0);
+  check_refused(study.people("withdraw", "P001", {"--keep-data", "--reason", "again"}), 1,
+                {"P001", "already withdrawn"});
+  CHECK(study.quality().at("participants") == 4);
+  CHECK(study.quality().at("collection").at("flow").at("withdrawn") == 1);
+  CHECK(files_with(study, key).contains("study.db"));
+  check_verified(study);
+  REQUIRE(study.people("withdraw", "P001", {"--erase", "--reason", "asked to"}).exit_code == 0);
+  CHECK(files_with(study, key).empty());
+  check_refused(study.people("withdraw", "P001", {"--keep-data", "--reason", "again"}), 1,
+                {"P001", "already withdrawn"});
+  CHECK(study.quality().at("participants") == 3);
+  check_verified(study);
+}
+
+TEST_CASE("the safety record of an erased person is erased by a command of its own") {
+  const PeopleStudy study;
+  const int session = session_of(study.store(), "P001").session;
+  const Bytes safety = study.store().wrapped_keys(session).safety.value();
+  check_refused(study.people("withdraw", "P001", {"--erase-safety"}), 1, {"erase those first"});
+  REQUIRE(study.people("withdraw", "P001", {"--erase", "--reason", "asked to"}).exit_code == 0);
+  CHECK(files_with(study, safety).contains("study.db"));
+  // A simulated session was in 1970, so that its years have passed.
+  REQUIRE(study.people("withdraw", "P001", {"--erase-safety"}).exit_code == 0);
+  CHECK(files_with(study, safety).empty());
+  check_refused(study.people("withdraw", "P001", {"--erase-safety"}), 1, {"already erased"});
+  check_verified(study);
+}
+
+TEST_CASE("one participant's outcomes are exported after a recorded look at them, and no others") {
+  const PeopleStudy study;
+  PersonalData(personal_data_path(study.database()))
+      .put({.participant = "P002",
+            .consent_version = "3",
+            .consented_utc = "2026-01-02T03:04:05Z",
+            .age = 30,
+            .gender = "",
+            .contact = "somebody@example.org"});
+  const auto exported = [&](const std::string& folder, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"export", study.in("study.db"), "--participant", "P002",
+                                          "--out",  study.in(folder)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return study.run(arguments);
+  };
+  const std::vector<std::string> key = {"--key", study.in("study.db.key")};
+  const auto text = [&](const std::string& file) {
+    return text_of(ByteView(read_file(study.path() / file)));
+  };
+  check_refused(exported("never", key), 1, {"P002", "unblind DB --participant P002"});
+  REQUIRE(exported("clear", {}).exit_code == 0);
+  CHECK(text("clear/P002_trials.csv").find("response") == std::string::npos);
+  CHECK(line_count(text("clear/P002_trials.csv")) == 1 + 6);
+  CHECK(text("clear/P002_personal.csv").find("somebody@example.org") != std::string::npos);
+  CHECK(line_count(text("clear/P002_sessions.csv")) == 1 + 1);
+  check_refused(
+      study.run({"unblind", study.in("study.db"), "--participant", "P9", "--reason", "x"}), 1,
+      {"P9", "no session"});
+  REQUIRE(study
+              .run({"unblind", study.in("study.db"), "--participant", "P002", "--reason",
+                    "asked for the data"})
+              .exit_code == 0);
+  REQUIRE(exported("whole", key).exit_code == 0);
+  CHECK(text("whole/P002_trials.csv").find("response") != std::string::npos);
+  CHECK(text("whole/P002_trials.csv").find("P001") == std::string::npos);
+  CHECK(fs::exists(study.path() / "whole/P002_events.csv"));
+  const json quality = study.quality();
+  CHECK(quality.at("blinded") == true);
+  CHECK(quality.at("collection").at("looks").at(0).at("reason") == "asked for the data");
+  check_refused(study.people("exclude", "P002", {"--reason", "bad figures"}), 1,
+                {"outcomes have been seen"});
+  CHECK(study.people("exclude", "P001", {"--reason", "asleep"}).exit_code == 0);
+  check_verified(study);
 }
 
 TEST_CASE("notes and deviations are on the file's chain, before and after closing") {
@@ -427,9 +517,11 @@ TEST_CASE("notes and deviations are on the file's chain, before and after closin
   const json remark = json::parse(chain.at(chain.size() - 2).body);
   CHECK(chain.back().kind == EventKind::participant_noted);
   CHECK(deviation.at("code") == "no-curtain");
-  CHECK(deviation.at("text") == "it was in the wash");
   CHECK(remark.at("code") == "");
-  CHECK(remark.at("text") == "came late");
+  for (const json& body : {deviation, remark}) CHECK_FALSE(body.contains("text"));
+  for (const char* const words : {"it was in the wash", "came late"}) {
+    CHECK(files_with(study, bytes_of(words)).empty());
+  }
   check_verified(study);
   CHECK(study.outcomes().at("participants") == 4);
   CHECK(study.people("note", "P003", {"wrote a letter"}).exit_code == 0);

@@ -122,8 +122,8 @@ TEST_CASE("stations use their own numbers of a plan, and a replacement uses its 
 
   REQUIRE(run(study, "P01", {"--station", "cellar"}).exit_code == 0);
   const ProgramResult elsewhere = run(study, "P02", {"--station", "attic"});
-  CHECK(elsewhere.exit_code == 2);
-  CHECK_THAT(elsewhere.errors, Catch::Contains("has number 3, which is not station attic's"));
+  CHECK(elsewhere.exit_code == 1);
+  CHECK_THAT(elsewhere.errors, Catch::Contains("is the database of station cellar"));
   REQUIRE(run(study, "P02", {"--station", "cellar"}).exit_code == 0);
   const ProgramResult full = run(study, "P03", {"--station", "cellar"});
   CHECK(full.exit_code == 2);

@@ -1,6 +1,7 @@
 // One byte altered in each kind of evidence: `verify` names it and ends with 3.
 #include "app/study_folder.hpp"
 #include "core/bytes.hpp"
+#include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
 
 #include <functional>
@@ -45,37 +46,27 @@ void flip(const fs::path& file, std::size_t at) {
 void flip_in(const StudyFolder& study, const std::string& table, const std::string& column,
              const std::string& where) {
   SQLite::Database database(study.in("study.db"), SQLite::OPEN_READWRITE);
-  std::vector<std::string> triggers;
-  for (SQLite::Statement query(database,
-                               "SELECT name, sql FROM sqlite_schema WHERE type = 'trigger'");
-       query.executeStep();) {
-    triggers.push_back(query.getColumn(1).getString());
-  }
-  std::vector<std::string> names;
-  for (SQLite::Statement query(database, "SELECT name FROM sqlite_schema WHERE type = 'trigger'");
-       query.executeStep();) {
-    names.push_back(query.getColumn(0).getString());
-  }
-  for (const std::string& name : names) database.exec("DROP TRIGGER " + name);
-  std::string value;
-  bool is_text = false;
-  {
-    SQLite::Statement query(database,
-                            "SELECT " + column + " FROM " + table + " WHERE " + where + " LIMIT 1");
-    REQUIRE(query.executeStep());
-    is_text = query.getColumn(0).isText();
-    value = query.getColumn(0).getString();
-  }
-  REQUIRE_FALSE(value.empty());
-  value[value.size() / 2] = static_cast<char>(value[value.size() / 2] ^ 1);
-  SQLite::Statement update(database, "UPDATE " + table + " SET " + column + " = ? WHERE " + where);
-  if (is_text) {
-    update.bind(1, value);
-  } else {
-    update.bind(1, value.data(), static_cast<int>(value.size()));
-  }
-  REQUIRE(update.exec() == 1);
-  for (const std::string& sql : triggers) database.exec(sql);
+  fixture::without_triggers(database, [&] {
+    std::string value;
+    bool is_text = false;
+    {
+      SQLite::Statement query(
+          database, "SELECT " + column + " FROM " + table + " WHERE " + where + " LIMIT 1");
+      REQUIRE(query.executeStep());
+      is_text = query.getColumn(0).isText();
+      value = query.getColumn(0).getString();
+    }
+    REQUIRE_FALSE(value.empty());
+    value[value.size() / 2] = static_cast<char>(value[value.size() / 2] ^ 1);
+    SQLite::Statement update(database,
+                             "UPDATE " + table + " SET " + column + " = ? WHERE " + where);
+    if (is_text) {
+      update.bind(1, value);
+    } else {
+      update.bind(1, value.data(), static_cast<int>(value.size()));
+    }
+    REQUIRE(update.exec() == 1);
+  });
 }
 
 struct Tampering {

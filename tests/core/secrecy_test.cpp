@@ -7,6 +7,8 @@
 using namespace touchtrial;
 
 TEST_CASE("sha256 agrees with the standard's examples") {
+  CHECK(to_hex(blake2b(bytes_of("abc"))) ==
+        "bddd813c634239723171ef3fee98579b94964e3bb1cb3e427262c8c068d52319");
   CHECK(to_hex(sha256(bytes_of("abc"))) ==
         "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   CHECK(to_hex(sha256(bytes_of(""))) ==

@@ -49,7 +49,7 @@ std::vector<session::ExperimenterRequest> all_requests(session::Experimenter& ex
   return requests;
 }
 
-TEST_CASE("pause and comfort stop act at their key, and the reason follows as a note") {
+TEST_CASE("pause and comfort stop act at their key, and the reason follows") {
   TypedTerminal typed;
   app::TerminalExperimenter experimenter(typed.terminal());
   typed.keys = "c";
@@ -59,8 +59,9 @@ TEST_CASE("pause and comfort stop act at their key, and the reason follows as a 
   typed.keys = "cramp\nptea\nr";
   requests = all_requests(experimenter);
   REQUIRE(requests.size() == 4);
-  CHECK(requests[0].kind == Kind::note);
-  CHECK(requests[0].text == "comfort stop: cramp");
+  CHECK(requests[0].kind == Kind::deviation);
+  CHECK(requests[0].code == "comfort-stop");
+  CHECK(requests[0].text == "cramp");
   CHECK(requests[1].kind == Kind::pause);
   CHECK(requests[2].text == "pause: tea");
   CHECK(requests[3].kind == Kind::resume);

@@ -250,7 +250,7 @@ std::vector<BidsSession> bids_sessions(const store::StudyStore& store) {
   const store::StudyState state = store.state();
   std::vector<BidsSession> sessions;
   for (const store::SessionRow& row : store.sessions()) {
-    if (row.withdrawn || (state.unblinded && !state.shows(row.session))) continue;
+    if (row.erased || (state.unblinded && !state.reports(row.session))) continue;
     sessions.push_back({row, session_counts(row, store.commitment()),
                         "sub-" + participant_label(row.participant), ""});
   }

@@ -132,7 +132,7 @@ std::vector<ExportFile> trace_files(const DatasetSource& study,
   std::vector<ExportFile> files;
   for (const store::TrialRow& row : open_trials(study.store, *study.key)) {
     const auto session = by_number.find(row.session);
-    if (session == by_number.end() || row.seconds == 0) continue;
+    if (session == by_number.end() || !row.has_trace()) continue;
     const std::string name =
         fmt::format("{}/{}_task-{}_recording-trial{:03}_stim", session->second->folder(),
                     session->second->stem(), task, row.trial);

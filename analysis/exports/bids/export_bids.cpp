@@ -127,7 +127,7 @@ BidsTrials bids_trials(const DatasetSource& study, bool stimuli) {
   }
   if (stimuli) trials.columns.emplace_back("stim_file");
   for (const store::SessionRow& session : study.store.sessions()) {
-    if (!session.withdrawn) trials.by_session[session.session].columns = trials.columns;
+    if (!session.erased) trials.by_session[session.session].columns = trials.columns;
   }
   const std::vector<store::TrialRow> in_clear =
       unblinded ? std::vector<store::TrialRow>() : study.store.trials();

@@ -189,7 +189,7 @@ constexpr TrialSubset kSubsets[] = {TrialSubset::counted, TrialSubset::answered,
 std::set<int> excluded_sessions(const Outcomes& outcomes) {
   std::set<int> excluded;
   for (const auto& [row, counted] : outcomes.sessions) {
-    const bool left_out = row.excluded && !row.withdrawn && row.replaced_by != row.participant;
+    const bool left_out = row.excluded && !row.erased && row.replaced_by != row.participant;
     const bool of_study = row.pilot == outcomes.pilot && row.simulated == outcomes.simulated;
     if (left_out && of_study && row.state == store::SessionState::completed)
       excluded.insert(row.session);

@@ -264,21 +264,21 @@ void warn_of_state(const Outcomes& outcomes, Warnings& warnings) {
                     counted(outcomes.sessions_unseen, "session")));
   }
   warn_of_sessions(
-      outcomes, "withdrawn by the participant",
-      [](const store::SessionRow& row) { return row.withdrawn; }, warnings);
+      outcomes, "erased at the participant's wish",
+      [](const store::SessionRow& row) { return row.erased; }, warnings);
   warn_of_sessions(
       outcomes, "excluded",
-      [](const store::SessionRow& row) { return row.excluded && !row.withdrawn; }, warnings);
+      [](const store::SessionRow& row) { return row.excluded && !row.erased; }, warnings);
   warn_of_sessions(
       outcomes, "not completed",
       [](const store::SessionRow& row) {
-        return row.state != store::SessionState::completed && !row.excluded && !row.withdrawn;
+        return row.state != store::SessionState::completed && !row.excluded && !row.erased;
       },
       warnings);
   warn_of_sessions(
       outcomes, "a pilot or simulation among others",
       [&](const store::SessionRow& row) {
-        return row.state == store::SessionState::completed && !row.excluded && !row.withdrawn &&
+        return row.state == store::SessionState::completed && !row.excluded && !row.erased &&
                (row.pilot != outcomes.pilot || row.simulated != outcomes.simulated);
       },
       warnings);

@@ -33,10 +33,11 @@ std::optional<store::StationRecord> station_of(const CsvRow& row) {
 
 analysis::SessionRecord record_of(const CsvRow& row) {
   analysis::SessionRecord record;
-  if (is_set(row.at("withdrawn"))) {
+  if (is_set(row.at("erased"))) {
     record.row.session = number_of<int>(row.at("session"));
     record.row.state = session_state_of(row.at("state"));
     record.row.withdrawn = true;
+    record.row.erased = true;
     return record;
   }
   record.row = session_row_of(row);
@@ -46,6 +47,10 @@ analysis::SessionRecord record_of(const CsvRow& row) {
   record.exclusion_reason = row.at("exclusion_reason");
   record.replacement_reason = row.at("replacement_reason");
   record.stop_reason = row.at("stop_reason");
+  record.withdrawal_reason = row.at("withdrawal_reason");
+  if (!row.at("largest_force_n").empty()) {
+    record.largest_force_n = number_of<double>(row.at("largest_force_n"));
+  }
   record.resumed = number_of<int>(row.at("resumed"));
   return record;
 }
@@ -109,6 +114,7 @@ store::SessionRow session_row_of(const CsvRow& row) {
   session.pilot = is_set(row.at("pilot"));
   session.excluded = is_set(row.at("excluded"));
   session.withdrawn = is_set(row.at("withdrawn"));
+  session.erased = is_set(row.at("erased"));
   session.device = row.at("device");
   session.replaced_by = row.at("replaced_by");
   return session;

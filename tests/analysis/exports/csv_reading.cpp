@@ -5,7 +5,6 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 namespace touchtrial {
@@ -96,8 +95,11 @@ store::TrialRow trial_row_of(const CsvRow& row) {
   trial.overruns = number_of<std::int64_t>(row.at("overruns"));
   trial.samples = number_of<std::int64_t>(row.at("samples"));
   trial.rate_hz = number_of<double>(row.at("sampling_hz"));
-  if (trial.samples > 0) {
-    trial.seconds = static_cast<int>(std::ceil(static_cast<double>(trial.samples) / trial.rate_hz));
+  if (trial.has_trace()) {
+    trial.hand = {.contact = is_set(row.at("contact_ok")),
+                  .path = is_set(row.at("path_ok")),
+                  .force = is_set(row.at("force_ok")),
+                  .speed = is_set(row.at("speed_ok"))};
   }
   trial.explorations = number_of<int>(row.at("explorations"));
   return trial;

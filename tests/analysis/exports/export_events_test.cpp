@@ -59,7 +59,9 @@ TEST_CASE("Exported events have remarks, faults by name, and flight records as t
   CHECK(rows[2].at("participant") == "P01");
   CHECK(rows[2].at("event") == "3");
   CHECK(rows[2].at("at_s") == "1.5");
-  CHECK(rows[2].at("body") == R"({"reason":"device lost","trial":1})");
+  CHECK(
+      rows[2].at("body") ==
+      R"({"device_fault":"link_lost","largest_force_n":0.0,"reason":"device lost","safety_fault":"device","trial":1})");
   CHECK(rows[2].at("safety_fault") == "device");
   CHECK(rows[2].at("device_fault") == "link_lost");
   CHECK(rows[2].at("flight") == "flight_1_3.csv");
@@ -69,8 +71,7 @@ TEST_CASE("Exported events have remarks, faults by name, and flight records as t
   CHECK(rows[3].at("safety_fault").empty());
 }
 
-TEST_CASE(
-    "Exported events leave out withdrawn participants, and those that an interim look hides") {
+TEST_CASE("Exported events leave out erased participants, and those that an interim look hides") {
   FakeStudy study(design::identification::classification());
   study.add(of_somebody("P01", 1));
   study.add(of_somebody("P02", 2));

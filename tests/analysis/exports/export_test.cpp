@@ -27,7 +27,8 @@ constexpr const char* kHeader =
     "participant,session,trial,block,method,class,exemplar,response,correct,confidence,"
     "reaction_time_s,from_contact_s,contact_s,path_mm,force_rms_n,saturated_share,valid,"
     "presented_at_s,simulated,counted,kind,state,explorations,first_contact_s,position,"
-    "first_position,valid_in_clear,within_limits,limited_ticks,samples,sampling_hz,overruns";
+    "first_position,valid_in_clear,contact_ok,path_ok,force_ok,speed_ok,within_limits,limited_"
+    "ticks,samples,sampling_hz,overruns";
 
 }  // namespace
 
@@ -140,7 +141,7 @@ TEST_CASE("Before unblinding an export has no word of what was presented or answ
   }
   const std::vector<CsvRow> rows = rows_of(out / "trials.csv");
   REQUIRE(rows.size() == 48);
-  CHECK(rows[0].size() == 15);
+  CHECK(rows[0].size() == 19);
   for (const char* column : {"confidence", "reaction_time_s", "from_contact_s", "presented_at_s",
                              "first_contact_s", "samples"}) {
     INFO(column);

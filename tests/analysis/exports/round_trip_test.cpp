@@ -65,7 +65,8 @@ void fill(FakeStudy& study) {
                .answers = imperfect(i),
                .valid = i != 2,
                .within_limits = i != 3,
-               .interrupt_trial = i == 4 ? 3 : 0});
+               .interrupt_trial = i == 4 ? 3 : 0,
+               .hand = {.force = i != 5}});
   }
   study.add({.participant = "P06",
              .enrolment = 6,

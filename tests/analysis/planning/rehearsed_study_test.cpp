@@ -21,7 +21,8 @@ using namespace std::chrono_literals;
 analysis::Outcomes simulated_and_loaded(TinyStudy& tiny, const simulation::SubjectModel& subject,
                                         int participants, std::uint64_t seed) {
   store::StudyStore store = store::StudyStore::create(
-      tiny.next_database(), session::commitment_of(tiny.key(), tiny.pack(), true, false), 0ns);
+      tiny.next_database(), session::commitment_of(tiny.key(), tiny.pack(), true, false), 0ns,
+      tiny.key().signer());
   simulation::simulate_study(tiny.key(), tiny.pack(), subject, {participants, seed, 2}, store);
   store.close_study(0ns);
   store.unblind(0ns, "test", false);

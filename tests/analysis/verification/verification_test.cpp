@@ -4,6 +4,7 @@
 #include "analysis/quality.hpp"
 #include "analysis/text_matching.hpp"
 #include "analysis/verification/study_files.hpp"
+#include "attacks/forger.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -30,50 +31,6 @@ void flip_last_byte(const std::filesystem::path& path) {
   const char last = static_cast<char>(file.peek());
   file.seekp(-1, std::ios::end);
   file.put(static_cast<char>(last ^ 1));
-}
-
-void store_hashes(SQLite::Database& database, const store::Event& event) {
-  SQLite::Statement update(database,
-                           "UPDATE events SET body = ?, previous = ?, hash = ? "
-                           "WHERE session = ? AND sequence = ?");
-  update.bind(1, event.body);
-  update.bind(2, event.previous.data(), static_cast<int>(event.previous.size()));
-  update.bind(3, event.hash.data(), static_cast<int>(event.hash.size()));
-  update.bind(4, event.session);
-  update.bind(5, static_cast<std::int64_t>(event.sequence));
-  update.exec();
-}
-
-/// Alters every answer and computes all hashes anew, the file's chain included, as somebody without
-/// the key could.
-void forge_answers(const std::filesystem::path& path) {
-  store::StudyStore store = store::StudyStore::open(path, store::StudyStore::Access::read_write);
-  std::vector<store::Event> chain = store.events(1);
-  std::vector<store::Event> file = store.events(0);
-  SQLite::Database database(path.string(), SQLite::OPEN_READWRITE);
-  const std::string trigger =
-      database.execAndGet("SELECT sql FROM sqlite_schema WHERE name = 'events_no_update'")
-          .getString();
-  database.exec("DROP TRIGGER events_no_update");
-  Digest previous{};
-  for (store::Event& event : chain) {
-    if (event.kind == store::EventKind::answered) event.body.insert(1, "\"forged\":1,");
-    event.previous = previous;
-    previous = event.hash = store::event_hash(event);
-    store_hashes(database, event);
-  }
-  previous = {};
-  for (store::Event& event : file) {
-    if (event.kind == store::EventKind::session_closed) {
-      auto body = nlohmann::json::parse(event.body);
-      body["head"] = to_hex(chain.back().hash);
-      event.body = body.dump();
-    }
-    event.previous = previous;
-    previous = event.hash = store::event_hash(event);
-    store_hashes(database, event);
-  }
-  database.exec(trigger);
 }
 
 }  // namespace
@@ -228,7 +185,7 @@ TEST_CASE("A verification says the same in JSON and in text") {
   CHECK(json["checks"][8]["state"] == "not-checked");
   const std::string text = analysis::verification_text(verification);
   CHECK(text.starts_with("SIMULATED"));
-  CHECK(std::count(text.begin(), text.end(), '\n') == 12);
+  CHECK(std::count(text.begin(), text.end(), '\n') == 13);
   CHECK(json["complete"] == false);
   CHECK(contains(text, "1 of 9 checks not made: pack\n"));
   CHECK(json["head"]["length"] == 1);
@@ -248,10 +205,14 @@ TEST_CASE("verify_study finds a head that is no longer on the file's chain") {
   CHECK(check_of(cut, "head").state == analysis::CheckState::failed);
 }
 
-TEST_CASE("verify_study with the key finds a chain that was rebuilt without it") {
+TEST_CASE("verify_study with the key finds a chain that was rebuilt and signed without it") {
   FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
-  forge_answers(study.database());
+  attacks::Forgery forged(study.database());
+  attacks::set(forged.first(1, store::EventKind::answered), "forged", "1");
+  const Signer station = design::station_key(study.key(), design::kOnlyStation).signer();
+  forged.relink(&station);
+  forged.write();
   CHECK(analysis::verify_study(study.store(), nullptr, nullptr).holds());
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &study.key(), nullptr);

@@ -244,7 +244,7 @@ TEST_CASE("passwords in addresses are refused by every command, and printed by n
              {"export", where, "--out", study.in("never")},
              {"merge", where, "-o", study.in("never.db")},
              {"close", where},
-             {"withdraw", where, "--participant", "P001", "--reason", "asked"},
+             {"withdraw", where, "--participant", "P001", "--erase", "--reason", "asked"},
              {"verify", where}}) {
       const ProgramResult result = study.run(arguments);
       INFO(arguments.front() << ": " << result.errors);

@@ -31,7 +31,7 @@ class SimulatedPresence {
       : tiny_({.smooth = smooth, .protocol = "presence", .section = R"({"each": 6})"}),
         store_(store::StudyStore::create(
             tiny_.next_database(), session::commitment_of(tiny_.key(), tiny_.pack(), true, false),
-            std::chrono::nanoseconds(0))) {
+            std::chrono::nanoseconds(0), tiny_.key().signer())) {
     simulation::SubjectModel subject;
     subject.explore_s = 2.0;
     simulation::simulate_study(tiny_.key(), tiny_.pack(), subject, {.participants = 3, .seed = 4},

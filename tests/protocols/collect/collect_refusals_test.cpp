@@ -87,7 +87,11 @@ TEST_CASE("stations of different studies, of pilots or of simulated people are n
     CHECK(contains(line, b.string()));
     return line;
   };
-  CHECK(contains(refused([](StudyCommitment& c) { c.study_id = "ff"; }), "different studies"));
+  const auto is_other_study = [](StudyCommitment& c) {
+    c.study_id = "ff";
+    c.station = station_identity(c.study_id);
+  };
+  CHECK(contains(refused(is_other_study), "different studies"));
   CHECK(contains(refused([](StudyCommitment& c) { c.simulated = true; }), "simulated"));
   CHECK(contains(refused([](StudyCommitment& c) { c.pilot = true; }), "of a pilot"));
   CHECK(contains(refused([](StudyCommitment& c) { c.seal = digest_of("x"); }), "seals differ"));
@@ -161,7 +165,7 @@ TEST_CASE("a collected study takes no sessions and no replacements") {
   Lab lab;
   const auto [a, b] = lab.two_stations();
   merge({a, b}, lab.file("C.db"));
-  StudyStore store = StudyStore::open(lab.file("C.db"), Access::read_write);
+  StudyStore store = writable(lab.file("C.db"));
   CHECK(store.next_session() == 5);
   CHECK(contains(refusal_of([&] {
                    visit(store, {{"P7", 7, minutes(70)}});
@@ -214,9 +218,8 @@ TEST_CASE("after a power cut the collected file is whole if it is there") {
   merge({a, b}, target);
   // The file has its name, so its whole content must be on the disk.
   vfs.plan({.kind = Fault::Kind::power_cut, .at = 1});
-  static_cast<void>(refusal_of([&] {
-    StudyStore::open(target, Access::read_write).exclude(1, kUtc, "strikes the power cut");
-  }));
+  static_cast<void>(
+      refusal_of([&] { writable(target).exclude(1, kUtc, "strikes the power cut"); }));
   REQUIRE(vfs.struck());
   vfs.start_anew();
   const StudyStore store = StudyStore::open(target, Access::read_only);

@@ -1,5 +1,6 @@
 // The content of a collected study.
 #include "protocols/collect/lab_fixture.hpp"
+#include "protocols/store/person_texts.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -142,6 +143,37 @@ TEST_CASE("of two copies of a station's file the later one counts, with its with
     CHECK(participants_in(store) == Names{"P1", "P2", "P3", "P4", "P5"});
     CHECK_FALSE(store.wrapped_key(1));
   }
+}
+
+TEST_CASE("what stations wrote about people, and looks at them, are collected and open as there") {
+  Lab lab;
+  const auto [a, b] = lab.two_stations();
+  Lab::at(b, [](StudyStore& store) {
+    store.note(2, kUtc + minutes(50), "no-curtain", "in the wash");
+    store.look_at("P4", kUtc + minutes(51), "asked for the data");
+    store.withdraw(2, kUtc + minutes(52), "moves away", Kept::data);
+  });
+  const StudyStore store = merged(lab, {a, b});
+  CHECK(store.sessions().at(3).withdrawn);
+  CHECK_FALSE(store.sessions().at(3).erased);
+  CHECK(store.wrapped_keys(4) ==
+        WrappedKeys{wrapped_key_of(2).participant, wrapped_key_of(2).safety});
+  const PersonKeys keys{.participant = participant_key(2),
+                        .safety = safety_key(participant_key(2))};
+  std::vector<std::string> bodies;
+  for (const Event& event : store.events(0)) {
+    if (event.sealed.empty()) continue;
+    CHECK_FALSE(opened_person_text(event, 4, keys));
+    bodies.push_back(opened_person_text(event, 2, keys).value().body);
+  }
+  CHECK(bodies ==
+        std::vector<std::string>{R"({"code":"no-curtain","session":4,"text":"in the wash"})",
+                                 R"({"kept":"data","reason":"moves away","session":4})"});
+  const StudyState state = store.state();
+  CHECK_FALSE(state.unblinded);
+  CHECK(state.looked_at == std::set<int>{4});
+  CHECK(state.looks == std::vector<PersonLook>{{"P4", "asked for the data", kUtc + minutes(51)}});
+  CHECK_FALSE(store.first_fault());
 }
 
 TEST_CASE("sessions that have not ended are left out and reported") {
@@ -354,7 +386,7 @@ TEST_CASE("decisions are recorded in a collected study as in any other") {
   const auto [a, b] = lab.two_stations();
   merge({a, b}, lab.file("C.db"));
   {
-    StudyStore store = StudyStore::open(lab.file("C.db"), Access::read_write);
+    StudyStore store = writable(lab.file("C.db"));
     store.exclude(2, kUtc, "fell asleep");
     store.note(3, kUtc, "no-masking-noise", "");
     store.withdraw(4, kUtc, "asked to");

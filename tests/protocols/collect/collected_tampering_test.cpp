@@ -51,7 +51,7 @@ TEST_CASE("sessions of two stations that changed places are found") {
   CHECK(fault_after("UPDATE events SET session = 99 WHERE session = 1;"
                     "UPDATE events SET session = 1 WHERE session = 2;"
                     "UPDATE events SET session = 2 WHERE session = 99") ==
-        "1/0 the session's first event is not the one on the file's chain");
+        "1/0 the event says its own number twice");
 }
 
 TEST_CASE("a session that was added to a collected study behind its back is found") {
@@ -80,7 +80,7 @@ TEST_CASE("a station's own file that pretends to hold a station is found") {
   const fs::path a = lab.two_stations().first;
   tamper_file(a,
               "INSERT INTO events SELECT -2147483647, sequence, kind, at_ns, body, sealed, "
-              "previous, hash, 0 FROM events WHERE session = 0");
+              "previous, hash, signature, 0 FROM events WHERE session = 0");
   const auto fault = StudyStore::open(a, Access::read_only).first_fault();
   REQUIRE(fault);
   CHECK(fault->what == "opens no session");

@@ -69,14 +69,14 @@ class Lab {
   fs::path station(const std::string& name, const std::vector<Visitor>& visitors,
                    const store::StudyCommitment& commitment = lab_commitment()) {
     const fs::path path = file(name);
-    store::StudyStore store = store::StudyStore::create(path, commitment, kUtc);
+    store::StudyStore store = store::StudyStore::create(path, commitment, kUtc, investigator());
     visit(store, visitors);
     return path;
   }
   /// Calls `work` with a station's open database.
   template <typename Work>
   static void at(const fs::path& path, Work&& work) {
-    store::StudyStore store = store::StudyStore::open(path, Access::read_write);
+    store::StudyStore store = writable(path);
     work(store);
   }
   [[nodiscard]] fs::path file(const std::string& name) const { return folder_.path() / name; }

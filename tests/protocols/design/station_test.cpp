@@ -182,11 +182,11 @@ TEST_CASE("a station's file has its own secret alone, and draws as the investiga
   CHECK(own.station.secret != design::station_key(key, "s1").station.secret);
   CHECK_THAT(message_of<UsageError>([&] { return design::station_key(key, "s3"); }),
              Catch::Contains("has no station \"s3\"; it has s1, s2"));
-  const Bytes statement = design::station_statement(key.study_id, "s2", own.signer().public_half());
+  const Bytes statement = station_statement(key.study_id, "s2", own.signer().public_half());
   CHECK(is_signed_by(key.investigator_signature, statement, own.certificate));
-  CHECK_FALSE(is_signed_by(
-      key.investigator_signature,
-      design::station_statement(key.study_id, "s1", own.signer().public_half()), own.certificate));
+  CHECK_FALSE(is_signed_by(key.investigator_signature,
+                           station_statement(key.study_id, "s1", own.signer().public_half()),
+                           own.certificate));
 }
 
 TEST_CASE("key and station file come back as they were written") {

@@ -72,7 +72,7 @@ struct Laboratory {
   Laboratory() {
     static_cast<void>(store::StudyStore::create(
         empty, session::commitment_of(study.key(), study.pack(), true, false),
-        std::chrono::seconds(1)));
+        std::chrono::seconds(1), study.key().signer()));
   }
   TinyStudy study{{.side_px = 120, .trials = R"({"repeats": 5})"}};
   session::StimulusSource source{study.pack(), study.key().study.rendering};
@@ -99,6 +99,7 @@ struct KilledSession {
   bool start() try {
     ++starts;
     store::StudyStore store = store::StudyStore::open(path, Access::read_write);
+    store.sign_with(laboratory().study.key().signer());
     const std::optional<store::SessionRow> row = store.session_of("P001");
     if (row && row->state != store::SessionState::open) return true;  // ended, but not reported
     run(store, row.has_value());
@@ -115,7 +116,8 @@ struct KilledSession {
   void run(store::StudyStore& store, bool again) {
     Laboratory& lab = laboratory();
     const design::StudyKey& key = lab.study.key();
-    const Bytes wrapped = store::wrap_participant_key(key.investigator_box, 1, lab.participant_key);
+    const store::NewKeys wrapped =
+        store::wrap_participant_key(key.investigator_box, 1, lab.participant_key);
     NotingSink sink(again ? store.continue_session(1) : store.begin_session(1, wrapped),
                     acknowledged);
     const design::Schedule schedule =

@@ -515,6 +515,32 @@ TEST_CASE("a session ends with how its answers are spread, also after it was tak
             .n = 5, .different = 3, .largest_share = 0.6, .longest_run = 3, .median_s = 3.3});
 }
 
+TEST_CASE("a session's end tells how many trials were at the force limit, also when resumed") {
+  const auto explore = [](session::Session& session, std::chrono::nanoseconds& now,
+                          bool is_saturated) {
+    session.present(now += seconds(1));
+    session.end_exploring(now += seconds(1));
+    const store::TraceBody body{
+        .trial = session.current()->trial, .rate_hz = 1000.0, .saturated = is_saturated};
+    session.keep_evidence(session.packed(body, {}, {}));
+    session.choose(0);
+    session.confirm(now += seconds(1));
+  };
+  Laboratory lab(4);
+  std::chrono::nanoseconds now = lab.session.last();
+  for (const bool is_saturated : {true, false}) explore(lab.session, now, is_saturated);
+  FickleSink sink;
+  session::Session again(schedule_of(4), {}, store::SessionRecorder(1, SecretKey{}, sink));
+  again.restore(as_recorded(lab.sink.stored.events, SecretKey{}));
+  again.take_up(now, {"program-ended", 1.0, "1"});
+  for (const bool is_saturated : {false, true}) explore(again, now, is_saturated);
+  again.close(now);
+  CHECK(store::closed_from_json(sink.stored.events.back().body).saturated == 2);
+  for (const store::Event& event : lab.sink.stored.events) {
+    CHECK(event.body.find("saturated") == std::string::npos);
+  }
+}
+
 TEST_CASE("a session without answers ends without their spread") {
   Laboratory lab(0);
   lab.session.close(seconds(4));

@@ -55,6 +55,12 @@ design::StudyKey key_with(const TinyStudyOptions& options) {
   return key;
 }
 
+engine::Gains times(double factor, const engine::Gains& gains) {
+  return {.tangential_n = factor * gains.tangential_n,
+          .normal_n = factor * gains.normal_n,
+          .height_mm = factor * gains.height_mm};
+}
+
 engine::Pack write_pack(const std::filesystem::path& folder, const design::StudyKey& key,
                         const TinyStudyOptions& options) {
   std::vector<engine::TextureField> fields;
@@ -70,8 +76,9 @@ engine::Pack write_pack(const std::filesystem::path& folder, const design::Study
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const std::string& code = key.stimuli[i].code;
     const Digest checksum = engine::write_field(folder, code, views[i]);
-    manifest.entries.push_back(
-        {code, checksum, {}, options.smooth ? engine::Gains{} : gains.of_field[i]});
+    const bool is_first = key.stimuli[i].stimulus.class_index == 0;
+    const double factor = options.smooth ? 0.0 : (is_first ? options.first_gain : 1.0);
+    manifest.entries.push_back({code, checksum, {}, times(factor, gains.of_field[i])});
   }
   std::ranges::sort(manifest.entries, {}, &engine::PackEntry::code);
   engine::write_manifest(folder, manifest);

@@ -19,6 +19,7 @@ struct TinyStudyOptions {
   int images = 1;                ///< a class
   bool comparison = false;       ///< two methods
   bool smooth = false;           ///< gains are zero
+  double first_gain = 1.0;       ///< factor on the gains of the first class
   int side_px = 120;             ///< of the pictures, of 0.2 mm
   std::uint64_t secret = 1;      ///< codes and secrets are a function of it
   std::uint64_t schedules = 0;   ///< if not 0, schedules are a function of this alone

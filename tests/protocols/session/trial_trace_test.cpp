@@ -71,6 +71,45 @@ TEST_CASE("an exploration is long enough from its landing on, whatever is felt")
   CHECK(session::findings_of(late, kLimitN).long_enough);
 }
 
+TEST_CASE("each window of the hand can be missed alone") {
+  using Hand = store::HandWindows;
+  const auto hand = [](const store::Trace& trace) {
+    return session::findings_of(trace, kLimitN).hand;
+  };
+  /// A stroke of this speed.
+  const auto stroke_at = [](double mm_s, double seconds) {
+    store::Trace trace = stroke(seconds, {0.0, 0.0, 0.7});
+    for (store::TraceSample& sample : trace.samples) sample.position_mm.x *= mm_s / 100.0;
+    return trace;
+  };
+  CHECK(hand(stroke(6.0, {0.0, 0.0, 0.7})) == Hand{});
+  CHECK(hand(stroke(4.999, {0.0, 0.0, 0.7})) == Hand{.contact = false});
+  CHECK(hand(stroke_at(55.0, 5.4)) == Hand{.path = false});
+  CHECK(hand(stroke(6.0, {0.0, 0.0, 0.199})) == Hand{.force = false});
+  CHECK(hand(stroke(6.0, {0.0, 0.0, 2.001})) == Hand{.force = false});
+  CHECK(hand(stroke_at(49.0, 9.0)) == Hand{.speed = false});
+  CHECK(hand(stroke_at(151.0, 6.0)) == Hand{.speed = false});
+  const Hand none{.contact = false, .path = false, .force = false, .speed = false};
+  CHECK(hand({}) == none);
+  store::Trace above = stroke(6.0, {});
+  for (store::TraceSample& sample : above.samples) sample.position_mm.z = 3.1;
+  CHECK(hand(above) == none);
+}
+
+TEST_CASE("what a texture does to the hand's forces does not move it out of its windows") {
+  store::Trace rough = stroke(6.0, {2.4, 0.0, 0.7});
+  for (std::size_t i = 0; i < rough.samples.size(); ++i) {
+    // On a relief, contact is lost half of the time, and the push is met by the other half.
+    rough.samples[i].position_mm.z = i % 2 == 0 ? -1.0 : 0.5;
+    rough.samples[i].force_n = i % 2 == 0 ? Vec3{3.0, 0.0, 1.4} : Vec3{};
+  }
+  const session::TrialFindings found = session::findings_of(rough, kLimitN);
+  CHECK(found.hand == store::HandWindows{});
+  CHECK_FALSE(found.measures.within_limits);
+  CHECK(found.saturated);
+  CHECK_FALSE(session::findings_of(stroke(6.0, {0.0, 0.0, 0.7}), kLimitN).saturated);
+}
+
 TEST_CASE("the validity rule uses the median force and ignores extremes") {
   store::Trace trace = stroke(6.0, {0.0, 0.0, 0.7});
   for (std::size_t i = 0; i < trace.samples.size(); ++i) {

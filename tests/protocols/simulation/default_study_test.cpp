@@ -23,9 +23,9 @@ class DefaultStudy {
     const engine::Pack pack(folder_.path() / "default.sim.pack");
     const simulation::SubjectModel subject =
         simulation::load_subject_model(kConfig / "subjects" / subject_file);
-    store::StudyStore store =
-        store::StudyStore::create(folder_.path() / (std::string(subject_file) + ".db"),
-                                  session::commitment_of(key_, pack, true, false), {});
+    store::StudyStore store = store::StudyStore::create(
+        folder_.path() / (std::string(subject_file) + ".db"),
+        session::commitment_of(key_, pack, true, false), {}, key_.signer());
     const simulation::SimulationReport report = simulation::simulate_study(
         key_, pack, subject, {.participants = participants, .seed = 1, .jobs = 2}, store);
     CHECK(report.invalid_trials == 0);

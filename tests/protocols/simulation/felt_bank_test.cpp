@@ -55,7 +55,8 @@ TEST_CASE("answers to trials that are felt without a session equal those of sess
   const simulation::SubjectModel subject = erring_subject();
   constexpr std::uint64_t kSeed = 17;
   store::StudyStore store = store::StudyStore::create(
-      study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {});
+      study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {},
+      study.key().signer());
   static_cast<void>(simulation::simulate_study(
       study.key(), study.pack(), subject, {.participants = 3, .seed = kSeed, .jobs = 2}, store));
   const design::Study& design = study.key().study;

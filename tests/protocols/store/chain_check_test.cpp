@@ -98,11 +98,11 @@ TEST_CASE("deleted, swapped and moved events are named") {
           "0/3 session 2 has no events");
   REQUIRE(fault_after("DELETE FROM events WHERE session = 1") == "0/1 session 1 has no events");
   REQUIRE(fault_after("INSERT INTO events SELECT 9, sequence, kind, at_ns, body, sealed, previous, "
-                      "hash, NULL FROM events WHERE session = 1") ==
+                      "hash, signature, NULL FROM events WHERE session = 1") ==
           "9/0 the file's chain knows no such session");
   REQUIRE(
       fault_after("INSERT INTO events SELECT -1, sequence, kind, at_ns, body, sealed, previous, "
-                  "hash, NULL FROM events WHERE session = 1") ==
+                  "hash, signature, NULL FROM events WHERE session = 1") ==
       "-1/0 the event belongs to another chain");
 }
 
@@ -124,7 +124,8 @@ TEST_CASE("another session in the place of a stored one is noticed") {
   StoredFixture study(2);
   StoredFixture other(1);
   other.store.reset();
-  other.store.emplace(StudyStore::create(other.folder.path() / "b.db", commitment(), kUtc));
+  other.store.emplace(
+      StudyStore::create(other.folder.path() / "b.db", commitment(), kUtc, investigator()));
   SessionOpening how = opening(1);
   how.device = "another";
   other.store->add_session(session_of(1, 3, stroking(20, 0.05), how), wrapped_key_of(1), kUtc);
@@ -172,7 +173,8 @@ TEST_CASE("an altered, missing or added key is named by its session") {
 
 TEST_CASE("every altered column of the derived tables is noticed") {
   const std::string where = "session = 2";
-  for (const std::string column : {"enrolment", "simulated", "pilot", "excluded", "withdrawn"}) {
+  for (const std::string column :
+       {"enrolment", "simulated", "pilot", "excluded", "withdrawn", "erased"}) {
     REQUIRE(contains(fault_after(next_number("sessions", column, where)),
                      "2/0 derived table sessions"));
   }
@@ -181,8 +183,8 @@ TEST_CASE("every altered column of the derived tables is noticed") {
                      "2/0 derived table sessions"));
   }
   const std::string trial = "session = 2 AND trial = 2";
-  for (const std::string column :
-       {"block", "valid", "overruns", "seconds", "rate_hz", "explorations"}) {
+  for (const std::string column : {"block", "valid", "contact_ok", "path_ok", "force_ok",
+                                   "speed_ok", "overruns", "rate_hz", "explorations"}) {
     REQUIRE(
         contains(fault_after(next_number("trials", column, trial)), "2/0 derived table trials"));
   }

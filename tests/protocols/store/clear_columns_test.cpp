@@ -51,7 +51,7 @@ void record_course(SessionRecorder& recorder, const Course& course) {
                        .confidence = course.confidence},
                       evidence);
   }
-  recorder.remarked(later(seconds(1)), EventKind::paused, "");
+  recorder.remarked(later(seconds(1)), EventKind::paused, course.note);
   recorder.resumed(
       later(seconds(1)),
       {.after = "pause", .away_s = std::chrono::duration<double>(course.away).count()});
@@ -68,8 +68,8 @@ std::vector<std::string> lines_of(const std::filesystem::path& path) {
   static const std::regex hash("[0-9a-f]{64}");
   SQLite::Database raw(path.string());
   std::vector<std::string> lines;
-  for (const char* const table :
-       {"events", "traces", "participant_keys", "station_keys", "sessions", "trials"}) {
+  for (const char* const table : {"events", "traces", "participant_keys", "safety_keys",
+                                  "station_keys", "sessions", "trials"}) {
     SQLite::Statement query(raw, "SELECT * FROM " + std::string(table) + " ORDER BY 1, 2");
     while (query.executeStep()) {
       std::string line = table;

@@ -128,20 +128,23 @@ TEST_CASE("an existing file is never overwritten") {
   TempFolder folder;
   const auto path = folder.path() / "taken.db";
   write(path, "precious");
-  REQUIRE(contains(refusal_of([&] { return StudyStore::create(path, commitment(), kUtc); }),
-                   "exists already"));
+  REQUIRE(contains(
+      refusal_of([&] { return StudyStore::create(path, commitment(), kUtc, investigator()); }),
+      "exists already"));
   REQUIRE(content_of(path) == "precious");
 }
 
 TEST_CASE("a database that cannot be made leaves nothing behind") {
   TempFolder folder;
   REQUIRE(contains(refusal_of([&] {
-                     return StudyStore::create(folder.path() / "no" / "x.db", commitment(), kUtc);
+                     return StudyStore::create(folder.path() / "no" / "x.db", commitment(), kUtc,
+                                               investigator());
                    }),
                    "cannot be made"));
   StudyCommitment odd = commitment();
   odd.study = "\xc3\x28";
-  REQUIRE_THROWS_AS(StudyStore::create(folder.path() / "x.db", odd, kUtc), StoreError);
+  REQUIRE_THROWS_AS(StudyStore::create(folder.path() / "x.db", odd, kUtc, investigator()),
+                    StoreError);
   REQUIRE(std::filesystem::is_empty(folder.path()));
 }
 
@@ -174,11 +177,11 @@ TEST_CASE("a database of a newer or an unknown older schema is refused untouched
     return refusal_untouched(study.path, access);
   };
   for (const Access access : {Access::read_only, Access::read_write}) {
-    CHECK(contains(refusal_as(5, access), "newer Touchtrial (schema 5, this one knows 4)"));
-    for (const int version : {1, 3}) {
+    CHECK(contains(refusal_as(6, access), "newer Touchtrial (schema 6, this one knows 5)"));
+    for (const int version : {1, 4}) {
       CHECK(contains(refusal_as(version, access),
                      "older Touchtrial (schema " + std::to_string(version) +
-                         ", the oldest that this one knows is 4); use the program that wrote it"));
+                         ", the oldest that this one knows is 5); use the program that wrote it"));
     }
   }
 }

@@ -108,7 +108,7 @@ TEST_CASE("a sync that fails never acknowledges, and loses nothing that is store
 TEST_CASE("every event that is acknowledged was synced on its own") {
   FaultVfs vfs;
   StoredFixture study(finished_session());
-  StudyStore store = StudyStore::open(study.path, StudyStore::Access::read_write);
+  StudyStore store = writable(study.path);
   Acknowledged acknowledged;
   record_session(store, acknowledged, [&](const std::function<void()>& step) {
     vfs.plan({});

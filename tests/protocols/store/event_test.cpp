@@ -38,9 +38,9 @@ TEST_CASE("every kind of event has a name of its own that reads back") {
   REQUIRE_FALSE(event_kind_from_name(""));
 }
 
-TEST_CASE("the hash of an event is SHA-256 over its length-prefixed members") {
+TEST_CASE("the hash of an event is BLAKE2b over its length-prefixed members") {
   const Event event = an_event();
-  const Digest expected = FieldHasher()
+  const Digest expected = FieldHasher(HashFunction::blake2b)
                               .add(std::int64_t{2})
                               .add(std::int64_t{0})
                               .add("presented")

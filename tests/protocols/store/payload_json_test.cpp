@@ -40,24 +40,26 @@ TEST_CASE("every body reads back as it was written") {
 
   const TraceBody trace{.trial = 9,
                         .samples = 10'000,
-                        .seconds = 11,
                         .rate_hz = 999.9871,
                         .overruns = 3,
                         .valid = false,
+                        .hand = {.path = false, .speed = false},
+                        .saturated = true,
                         .trace = fixture::digest_of("t")};
   const TraceBody read_trace = trace_body_from_json(to_json(trace));
   REQUIRE(read_trace.rate_hz == trace.rate_hz);
   REQUIRE(read_trace.trace == trace.trace);
   REQUIRE_FALSE(read_trace.valid);
   REQUIRE(read_trace.samples == 10'000);
-  REQUIRE(read_trace.seconds == 11);
+  REQUIRE(read_trace.hand == trace.hand);
+  REQUIRE(read_trace.saturated);
 
   const AnswerBody answer = answer_from_json(
       to_json(AnswerBody{.trial = 1, .position = 4, .first_position = 0, .confidence = {}}));
   REQUIRE(answer.first_position == 0);
   REQUIRE_FALSE(answer.confidence);
 
-  REQUIRE(trial_from_json(interrupted_to_json(4, "pause")).reason == "pause");
+  REQUIRE(trial_from_json(interrupted_to_json(4, "pause", nullptr)).reason == "pause");
   REQUIRE(trial_from_json(presented_to_json(4, 1)).block == 1);
 
   ClosedBody closed{.complete = true, .answers = {}};
@@ -67,6 +69,8 @@ TEST_CASE("every body reads back as it was written") {
   closed.answers = AnswerSummary{
       .n = 9, .different = 3, .largest_share = 1.0 / 3.0, .longest_run = 2, .median_s = 12.5};
   REQUIRE(closed_from_json(to_json(closed)).answers == closed.answers);
+  closed.saturated = 4;
+  REQUIRE(closed_from_json(to_json(closed)).saturated == 4);
 }
 
 TEST_CASE("what is in clear of a body reads without the rest") {

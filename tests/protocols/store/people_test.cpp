@@ -1,7 +1,11 @@
+#include "core/files.hpp"
 #include "protocols/store/file_chain.hpp"
 #include "protocols/store/payload_json.hpp"
+#include "protocols/store/person_texts.hpp"
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
+
+#include <algorithm>
 
 using namespace touchtrial;
 using namespace touchtrial::store;
@@ -34,6 +38,20 @@ void add_complete(StudyStore& store, int session, const std::string& participant
   store.add_session(
       session_of(session, 2, stroking(20, 0.05), opening_of(session, participant, enrolment)),
       wrapped_key_of(session), kUtc);
+}
+
+PersonKeys all_keys(int session) {
+  return {.participant = participant_key(session), .safety = safety_key(participant_key(session))};
+}
+
+/// The bodies of the events about session 1, as far as these keys open them.
+std::vector<std::string> texts_of(const StudyStore& store, const PersonKeys& keys) {
+  std::vector<std::string> bodies;
+  for (const Event& event : store.events(0)) {
+    if (event.sealed.empty() || session_about(event) != 1) continue;
+    if (const auto opened = opened_person_text(event, 1, keys)) bodies.push_back(opened->body);
+  }
+  return bodies;
 }
 
 }  // namespace
@@ -122,7 +140,9 @@ TEST_CASE("a note on a participant stands on the file's chain, with its code") {
   const NoteBody note = note_from_json(store.last_event(0).value().body);
   REQUIRE(note.session == 1);
   REQUIRE(note.code == "no-masking-noise");
-  REQUIRE(note.text == "headphones broken");
+  REQUIRE(note.text.empty());  // sealed
+  REQUIRE(texts_of(store, all_keys(1)).back() ==
+          R"({"code":"no-masking-noise","session":1,"text":"headphones broken"})");
   REQUIRE(contains(refusal_of([&] { store.note(1, kUtc, "", ""); }), "the note is empty"));
   REQUIRE(contains(refusal_of([&] { store.note(2, kUtc, "", "x"); }), "there is no session 2"));
   REQUIRE_FALSE(store.first_fault());
@@ -166,4 +186,218 @@ TEST_CASE("a file's chain on which two sessions have one participant or number i
   for (const Event& event : study.store->events(0)) collected.add(event);
   collected.add(opened("P1", 1));
   REQUIRE(collected.sessions().size() == 2);
+}
+
+TEST_CASE("what is written about a person opens with that person's keys alone") {
+  StoredFixture study(2);
+  StudyStore& store = *study.store;
+  store.note(1, kUtc, "", "tall, with a limp");
+  store.note(1, kUtc, "no-curtain", "in the wash");
+  store.exclude(1, kUtc, "drunk");
+  store.replace(1, "P9", kUtc, "sent home");
+  store.withdraw(1, kUtc, "moves away", Kept::data);
+  const std::vector<std::string> expected = {
+      R"({"code":"","session":1,"text":"tall, with a limp"})",
+      R"({"code":"no-curtain","session":1,"text":"in the wash"})",
+      R"({"reason":"drunk","session":1})", R"({"by":"P9","reason":"sent home","session":1})",
+      R"({"kept":"data","reason":"moves away","session":1})"};
+  REQUIRE(texts_of(store, all_keys(1)) == expected);
+  // The safety key opens all but the remark, and the participant's key the remark alone.
+  const PersonKeys safety{.participant = {}, .safety = all_keys(1).safety};
+  REQUIRE(texts_of(store, safety) ==
+          std::vector<std::string>(expected.begin() + 1, expected.end()));
+  const PersonKeys own{.participant = participant_key(1), .safety = {}};
+  REQUIRE(texts_of(store, own) == std::vector<std::string>{expected.front()});
+  REQUIRE(texts_of(store, all_keys(2)).empty());
+  // No text lies in the file in clear, and equal texts look different.
+  store.note(2, kUtc, "", "tall, with a limp");
+  REQUIRE(store.last_event(0)->sealed.size() == store.events(0)[5].sealed.size());
+  REQUIRE(store.last_event(0)->sealed != store.events(0)[5].sealed);
+  REQUIRE_FALSE(store.first_fault());
+  study.store.reset();
+  const Bytes file = read_file(study.path);
+  for (const std::string words : {"limp", "wash", "drunk", "sent home", "moves away"}) {
+    const ByteView sought = bytes_of(words);
+    REQUIRE(std::search(file.begin(), file.end(), sought.begin(), sought.end()) == file.end());
+  }
+}
+
+TEST_CASE("a sealed text is bound to its event and its session") {
+  StoredFixture study(1);
+  study.store->note(1, kUtc, "no-curtain", "in the wash");
+  const Event stored = study.store->last_event(0).value();
+  REQUIRE(opened_person_text(stored, 1, all_keys(1)));
+  REQUIRE_FALSE(opened_person_text(stored, 2, all_keys(1)));
+  Event moved = stored;
+  moved.at += nanoseconds(1);
+  REQUIRE_FALSE(opened_person_text(moved, 1, all_keys(1)));
+  moved = stored;
+  moved.kind = EventKind::participant_excluded;
+  REQUIRE_FALSE(opened_person_text(moved, 1, all_keys(1)));
+  moved = stored;
+  moved.sealed.back() ^= 1U;
+  REQUIRE_FALSE(opened_person_text(moved, 1, all_keys(1)));
+}
+
+TEST_CASE("who withdraws may let the data be used, and have them erased later, but not back") {
+  StoredFixture study(2);
+  StudyStore& store = *study.store;
+  store.withdraw(1, kUtc, "moves away", Kept::data);
+  REQUIRE(store.sessions()[0].withdrawn);
+  REQUIRE_FALSE(store.sessions()[0].erased);
+  REQUIRE(store.wrapped_keys(1) ==
+          WrappedKeys{wrapped_key_of(1).participant, wrapped_key_of(1).safety});
+  REQUIRE(contains(refusal_of([&] { store.withdraw(1, kUtc, "again", Kept::data); }),
+                   "has already withdrawn"));
+  REQUIRE_FALSE(store.first_fault());
+  store.withdraw(1, kUtc, "changed her mind");
+  REQUIRE(store.sessions()[0].erased);
+  REQUIRE_FALSE(store.wrapped_key(1));
+  REQUIRE(store.wrapped_keys(1).safety == wrapped_key_of(1).safety);
+  for (const Kept kept : {Kept::data, Kept::safety_record}) {
+    REQUIRE(contains(refusal_of([&] { store.withdraw(1, kUtc, "again", kept); }),
+                     "already withdrawn, and the data are erased"));
+  }
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("an open session whose participant withdraws cannot go on, even if the data are kept") {
+  StoredFixture study;
+  StudyStore& store = *study.store;
+  const auto sink = store.begin_session(1, wrapped_key_of(1), {}, Bytes{1, 2});
+  SessionRecorder recorder(1, participant_key(1), *sink);
+  recorder.opened(nanoseconds(0), opening(1), "{}");
+  store.withdraw(1, kUtc, "moves away", Kept::data);
+  REQUIRE_FALSE(store.kept_key(1));
+  REQUIRE(contains(refusal_of([&] { (void)store.continue_session(1); }), "has withdrawn"));
+  REQUIRE(contains(refusal_of([&] { recorder.presented(seconds(1), 1, 0); }), "has withdrawn"));
+  recorder.stopped(seconds(2), {.code = "", .text = "moves away"});
+  recorder.closed(seconds(2), false);
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("a safety record is kept for as many years as the study says, to the day") {
+  StoredFixture study(1);  // on 14 November 2023, kept for ten years
+  StudyStore& store = *study.store;
+  const auto erase = [&](nanoseconds at) {
+    return refusal_of([&] { store.withdraw(1, at, "", Kept::nothing); });
+  };
+  constexpr std::chrono::days kTenYears(10 * 365 + 3);  // 2024, 2028 and 2032 are leap years
+  REQUIRE(contains(erase(kUtc + kTenYears), "erase those first"));
+  store.withdraw(1, kUtc, "asked to");
+  REQUIRE(contains(erase(kUtc), "is kept until 2033-11-14"));
+  REQUIRE(contains(erase(kUtc + kTenYears - nanoseconds(1)), "is kept until 2033-11-14"));
+  REQUIRE(store.wrapped_keys(1).safety);
+  REQUIRE(erase(kUtc + kTenYears).empty());
+  REQUIRE(store.wrapped_keys(1) == WrappedKeys{});
+  REQUIRE(contains(erase(kUtc + kTenYears), "already erased"));
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE(
+    "of an erased person nobody can open more than the safety record, and that until it goes") {
+  StoredFixture study;
+  StudyStore& store = *study.store;
+  const SecretKey station = digest_of("station");
+  {
+    const auto sink = store.begin_session(
+        1, wrapped_key_of(1), [] { return kUtc; },
+        keep_participant_key(station, 1, participant_key(1)));
+    SessionRecorder recorder(1, participant_key(1), *sink);
+    record(recorder, 1, 3, stroking(20, 0.05), opening(1));
+  }
+  store.note(1, kUtc, "", "tall, with a limp");
+  store.note(1, kUtc, "no-curtain", "in the wash");
+  add(store, 2);
+  store.withdraw(1, kUtc, "asked to");
+  study.store.reset();
+  study.store = StudyStore::open(study.path, StudyStore::Access::read_only);
+
+  // The attacker has the file, the investigator's keys and the station's secret, and tries every
+  // key that follows from them, and every row of every table that holds keys.
+  const BoxKeys investigator = box_keys(study_master());
+  std::vector<SecretKey> keys = {study_master(), investigator.secret_half, station,
+                                 derive_key(station, "participant keys"), participant_key(2)};
+  const SecretKey safety =
+      unwrap_safety_key(investigator, 1, study.store->wrapped_keys(1).safety.value()).value();
+  for (const char* const purpose : {"safety", "reasons", "remarks", "nonce", "cipher"}) {
+    keys.push_back(derive_key(safety, purpose));
+  }
+  keys.push_back(safety);
+  REQUIRE_FALSE(study.store->wrapped_key(1));
+  REQUIRE_FALSE(study.store->kept_key(1));
+  for (const SecretKey& key : keys) {
+    for (const Event& event : study.store->events(1)) {
+      REQUIRE_FALSE(opened_event(event, key));
+      REQUIRE_FALSE(unseal(key, "", event.sealed, 1));
+    }
+    for (int trial = 1; trial <= 3; ++trial) {
+      REQUIRE_FALSE(unsealed_trace(study.store->sealed_trace(1, trial).value(), key));
+    }
+    for (const std::string& text : texts_of(*study.store, {.participant = key, .safety = {}})) {
+      REQUIRE_FALSE(contains(text, "limp"));
+    }
+    for (const Bytes& wrapped : {study.store->wrapped_keys(1).safety.value()}) {
+      REQUIRE_FALSE(unwrap_participant_key(box_keys(key), 1, wrapped));
+    }
+  }
+  const PersonKeys left{.participant = {}, .safety = safety};
+  REQUIRE(texts_of(*study.store, left) ==
+          std::vector<std::string>{R"({"code":"no-curtain","session":1,"text":"in the wash"})",
+                                   R"({"kept":"safety-record","reason":"asked to","session":1})"});
+  // The pages that held the key hold it no more, nor does anything beside the file.
+  study.store.reset();
+  const Bytes wrapped = wrapped_key_of(1).participant;
+  const Bytes file = read_file(study.path);
+  REQUIRE(std::search(file.begin(), file.end(), wrapped.begin(), wrapped.begin() + 16) ==
+          file.end());
+}
+
+TEST_CASE("a look at one participant shows the sessions of that participant so far") {
+  StoredFixture study(2);
+  StudyStore& store = *study.store;
+  const auto refusal = [&](const std::string& participant, const std::string& reason) {
+    return refusal_of([&] { store.look_at(participant, kUtc, reason); });
+  };
+  REQUIRE(contains(refusal("P1", ""), "needs a reason"));
+  REQUIRE(contains(refusal("P9", "asked"), "participant P9 has no session"));
+  REQUIRE(refusal("P1", "asked").empty());
+  REQUIRE_FALSE(store.state().unblinded);
+  REQUIRE(store.state().shows(1));
+  REQUIRE_FALSE(store.state().reports(1));
+  REQUIRE_FALSE(store.state().shows(2));
+  REQUIRE(store.state().looks == std::vector<PersonLook>{{"P1", "asked", kUtc}});
+  const auto sink = store.begin_session(3, wrapped_key_of(3));
+  SessionRecorder recorder(3, participant_key(3), *sink);
+  recorder.opened(nanoseconds(0), opening(3), "{}");
+  REQUIRE(contains(refusal("P3", "asked"), "may still go on"));
+  store.withdraw(2, kUtc, "asked to");
+  REQUIRE(contains(refusal("P2", "asked"), "the data are erased"));
+  store.exclude(1, kUtc, "bad figures");
+  REQUIRE(participant_from_json(store.last_event(0)->body).after_outcomes);
+  store.close_study(kUtc);
+  REQUIRE(refusal("P1", "asked again").empty());
+  store.unblind(kUtc, "planned", false);
+  REQUIRE(store.state().reports(1));
+  REQUIRE(store.state().looks.size() == 2);
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("a file's chain that brings erased data back, or erases them twice, is refused") {
+  StoredFixture study(1);
+  FileChain chain;
+  for (const Event& event : study.store->events(0)) chain.add(event);
+  const auto add = [&](Kept kept) {
+    Event event;
+    event.sequence = 3;
+    event.kind = EventKind::participant_withdrawn;
+    event.body = to_json(WithdrawalBody{.session = 1, .kept = kept, .reason = ""});
+    return refusal_of([&] { chain.add(event); });
+  };
+  REQUIRE(contains(add(Kept::nothing), "loses its safety record before its outcomes"));
+  REQUIRE(add(Kept::data).empty());
+  REQUIRE(add(Kept::safety_record).empty());
+  REQUIRE(contains(add(Kept::data), "keeps data that were erased"));
+  REQUIRE(contains(add(Kept::safety_record), "is erased twice"));
+  REQUIRE(add(Kept::nothing).empty());
 }

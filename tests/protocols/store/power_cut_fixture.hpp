@@ -75,7 +75,7 @@ struct Outcome {
 inline Outcome tell(const std::filesystem::path& path, const Story& story) {
   Outcome outcome;
   outcome.refusal = refusal_of([&] {
-    store::StudyStore store = store::StudyStore::open(path, store::StudyStore::Access::read_write);
+    store::StudyStore store = writable(path);
     story(store, outcome.acknowledged);
   });
   return outcome;
@@ -115,7 +115,7 @@ inline void finish_session(store::StudyStore& store) {
 /// Requires that the database accepts what may follow: the rest of session 2, another session, and
 /// changes of the file's chain.
 inline void require_writable(const std::filesystem::path& path) {
-  store::StudyStore store = store::StudyStore::open(path, store::StudyStore::Access::read_write);
+  store::StudyStore store = writable(path);
   finish_session(store);
   if (!store.state().closed) add(store, store.next_session());
   if (!store.sessions().at(0).excluded) store.exclude(1, kUtc, "a test");

@@ -103,14 +103,15 @@ TEST_CASE("a database that is being made is whole or not there after a kill or a
       TempFolder folder;
       const auto path = folder.path() / "study.db";
       vfs.plan(fault);
-      static_cast<void>(refusal_of([&] { return StudyStore::create(path, commitment(), kUtc); }));
+      static_cast<void>(
+          refusal_of([&] { return StudyStore::create(path, commitment(), kUtc, investigator()); }));
       if (!vfs.struck()) break;
       vfs.start_anew();
       if (!std::filesystem::exists(path)) {
-        static_cast<void>(StudyStore::create(path, commitment(), kUtc));
+        static_cast<void>(StudyStore::create(path, commitment(), kUtc, investigator()));
       }
       REQUIRE_FALSE(StudyStore::open(path, StudyStore::Access::read_only).first_fault());
-      StudyStore store = StudyStore::open(path, StudyStore::Access::read_write);
+      StudyStore store = writable(path);
       add(store, 1);
     }
     REQUIRE(fault.at > 10);
@@ -145,7 +146,7 @@ TEST_CASE("a database that is brought forward is the old one or the new one afte
 
 TEST_CASE("a key that was destroyed does not come back after a power cut") {
   FaultVfs vfs;
-  const Bytes key = wrapped_key_of(1);
+  const Bytes key = wrapped_key_of(1).participant;
   for (const Kind kind : kEnds) {
     Fault fault{.kind = kind, .at = 1};
     for (;; ++fault.at) {
@@ -153,15 +154,14 @@ TEST_CASE("a key that was destroyed does not come back after a power cut") {
       StoredFixture study(finished_session());
       bool acknowledged = false;
       static_cast<void>(refusal_of([&] {
-        StudyStore store = StudyStore::open(study.path, StudyStore::Access::read_write);
+        StudyStore store = writable(study.path);
         vfs.plan(fault);
         store.withdraw(1, kUtc, "asked to");
         acknowledged = true;
       }));
       if (!vfs.struck()) break;
       vfs.start_anew();
-      const bool withdrawn =
-          StudyStore::open(study.path, StudyStore::Access::read_write).sessions().at(0).withdrawn;
+      const bool withdrawn = writable(study.path).sessions().at(0).withdrawn;
       REQUIRE((withdrawn || !acknowledged));
       const Bytes file = read_file(study.path);
       const bool has_key =
@@ -176,8 +176,9 @@ TEST_CASE("a folder that cannot have a write-ahead log is refused") {
   FaultVfs vfs;
   vfs.forbid_shared_memory();
   TempFolder folder;
-  const std::string line = refusal_of(
-      [&] { return StudyStore::create(folder.path() / "study.db", commitment(), kUtc); });
+  const std::string line = refusal_of([&] {
+    return StudyStore::create(folder.path() / "study.db", commitment(), kUtc, investigator());
+  });
   REQUIRE(contains(line, "cannot be written safely"));
   REQUIRE(contains(line, "keep it in a folder on a local disk"));
   REQUIRE(std::filesystem::is_empty(folder.path()));

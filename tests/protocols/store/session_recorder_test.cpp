@@ -97,16 +97,21 @@ TEST_CASE("an opened event has the time and the body with which it was recorded"
   recorded(R"({"after":"pause","away_s":12.5,"program_version":"1"})",
            R"({"after":"pause","program_version":"1"})");
   TraceBody body{.trial = 7, .samples = 0, .rate_hz = 1e3, .overruns = 2, .valid = true};
+  body.hand.path = false;
+  body.saturated = true;
   body.explorations = {900, 101};
   const TrialEvidence evidence = recorder.packed(body, {}, stroking(1001, 0.05));
   recorder.answered(at, {.trial = 7, .position = 4, .first_position = {}, .confidence = {}},
                     evidence);
   const Event& stored = events.events[events.events.size() - 2];
-  const std::string in_clear = R"({"overruns":2,"rate_hz":1000.0,"seconds":2,"trace":")" +
-                               to_hex(evidence.body.trace) + R"(","trial":7,"valid":true})";
+  const std::string in_clear =
+      R"({"contact_ok":true,"force_ok":true,"overruns":2,"path_ok":false,"rate_hz":1000.0,)"
+      R"("speed_ok":true,"trace":")" +
+      to_hex(evidence.body.trace) + R"(","trial":7,"valid":true})";
   REQUIRE(stored.body == in_clear);
   const TraceBody whole = trace_body_from_json(opened(stored).body);
   REQUIRE(whole.samples == 1001);
+  REQUIRE(whole.saturated);
   REQUIRE(whole.explorations == std::vector<std::int64_t>{900, 101});
 }
 
@@ -123,7 +128,7 @@ TEST_CASE("the size of a sealed part follows from the kind of its event") {
                   std::chrono::hours(9)) == least);
 }
 
-TEST_CASE("the size of an interruption depends on its flight record's number of ticks alone") {
+TEST_CASE("the size of an interruption tells no flight record of up to three seconds") {
   const auto sealed_size = [](const std::string& row, std::int64_t ticks) {
     BufferedEvents events;
     SessionRecorder recorder(1, participant_key(1), events);
@@ -131,7 +136,10 @@ TEST_CASE("the size of an interruption depends on its flight record's number of 
     for (std::int64_t i = 0; i < ticks; ++i) detail.flight += row;
     recorder.interrupted(seconds(1), 3, "device fault", detail);
     REQUIRE(interruption_from_json(*unsealed(events.events.back(), participant_key(1))) == detail);
-    REQUIRE(trial_from_json(events.events.back().body).reason == "device fault");
+    const TrialBody clear = trial_from_json(events.events.back().body);
+    REQUIRE(clear.reason == "device fault");
+    REQUIRE(clear.safety_fault == "overspeed");
+    REQUIRE(clear.device_fault == "none");
     return events.events.back().sealed.size();
   };
   const std::string smooth(90, '0');
@@ -139,7 +147,7 @@ TEST_CASE("the size of an interruption depends on its flight record's number of 
   REQUIRE(sealed_size(smooth, 3001) == sealed_size(rough, 3001));
   REQUIRE(sealed_size(smooth, 10) == sealed_size(rough, 10));
   REQUIRE(sealed_size(smooth, 10) < sealed_size(smooth, 3001));
-  REQUIRE(sealed_size(smooth, 2001) == sealed_size(smooth, 3000));
+  REQUIRE(sealed_size(smooth, 0) == sealed_size(rough, 3000));
 }
 
 TEST_CASE("an interruption without a detail has no secret part") {
@@ -246,7 +254,7 @@ TEST_CASE("only remarks are recorded as remarks") {
 }
 
 TEST_CASE("a wrapped participant key opens with its study and session alone") {
-  const Bytes wrapped = wrapped_key_of(3);
+  const Bytes wrapped = wrapped_key_of(3).participant;
   REQUIRE(unwrap_participant_key(box_keys(study_master()), 3, wrapped) == participant_key(3));
   REQUIRE_FALSE(unwrap_participant_key(box_keys(study_master()), 4, wrapped));
   REQUIRE_FALSE(unwrap_participant_key(box_keys(digest_of("other")), 3, wrapped));
@@ -254,4 +262,54 @@ TEST_CASE("a wrapped participant key opens with its study and session alone") {
   Bytes altered = wrapped;
   altered.back() ^= 1U;
   REQUIRE_FALSE(unwrap_participant_key(box_keys(study_master()), 3, altered));
+}
+
+TEST_CASE("the safety key opens why a session stopped and what deviated, and nothing else") {
+  BufferedEvents session = session_of(3);
+  SessionRecorder recorder(3, participant_key(3), session);
+  recorder.go_on_after(session.events.back());
+  recorder.deviated(seconds(200), {.code = "no-curtain", .text = "in the wash"});
+  recorder.stopped(seconds(201), {.code = "", .text = "a cramp"});
+  recorder.remarked(seconds(202), EventKind::noted, "tall");
+  recorder.remarked(seconds(203), EventKind::paused, "called his wife");
+  const SecretKey safety = safety_key(participant_key(3));
+  std::vector<std::string> bodies;
+  for (const Event& event : session.events) {
+    if (const auto opened = opened_safety_event(event, safety))
+      bodies.push_back(opened->event.body);
+    REQUIRE_FALSE(opened_event(event, safety));  // it is not taken for the participant's key
+    REQUIRE(opened_event(event, participant_key(3)));
+  }
+  REQUIRE(bodies == std::vector<std::string>{R"({"code":"no-curtain","text":"in the wash"})",
+                                             R"({"text":"a cramp"})"});
+  for (const Event& event : session.events) {
+    for (const char* const words : {"wash", "cramp", "tall", "wife"}) {
+      REQUIRE_FALSE(contains(event.body, words));
+    }
+  }
+}
+
+TEST_CASE("a wrapped safety key opens with its study and session alone, and is not the other key") {
+  const NewKeys keys = wrapped_key_of(3);
+  const BoxKeys investigator = box_keys(study_master());
+  REQUIRE(unwrap_safety_key(investigator, 3, keys.safety) == safety_key(participant_key(3)));
+  REQUIRE_FALSE(unwrap_safety_key(investigator, 4, keys.safety));
+  REQUIRE_FALSE(unwrap_safety_key(box_keys(digest_of("other")), 3, keys.safety));
+  REQUIRE_FALSE(unwrap_participant_key(investigator, 3, keys.safety));
+  REQUIRE_FALSE(unwrap_safety_key(investigator, 3, keys.participant));
+}
+
+TEST_CASE("a trace tells its largest force, which stays sealed until the end of the session") {
+  BufferedEvents events;
+  SessionRecorder recorder(1, participant_key(1), events);
+  Trace trace = stroking(50, 0.0);
+  trace.samples[20].force_n = {3.0, 0.0, -4.0};
+  TraceBody body;
+  body.trial = 1;
+  recorder.trace_stored(seconds(1), body, {}, trace);
+  const Event stored = events.events.back();
+  REQUIRE_FALSE(contains(stored.body, "largest_force"));
+  REQUIRE(trace_body_from_json(opened(stored).body).largest_force_n == 5.0);
+  recorder.closed(seconds(2), true, std::nullopt, 0, 3.149);
+  REQUIRE(contains(events.events.back().body, R"("largest_force_n":3.1)"));
 }

@@ -38,10 +38,23 @@ inline SecretKey participant_key(int session) {
   return digest_of("participant key " + std::to_string(session));
 }
 
+inline Signer investigator() {
+  return Signer(digest_of("investigator"));
+}
+
+inline constexpr const char* kStudyId = "00112233445566778899aabbccddeeff";
+
+inline store::StationIdentity station_identity(const std::string& study_id = kStudyId) {
+  const PublicKey key = Signer(digest_of("station")).public_half();
+  return {.name = "only",
+          .key = key,
+          .certificate = investigator().sign(station_statement(study_id, "only", key))};
+}
+
 inline store::StudyCommitment commitment() {
   return {.study = "classification",
           .protocol = "classification",
-          .study_id = "00112233445566778899aabbccddeeff",
+          .study_id = kStudyId,
           .seal = digest_of("seal"),
           .pack = digest_of("pack"),
           .configuration = R"({"classes":["c0","c1"]})",
@@ -49,7 +62,16 @@ inline store::StudyCommitment commitment() {
           .positions = 5,
           .simulated = true,
           .pilot = false,
-          .program_version = "0.1.0"};
+          .program_version = "0.1.0",
+          .investigator = investigator().public_half(),
+          .station = station_identity()};
+}
+
+/// Opens a database of the fixture to write in it as the investigator.
+inline store::StudyStore writable(const std::filesystem::path& path) {
+  store::StudyStore store = store::StudyStore::open(path, store::StudyStore::Access::read_write);
+  store.sign_with(investigator());
+  return store;
 }
 
 inline std::string participant_of(int session) {
@@ -137,7 +159,7 @@ inline store::BufferedEvents session_of(int session, int trials = 3) {
   return session_of(session, trials, stroking(20, 0.05), opening(session));
 }
 
-inline Bytes wrapped_key_of(int session) {
+inline store::NewKeys wrapped_key_of(int session) {
   return store::wrap_participant_key(box_keys(study_master()).public_half, session,
                                      participant_key(session));
 }
@@ -186,7 +208,7 @@ inline std::vector<store::TrialRow> opened_trials(const store::StudyStore& store
 class StoredFixture {
  public:
   explicit StoredFixture(int sessions = 0, int trials = 3)
-      : store(store::StudyStore::create(path, commitment(), kUtc)) {
+      : store(store::StudyStore::create(path, commitment(), kUtc, investigator())) {
     for (int session = 1; session <= sessions; ++session) add(*store, session, trials);
   }
   /// A copy of another study, which must be closed.
@@ -221,6 +243,8 @@ inline void tamper(StoredFixture& study, const std::string& sql) {
     without_triggers(raw, [&] { raw.exec(sql); });
   }
   study.store = store::StudyStore::open(study.path, store::StudyStore::Access::read_write);
+  // What was tampered with may be who signs.
+  static_cast<void>(refusal_of([&] { study.store->sign_with(investigator()); }));
 }
 
 }  // namespace touchtrial::fixture

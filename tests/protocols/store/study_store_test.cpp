@@ -62,7 +62,7 @@ TEST_CASE("an added session is there after the database is opened again") {
   }
   REQUIRE(store.sealed_trace(2, 3) == second.traces[2]);
   REQUIRE_FALSE(store.sealed_trace(2, 4));
-  REQUIRE(store.wrapped_key(2) == wrapped_key_of(2));
+  REQUIRE(store.wrapped_key(2) == wrapped_key_of(2).participant);
   REQUIRE_FALSE(store.wrapped_key(3));
   REQUIRE_FALSE(store.first_fault());
 }
@@ -90,8 +90,8 @@ TEST_CASE("sessions and trials are derived from the events") {
                         .block = 0,
                         .state = TrialState::answered,
                         .valid = true,
+                        .hand = {},
                         .overruns = 2,
-                        .seconds = 1,
                         .rate_hz = 999.75,
                         .explorations = 1,
                         .presented_at = {},
@@ -145,7 +145,8 @@ TEST_CASE("the file's chain commits to key, beginning and end of every session")
   REQUIRE(chain.size() == 3);
   const SessionOpenedBody opened = session_opened_from_json(chain[1].body);
   REQUIRE(opened.first == session.events.front().hash);
-  REQUIRE(opened.key == sha256(wrapped_key_of(1)));
+  REQUIRE(opened.key == sha256(wrapped_key_of(1).participant));
+  REQUIRE(opened.safety_key == sha256(wrapped_key_of(1).safety));
   REQUIRE(opened.participant == "P1");
   const SessionClosedBody closed = session_closed_from_json(chain[2].body);
   REQUIRE(closed.head == session.events.back().hash);
@@ -191,7 +192,7 @@ TEST_CASE("pilots and other sessions never share a database") {
   StudyCommitment pilot = commitment();
   pilot.pilot = true;
   const std::filesystem::path path = study.folder.path() / "pilot.db";
-  StudyStore store = StudyStore::create(path, pilot, kUtc);
+  StudyStore store = StudyStore::create(path, pilot, kUtc, investigator());
   REQUIRE(contains(refusal_of([&] { store.add_session(session_of(1), wrapped_key_of(1), kUtc); }),
                    "is the database of a pilot"));
   store.add_session(session_of(1, 3, {}, how), wrapped_key_of(1), kUtc);
@@ -220,7 +221,7 @@ TEST_CASE("a device on a screen is for pilots alone, and seen and felt sessions 
   pilot.pilot = true;
   for (const bool first : {true, false}) {
     const std::filesystem::path path = study.folder.path() / (first ? "seen.db" : "felt.db");
-    StudyStore store = StudyStore::create(path, pilot, kUtc);
+    StudyStore store = StudyStore::create(path, pilot, kUtc, investigator());
     store.add_session(seen(1, first), wrapped_key_of(1), kUtc);
     store.add_session(seen(2, first), wrapped_key_of(2), kUtc);
     const std::string line =
@@ -300,13 +301,13 @@ TEST_CASE("withdrawal destroys the key in the file, and the chains still hold") 
     study.store->withdraw(session, kUtc, "asked to");
     REQUIRE_FALSE(study.store->wrapped_key(session));
     REQUIRE(study.store->sessions()[static_cast<std::size_t>(session) - 1].withdrawn);
-    const Bytes key = wrapped_key_of(session);
+    const Bytes key = wrapped_key_of(session).participant;
     const std::string text(key.begin(), key.end());
     for (const std::string suffix : {"", "-wal"}) {
       REQUIRE_FALSE(contains(content_of(study.path.string() + suffix), text));
     }
   }
-  REQUIRE(study.store->wrapped_key(2) == wrapped_key_of(2));
+  REQUIRE(study.store->wrapped_key(2) == wrapped_key_of(2).participant);
   REQUIRE(study.store->events(17).size() == session_of(17, 1).events.size());
   REQUIRE_FALSE(study.store->first_fault());
   REQUIRE(

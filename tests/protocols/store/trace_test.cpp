@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 using namespace touchtrial;
 using namespace touchtrial::store;
@@ -99,10 +100,19 @@ TEST_CASE("the size of a sealed trace does not tell textures apart") {
   }
 }
 
-TEST_CASE("the padding of traces tells whole thousands of samples and never overflows") {
-  REQUIRE(trace_padding(0) >= 1);
-  REQUIRE(trace_padding(9001) == trace_padding(10'000));
-  REQUIRE(trace_padding(10'000) < trace_padding(10'001));
+TEST_CASE("traces of up to ten seconds have one size, however long they are") {
+  std::set<std::size_t> sizes;
+  for (const std::size_t count : {0, 1, 999, 3001, 10'000}) {
+    for (const double rms_n : {0.0, 0.5})
+      sizes.insert(sealed_size(fixture::stroking(count, rms_n)));
+  }
+  REQUIRE(sizes.size() == 1);
+}
+
+TEST_CASE("the padding of traces tells steps of ten seconds alone") {
+  REQUIRE(trace_padding(0) == trace_padding(10'000));
+  REQUIRE(trace_padding(10'001) == 2 * trace_padding(10'000));
+  REQUIRE(trace_padding(10'001) == trace_padding(20'000));
   REQUIRE(trace_padding(std::numeric_limits<std::size_t>::max()) < std::size_t{1} << 30U);
 }
 

@@ -86,9 +86,10 @@ TEST_CASE("another study, or another kind of the same, is refused with the remed
   StoredFixture ours(1);
   there.push(*ours.store);
   const std::string counts = there.counts();
-  const auto refused = [&](const StudyCommitment& body, const std::string& why) {
+  const auto refused = [&](StudyCommitment body, const std::string& why) {
+    body.station = station_identity(body.study_id);
     TempFolder folder;
-    StudyStore other = StudyStore::create(folder.path() / "other.db", body, kUtc);
+    StudyStore other = StudyStore::create(folder.path() / "other.db", body, kUtc, investigator());
     SessionOpening how = opening(1);
     how.participant = "Q1";
     how.enrolment = 9;
@@ -150,14 +151,14 @@ TEST_CASE("a newer schema is refused untouched, an older one brought forward") {
   const std::array steps = {ServerMigration{add_another_table}};
   ServerConnection server(there.address());
   bring_forward(server, steps);
-  CHECK(there.first("SELECT version FROM touchtrial_schema") == "5");
+  CHECK(there.first("SELECT version FROM touchtrial_schema") == "6");
   CHECK(there.first("SELECT count(*) FROM information_schema.columns WHERE column_name = 'room'") ==
         "1");
   bring_forward(server, steps);
   add(*study.store, 2);
   const std::string counts = there.counts();
   CHECK_THAT(push_refusal(there, *study.store),
-             holds_text("newer Touchtrial (schema 5, this one knows 4)"));
+             holds_text("newer Touchtrial (schema 6, this one knows 5)"));
   CHECK_THAT(push_refusal(there, *study.store, {.dry_run = true}), holds_text("newer Touchtrial"));
   check_untouched(there, counts);
 }
@@ -170,7 +171,7 @@ TEST_CASE("an unknown older schema is refused untouched") {
   add(*study.store, 2);
   const std::string counts = there.counts();
   CHECK_THAT(push_refusal(there, *study.store),
-             holds_text("older Touchtrial (schema 2, the oldest that this one knows is 4); use"));
+             holds_text("older Touchtrial (schema 2, the oldest that this one knows is 5); use"));
   CHECK_THAT(refusal_of([&] { static_cast<void>(stations_of_server(there.address())); }),
              holds_text("older Touchtrial (schema 2"));
   check_untouched(there, counts);
@@ -184,7 +185,7 @@ TEST_CASE("a step that fails leaves the schema as it was") {
                             ServerMigration{[](ServerWork& work) { work.exec("NONSENSE"); }}};
   ServerConnection server(there.address());
   CHECK_THAT(refusal_of([&] { bring_forward(server, steps); }), holds_text("syntax error"));
-  CHECK(there.first("SELECT version FROM touchtrial_schema") == "4");
+  CHECK(there.first("SELECT version FROM touchtrial_schema") == "5");
   CHECK(there.first("SELECT count(*) FROM information_schema.columns WHERE column_name = 'room'") ==
         "0");
 }
@@ -194,8 +195,8 @@ TEST_CASE("a copy that went on by itself is refused, and the message says where 
   StoredFixture study(2);
   study.store.reset();
   StoredFixture copy(study.path);
-  copy.store = StudyStore::open(copy.path, StudyStore::Access::read_write);
-  study.store = StudyStore::open(study.path, StudyStore::Access::read_write);
+  copy.store = writable(copy.path);
+  study.store = writable(study.path);
   add(*study.store, 3);
   add_visit(*copy.store, {3, "Q3", 9});
   there.push(*study.store);
@@ -209,8 +210,8 @@ TEST_CASE("an older copy adds nothing, and is told of what the server has beyond
   StoredFixture study(2);
   study.store.reset();
   StoredFixture copy(study.path);
-  copy.store = StudyStore::open(copy.path, StudyStore::Access::read_write);
-  study.store = StudyStore::open(study.path, StudyStore::Access::read_write);
+  copy.store = writable(copy.path);
+  study.store = writable(study.path);
   add(*study.store, 3);
   there.push(*study.store);
   const PushReport report = there.push(*copy.store);
@@ -313,7 +314,7 @@ TEST_CASE("an older copy does not bring back the key of a participant who withdr
   study.store.reset();
   std::filesystem::copy_file(study.path, copy);
   {
-    StudyStore store = StudyStore::open(study.path, StudyStore::Access::read_write);
+    StudyStore store = writable(study.path);
     store.withdraw(1, kUtc, "asked");
     there.push(store);
   }
@@ -437,7 +438,7 @@ TEST_CASE("a database without an encoding keeps texts as they are") {
   const ServerFixture there;
   there.server.make_database("plain", "SQL_ASCII");
   StoredFixture study(1);
-  study.store->note(1, kUtc, "", "sch\xc3\xb6n \xe2\x9c\x93");
+  study.store->unblind(kUtc, "sch\xc3\xb6n \xe2\x9c\x93", /*interim=*/true);
   OpenStation station(*study.store);
   PushReport report;
   push_station(station, ServerAddress(there.server.url("plain")), {}, report);

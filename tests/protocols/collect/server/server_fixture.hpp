@@ -29,8 +29,8 @@ class OpenStation final : public collect::StationFile {
     if (alter) alter(events);
     return events;
   }
-  std::optional<Bytes> wrapped_key(int own_session) override {
-    return store_.wrapped_key(own_session);
+  store::WrappedKeys wrapped_keys(int own_session) override {
+    return store_.wrapped_keys(own_session);
   }
   std::optional<Bytes> trace(int own_session, int trial) override {
     const auto sealed = store_.sealed_trace(own_session, trial);
@@ -114,7 +114,8 @@ struct ServerFixture {
   /// The number of rows of every table, in the order of their names.
   [[nodiscard]] std::string counts() const {
     std::string text;
-    for (const char* const table : {"events", "participant_keys", "sessions", "traces", "trials"}) {
+    for (const char* const table :
+         {"events", "participant_keys", "safety_keys", "sessions", "traces", "trials"}) {
       text += first(std::string("SELECT count(*) FROM ") + table) + " ";
     }
     return text;

@@ -49,16 +49,16 @@ TEST_CASE("a station read from the server equals the station's file") {
   check_same(found.file_chain(), expected.file_chain());
   for (const int session : {1, 2}) {
     check_same(found.events(session), expected.events(session));
-    CHECK(found.wrapped_key(session) == expected.wrapped_key(session));
+    CHECK(found.wrapped_keys(session) == expected.wrapped_keys(session));
     CHECK(found.trace(session, 2) == expected.trace(session, 2));
     std::map<int, Bytes> traces;
     found.for_each_trace(session, [&](int trial, const Bytes& box) { traces[trial] = box; });
     REQUIRE(traces.size() == 3);
     for (const auto& [trial, box] : traces) CHECK(box == expected.trace(session, trial));
   }
-  CHECK_FALSE(found.wrapped_key(2));
+  CHECK_FALSE(found.wrapped_keys(2).participant);
   CHECK(found.events(3).empty());
-  CHECK_FALSE(found.wrapped_key(3));
+  CHECK_FALSE(found.wrapped_keys(3).participant);
   CHECK_FALSE(found.trace(1, 99));
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("a reader sees one moment, whatever is pushed meanwhile") {
   study.store->withdraw(1, kUtc, "asked");
   there.push(*study.store);
   CHECK(stations[0]->file_chain().size() == 3);
-  CHECK(stations[0]->wrapped_key(1));
+  CHECK(stations[0]->wrapped_keys(1).participant);
   CHECK(stations_of_server(there.address())[0]->file_chain().size() == 6);
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("many and large traces are read in pieces and are the same") {
   const ServerFixture there;
   StoredFixture study;
   const Trace large = stroking(60'000, 3.0);
-  study.store->add_session(session_of(1, 30, large, opening(1)), wrapped_key_of(1), kUtc);
+  study.store->add_session(session_of(1, 36, large, opening(1)), wrapped_key_of(1), kUtc);
   there.push(*study.store);
   CHECK(std::stoll(there.first("SELECT sum(octet_length(box)) FROM traces")) > 16 << 20);
   Stations stations = stations_of_server(there.address());
@@ -88,7 +88,7 @@ TEST_CASE("many and large traces are read in pieces and are the same") {
     CHECK(trial == ++traces);
     CHECK(study.store->sealed_trace(1, trial)->box == box);
   });
-  CHECK(traces == 30);
+  CHECK(traces == 36);
 }
 
 TEST_CASE("a role that may only read can read, and a role without rights is refused") {
@@ -140,7 +140,7 @@ TEST_CASE("rows that nobody pushed count as damage") {
              holds_text("table participant_keys holds rows of session 78"));
   CHECK_THAT(refusal_after("UPDATE events SET session = 79 WHERE session = 1"),
              holds_text("table events holds rows of session 79"));
-  CHECK_THAT(refusal_after("INSERT INTO events VALUES(0, 0, 'noted', 0, '{}', '', '', '', 0)"),
+  CHECK_THAT(refusal_after("INSERT INTO events VALUES(0, 0, 'noted', 0, '{}', '', '', '', '', 0)"),
              holds_text("holds rows of session 0"));
   CHECK_THAT(
       refusal_after("UPDATE events SET kind = 'nonsense' WHERE session = 2 AND sequence = 3"),

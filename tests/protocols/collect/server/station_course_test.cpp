@@ -32,7 +32,8 @@ class Chain {
   }
   Chain& withdrawn(int session) {
     return add(EventKind::participant_withdrawn,
-               to_json(ParticipantBody{.session = session, .reason = "asked"}));
+               to_json(WithdrawalBody{
+                   .session = session, .kept = Kept::safety_record, .reason = "asked"}));
   }
   Chain& replaced(int session, const std::string& by) {
     return add(EventKind::participant_replaced,

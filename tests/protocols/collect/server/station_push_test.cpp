@@ -46,10 +46,11 @@ TEST_CASE("derived rows on the server are those of the station") {
         std::vector<std::string>{"P1 1 completed 1000 simulated 1 1",
                                  "P2 2 completed 1000 simulated 2 1"});
   CHECK(there.ask("SELECT trial || ' ' || block || ' ' || state || ' ' || valid || ' ' || overruns "
-                  "|| ' ' || seconds || ' ' || rate_hz || ' ' || explorations FROM trials "
+                  "|| ' ' || contact_ok || path_ok || force_ok || speed_ok || ' ' || rate_hz || ' "
+                  "' || explorations FROM trials "
                   "WHERE session = 1 ORDER BY trial") ==
-        std::vector<std::string>{"1 0 answered 1 1 1 999.75 1", "2 0 answered 1 2 1 999.75 1",
-                                 "3 1 timed-out 0 3 1 999.75 1"});
+        std::vector<std::string>{"1 0 answered 1 1 1111 999.75 1", "2 0 answered 1 2 1111 999.75 1",
+                                 "3 1 timed-out 0 3 1111 999.75 1"});
 }
 
 TEST_CASE("events and traces are append-only on the server too") {
@@ -132,7 +133,7 @@ TEST_CASE("a file without a session only makes the tables") {
   StoredFixture study;
   CHECK(there.push(*study.store).station == 0);
   CHECK(there.first("SELECT count(*) FROM stations") == "0");
-  CHECK(there.first("SELECT version FROM touchtrial_schema") == "4");
+  CHECK(there.first("SELECT version FROM touchtrial_schema") == "5");
 }
 
 TEST_CASE("a dry run says what would be pushed and changes nothing") {

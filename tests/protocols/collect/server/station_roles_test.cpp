@@ -48,7 +48,8 @@ struct TwoLabs {
   /// Everything that the first station has on the server.
   std::vector<std::string> of_first() const {
     std::vector<std::string> rows;
-    for (const std::string table : {"events", "traces", "participant_keys", "sessions", "trials"}) {
+    for (const std::string table :
+         {"events", "traces", "participant_keys", "safety_keys", "sessions", "trials"}) {
       const std::string own = "SELECT r::text FROM " + table +
                               " r WHERE session BETWEEN -1 AND 100000 ORDER BY r::text";
       for (std::string& row : there.ask(own)) rows.push_back(std::move(row));
@@ -75,6 +76,8 @@ TEST_CASE("a station's role adds its own sessions, and alters nobody's") {
         "UPDATE participant_keys SET wrapped = ''",
         "INSERT INTO participant_keys VALUES(3, '')",
         "SELECT touchtrial_destroy_key(1)",
+        "SELECT touchtrial_destroy_key(1, TRUE)",
+        "DELETE FROM safety_keys",
         "DELETE FROM events",
         "UPDATE events SET body = ''",
         "TRUNCATE traces",

@@ -127,6 +127,7 @@ analysis::Collection collection_of() {
   collection.sessions[7].row = store::SessionRow{};
   collection.sessions[7].row.session = 8;
   collection.sessions[7].row.withdrawn = true;
+  collection.sessions[7].row.erased = true;
   collection.sessions[7].deviations.clear();
   analysis::ServoTrial trial{1, 1, {}, 2};
   trial.health.rate_hz = 999.5;
@@ -134,6 +135,7 @@ analysis::Collection collection_of() {
   trial.health.lateness_worst_us = 180.0;
   collection.servo_trials = {trial};
   collection.flow.enrolled = 8;
+  collection.flow.erased = 1;
   collection.flow.withdrawn = 1;
   collection.flow.excluded = 1;
   collection.flow.exclusion_reasons = {kHostile};

@@ -20,7 +20,8 @@ simulation::SubjectModel quick_subject(double weber) {
 analysis::identification::MethodCues simulated_cues(TinyStudy& study,
                                                     const simulation::SubjectModel& subject) {
   store::StudyStore store = store::StudyStore::create(
-      study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {});
+      study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {},
+      study.key().signer());
   static_cast<void>(simulation::simulate_study(study.key(), study.pack(), subject,
                                                {.participants = 4, .seed = 3}, store));
   store.close_study({});

@@ -84,7 +84,8 @@ struct Laboratory {
   TinyStudy study{{.side_px = 200, .trials = R"({"repeats": 5, "explore_limit_s": 20})"}};
   session::StimulusSource source{study.pack(), study.key().study.rendering};
   store::StudyStore store = store::StudyStore::create(
-      study.next_database(), session::commitment_of(study.key(), study.pack(), false, false), kUtc);
+      study.next_database(), session::commitment_of(study.key(), study.pack(), false, false), kUtc,
+      study.key().signer());
   SecretKey participant_key = sha256(bytes_of("somebody"));
   TempFolder folder;
   device::FalconSettings settings;

@@ -1,0 +1,245 @@
+#include "analysis/exports/export_people.hpp"
+
+#include "analysis/exports/export_folder.hpp"
+#include "analysis/exports/export_tables.hpp"
+#include "analysis/exports/study_tables.hpp"
+#include "analysis/exports/trial_tables.hpp"
+#include "analysis/sealed_sessions.hpp"
+#include "analysis/verification/chain_notes.hpp"
+#include "core/errors.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace touchtrial::analysis {
+namespace {
+
+using store::EventKind;
+
+/// The rows that have one of the values in a column.
+DataTable rows_with(DataTable table, const std::string& column, const std::set<DataCell>& values) {
+  const auto found = std::ranges::find(table.columns, column);
+  const auto at = static_cast<std::size_t>(found - table.columns.begin());
+  std::erase_if(table.rows, [&](const auto& row) { return !values.contains(row[at]); });
+  return table;
+}
+
+/// The wall clock means nothing where participants are simulated.
+DataCell utc_cell(std::chrono::nanoseconds at, bool simulated) {
+  if (simulated) return std::monostate{};
+  return utc_text(at);
+}
+
+/// When the sessions of a participant were opened and closed.
+DataTable visits_of(const store::StudyStore& store, const std::vector<store::SessionRow>& rows) {
+  DataTable table{{"participant", "session", "opened_utc", "closed_utc", "simulated"}, {}};
+  std::map<int, std::chrono::nanoseconds> opened;
+  std::map<int, std::chrono::nanoseconds> closed;
+  for (const store::Event& event : store.events(0)) {
+    if (event.kind == EventKind::session_opened) opened[store::session_about(event)] = event.at;
+    if (event.kind == EventKind::session_closed) closed[store::session_about(event)] = event.at;
+  }
+  for (const store::SessionRow& row : rows) {
+    const auto end = closed.find(row.session);
+    table.rows.push_back({row.participant, std::int64_t{row.session},
+                          utc_cell(opened.at(row.session), row.simulated),
+                          end == closed.end() ? DataCell() : utc_cell(end->second, row.simulated),
+                          flag(row.simulated)});
+  }
+  return table;
+}
+
+DataTable personal_table(const store::PersonalRecord& person) {
+  DataTable table{{"participant", "consent_version", "consented_utc", "age", "gender", "contact"},
+                  {}};
+  table.rows.push_back({person.participant, person.consent_version, person.consented_utc,
+                        person.age ? DataCell(std::int64_t{*person.age}) : DataCell(),
+                        person.gender, person.contact});
+  return table;
+}
+
+// The safety record.
+
+constexpr std::array kSafetyKinds = {EventKind::interrupted, EventKind::stopped,
+                                     EventKind::deviated};
+
+/// What is told of one event.
+struct SafetyFacts {
+  std::optional<int> trial{};
+  std::string code{};
+  std::string safety_fault{};
+  std::string device_fault{};
+  std::string text{};  ///< empty also if it does not open
+};
+
+/// \return nothing if the event does not belong to the safety record
+std::optional<SafetyFacts> facts_of(const store::Event& event) {
+  switch (event.kind) {
+    case EventKind::interrupted: {
+      store::TrialBody body = store::trial_from_json(event.body);
+      return SafetyFacts{.trial = body.trial,
+                         .code = std::move(body.reason),
+                         .safety_fault = std::move(body.safety_fault),
+                         .device_fault = std::move(body.device_fault)};
+    }
+    case EventKind::stopped: {
+      store::StopBody body = store::stop_from_json(event.body);
+      return SafetyFacts{.code = std::move(body.code), .text = std::move(body.text)};
+    }
+    case EventKind::deviated: {
+      store::DeviationBody body = store::deviation_from_json(event.body);
+      return SafetyFacts{.code = std::move(body.code), .text = std::move(body.text)};
+    }
+    case EventKind::participant_noted: {
+      store::NoteBody body = store::note_from_json(event.body);
+      if (body.code.empty()) return std::nullopt;  // a remark
+      return SafetyFacts{.code = std::move(body.code), .text = std::move(body.text)};
+    }
+    case EventKind::participant_excluded: {
+      store::ParticipantBody body = store::participant_from_json(event.body);
+      return SafetyFacts{.code = body.after_outcomes ? "after-outcomes" : "",
+                         .text = std::move(body.reason)};
+    }
+    case EventKind::participant_replaced:
+      return SafetyFacts{.text = store::replacement_from_json(event.body).reason};
+    case EventKind::participant_withdrawn:
+      return SafetyFacts{.text = store::withdrawal_from_json(event.body).reason};
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Gathers the two tables.
+class SafetyRecord {
+ public:
+  SafetyRecord(const store::StudyStore& store, const design::StudyKey* key) {
+    if (key != nullptr) {
+      require_key_of(store, *key);
+      keys_ = person_keys(store, *key);
+    }
+    for (const store::SessionRow& row : store.sessions()) sessions_[row.session].row = row;
+    store.for_each(EventKind::closed, [&](const store::Event& event) {
+      sessions_.at(event.session).largest_force_n =
+          store::closed_from_json(event.body).largest_force_n;
+    });
+    store.for_each_of(kSafetyKinds, [&](const store::Event& event) { add(event); });
+    for (const store::Event& event : store.events(0)) add(event);
+  }
+
+  [[nodiscard]] DataTable sessions() const {
+    DataTable table{{"participant", "session", "state", "excluded", "withdrawn", "erased", "device",
+                     "interruptions", "stops", "deviations", "largest_force_n", "simulated"},
+                    {}};
+    for (const auto& [number, one] : sessions_) {
+      table.rows.push_back({one.row.participant, std::int64_t{number},
+                            std::string(text_of(one.row.state)), flag(one.row.excluded),
+                            flag(one.row.withdrawn), flag(one.row.erased), one.row.device,
+                            one.interruptions, one.stops, one.deviations,
+                            one.largest_force_n ? DataCell(*one.largest_force_n) : DataCell(),
+                            flag(one.row.simulated)});
+    }
+    return table;
+  }
+  [[nodiscard]] const DataTable& events() const noexcept { return events_; }
+
+ private:
+  struct Session {
+    store::SessionRow row;
+    std::optional<double> largest_force_n{};
+    std::int64_t interruptions = 0;
+    std::int64_t stops = 0;
+    std::int64_t deviations = 0;
+  };
+
+  void add(const store::Event& stored) {
+    const auto found = sessions_.find(store::session_about(stored));
+    if (found == sessions_.end()) return;
+    Session& session = found->second;
+    const store::Event event = readable(stored, session.row);
+    const std::optional<SafetyFacts> facts = facts_of(event);
+    if (!facts) return;
+    session.interruptions += event.kind == EventKind::interrupted ? 1 : 0;
+    session.stops += event.kind == EventKind::stopped ? 1 : 0;
+    session.deviations +=
+        event.kind == EventKind::deviated || event.kind == EventKind::participant_noted ? 1 : 0;
+    const bool on_file = event.session == 0;
+    events_.rows.push_back({session.row.participant, std::int64_t{session.row.session},
+                            event.sequence, std::string(name_of(event.kind)),
+                            on_file || !event.sealed.empty() ? DataCell() : DataCell(event.at),
+                            on_file ? utc_cell(event.at, session.row.simulated) : DataCell(),
+                            facts->trial ? DataCell(std::int64_t{*facts->trial}) : DataCell(),
+                            facts->code, facts->safety_fault, facts->device_fault, facts->text,
+                            flag(session.row.simulated)});
+  }
+
+  /// With its text, if the safety key opens it. Interruptions are never opened: their sealed part
+  /// has what was felt.
+  [[nodiscard]] store::Event readable(const store::Event& event,
+                                      const store::SessionRow& row) const {
+    const auto own = keys_.find(row.session);
+    if (own == keys_.end() || event.kind == EventKind::interrupted) return event;
+    return readable_event(event, row, {.participant = {}, .safety = own->second.safety});
+  }
+
+  std::map<int, store::PersonKeys> keys_;
+  std::map<int, Session> sessions_;
+  DataTable events_{{"participant", "session", "event", "kind", "at_s", "at_utc", "trial", "code",
+                     "safety_fault", "device_fault", "text", "simulated"},
+                    {}};
+};
+
+}  // namespace
+
+std::vector<std::filesystem::path> export_participant(
+    const DatasetSource& study, const std::string& participant,
+    const std::optional<store::PersonalRecord>& person, const std::filesystem::path& folder) {
+  const store::StudyStore& store = study.store;
+  const store::StudyCommitment& commitment = store.commitment();
+  const std::vector<store::SessionRow> rows = store.sessions_of(participant);
+  if (rows.empty() && !person) {
+    throw StoreError(one_line("participant " + participant +
+                              " has no session and no personal data; check the participant id"));
+  }
+  const std::string prefix = participant_label(participant) + "_";
+  std::vector<ExportFile> files;
+  const auto add = [&](const std::string& name, const DataTable& table) {
+    files.push_back(text_file(prefix + name, csv_text(table)));
+  };
+  const std::set<DataCell> id = {participant};
+  std::set<DataCell> sessions;
+  for (const store::SessionRow& row : rows) sessions.insert(std::int64_t{row.session});
+  const std::optional<Outcomes> outcomes =
+      study.outcomes != nullptr ? std::optional(*study.outcomes) : std::nullopt;
+  const Collection collection = collection_of(store, outcomes);
+  add("sessions.csv", visits_of(store, rows));
+  add("participants.csv", rows_with(participants_table(store, collection), "participant", id));
+  add("trials.csv", rows_with(trials_table(store, outcomes), "participant", id));
+  add("deviations.csv",
+      rows_with(deviations_table(collection, commitment.simulated), "participant", id));
+  add("servo.csv", rows_with(servo_table(collection, commitment.simulated), "session", sessions));
+  if (person) add("personal.csv", personal_table(*person));
+  if (outcomes) {
+    add("unscored_trials.csv", unscored_table(*outcomes));
+    for (ExportFile& file : event_files(store, *study.key, *outcomes, prefix)) {
+      files.push_back(std::move(file));
+    }
+  }
+  return write_export(folder, {commitment.study, commitment.study_id, prefix + "participant"},
+                      files);
+}
+
+std::vector<std::filesystem::path> export_safety(const store::StudyStore& store,
+                                                 const design::StudyKey* key,
+                                                 const std::filesystem::path& folder) {
+  const store::StudyCommitment& commitment = store.commitment();
+  const SafetyRecord record(store, key);
+  return write_export(folder, {commitment.study, commitment.study_id, "safety"},
+                      {text_file("safety_sessions.csv", csv_text(record.sessions())),
+                       text_file("safety_events.csv", csv_text(record.events()))});
+}
+
+}  // namespace touchtrial::analysis

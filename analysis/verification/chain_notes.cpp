@@ -1,0 +1,70 @@
+#include "analysis/verification/chain_notes.hpp"
+
+#include "core/errors.hpp"
+#include "protocols/store/damage.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <chrono>
+#include <span>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+using std::chrono::seconds;
+
+constexpr seconds kUnnoted{1};
+
+void add_clock_notes(std::vector<std::string>& notes, std::span<const store::Event> chain,
+                     const std::string& name) {
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    const auto before = chain[i - 1].at;
+    const auto at = chain[i].at;
+    // As floating point: damaged times may lie further apart than an integer holds.
+    const double back_s =
+        std::chrono::duration<double>(before).count() - std::chrono::duration<double>(at).count();
+    if (back_s <= static_cast<double>(kUnnoted.count())) continue;
+    notes.push_back(fmt::format(
+        "{}, event {}: the clock went back by {:.0f} s, from {} to {}; times around it are "
+        "uncertain",
+        name, chain[i].sequence, back_s, utc_text(before), utc_text(at)));
+  }
+}
+
+void add_losses(std::vector<std::string>& notes, std::span<const store::Event> chain,
+                const std::string& name) {
+  for (const store::Event& event : chain) {
+    if (event.kind != store::EventKind::loss_accepted) continue;
+    const store::LossBody loss = store::body_of(event, store::loss_from_json);
+    notes.push_back(one_line(fmt::format("{}, event {}: a loss was accepted ({}): {}", name,
+                                         event.sequence, loss.reason, loss.missing)));
+  }
+}
+
+}  // namespace
+
+std::string utc_text(std::chrono::nanoseconds at) {
+  // Years beyond 9999 come from damage, and are no dates.
+  constexpr seconds kLast{253'402'300'799};
+  const auto whole = std::chrono::floor<seconds>(at);
+  if (whole < seconds(0) || whole > kLast) return fmt::format("{} s", whole.count());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time_t{whole.count()}));
+}
+
+std::vector<std::string> chain_notes(const store::StudyStore& store) {
+  std::vector<std::string> notes;
+  const bool has_clock = !store.commitment().simulated;
+  const auto add = [&](std::span<const store::Event> chain, const std::string& name) {
+    if (has_clock) add_clock_notes(notes, chain, name);
+    add_losses(notes, chain, name);
+  };
+  if (store.stations() == 0) add(store.events(0), "the file's chain");
+  for (int station = 1; station <= store.stations(); ++station) {
+    add(store.station_chain(station), fmt::format("station {}'s chain", station));
+  }
+  return notes;
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,23 @@
+/// \file What is worth knowing of a file's chain, and no fault: where a station's wall clock went
+/// back, so that times and orders of sessions that follow from it are uncertain, and which losses
+/// were accepted.
+#pragma once
+
+#include "protocols/store/study_store.hpp"
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// One line for each place, with chain and event. In a collected study, the chains of the stations.
+/// Steps of the clock of up to a second are left out, as two programs that record at once may cause
+/// them, and so are those of simulated studies, whose times mean nothing.
+/// \throws StoreError if a chain cannot be read
+[[nodiscard]] std::vector<std::string> chain_notes(const store::StudyStore& store);
+
+/// A time since 1970 as ISO 8601; in seconds if it lies outside of the years 1970 to 9999.
+[[nodiscard]] std::string utc_text(std::chrono::nanoseconds at);
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,261 @@
+// key check: proves that the investigator's key opens what stations seal, or have sealed.
+#include "analysis/sealed_sessions.hpp"
+#include "analysis/text_figures.hpp"
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "app/study_inputs.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "engine/pack/pack.hpp"
+#include "protocols/design/key_protection.hpp"
+#include "protocols/session/key_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+namespace touchtrial::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct KeyCheckArguments {
+  fs::path subject;  ///< study file, key or database
+  fs::path key;
+  fs::path pack;
+  fs::path station_file;
+  std::string station;
+  bool json = false;
+};
+
+/// The beginning of a file; empty if it cannot be read.
+std::string beginning_of(const fs::path& file) {
+  std::array<char, 64> bytes{};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(bytes.data(), bytes.size());
+  return {bytes.data(), static_cast<std::size_t>(stream.gcount())};
+}
+
+bool is_database(const fs::path& file) {
+  return beginning_of(file).starts_with("SQLite format 3");
+}
+
+/// A study file is neither protected nor called a key.
+bool is_key(const fs::path& file) {
+  return ending_of(file) == ".key" || beginning_of(file).starts_with("touchtrial-protected") ||
+         beginning_of(file).starts_with("{\n  \"check\": ");
+}
+
+/// What was found of one station.
+struct StationFinding {
+  std::string name;
+  fs::path file;
+  std::string fault;  ///< empty if all holds
+};
+
+/// Where everything of a study is.
+struct CheckedStudy {
+  design::PackPlace place;  ///< beside which stations' files are looked for
+  fs::path key_path;
+  design::StudyKey key;
+};
+
+CheckedStudy checked_study(const KeyCheckArguments& arguments) {
+  if (is_key(arguments.subject)) {
+    if (!arguments.key.empty()) {
+      throw UsageError("key check: a key is named twice; give the study file, or omit --key");
+    }
+    design::StudyKey key = design::load_study_key(arguments.subject);
+    const fs::path pack = arguments.pack.empty() ? key.pack_folder : arguments.pack;
+    return {{pack, arguments.subject}, arguments.subject, std::move(key)};
+  }
+  const design::Study study = design::load_study(arguments.subject);
+  const design::PackPlace place = pack_place_for(arguments.subject, arguments.pack);
+  const fs::path key_path = arguments.key.empty() ? place.key : arguments.key;
+  if (!is_there(key_path)) {
+    throw FileError(one_line(key_path.string()) +
+                    ": there is no key; name it with --key, or run `touchtrial prepare` first");
+  }
+  design::StudyKey key = design::load_study_key(key_path);
+  if (!design::are_same(key.study, study)) {
+    throw VerificationError(one_line(key_path.string()) + ": is not the key of " + study.source +
+                            " as it is now; run `touchtrial prepare`, or name another with --key");
+  }
+  return {place, key_path, std::move(key)};
+}
+
+fs::path pack_of(const CheckedStudy& study, const design::StationKey& station) {
+  return is_there(station.pack_folder) ? station.pack_folder : study.place.pack;
+}
+
+StationFinding station_finding(const CheckedStudy& study, const std::string& name,
+                               const fs::path& file) {
+  StationFinding finding{name, file, ""};
+  try {
+    const design::StationKey station = design::load_station_key(file);
+    if (!name.empty() && station.station.name != name) {
+      throw VerificationError("is the file of station " + station.station.name);
+    }
+    finding.name = station.station.name;
+    session::require_opens(study.key, station, engine::Pack(pack_of(study, station)));
+  } catch (const Error& error) {
+    finding.fault = error.what();
+  }
+  return finding;
+}
+
+std::vector<StationFinding> station_findings(const KeyCheckArguments& arguments,
+                                             const CheckedStudy& study) {
+  if (!arguments.station_file.empty()) {
+    return {station_finding(study, arguments.station, arguments.station_file)};
+  }
+  std::vector<StationFinding> findings;
+  for (const design::Station& station : study.key.stations) {
+    if (!arguments.station.empty() && station.name != arguments.station) continue;
+    const fs::path file = study.place.station(station.name);
+    if (is_there(file) || !arguments.station.empty()) {
+      findings.push_back(station_finding(study, station.name, file));
+    }
+  }
+  if (findings.empty()) {
+    throw UsageError(
+        one_line(study.place.station(arguments.station).string()) +
+        ": there is no station's file of this study here; name the study file in place of the key, "
+        "and the key with --key, or name a file with --station-file");
+  }
+  return findings;
+}
+
+/// Whether the key lies where `run` finds it.
+bool lies_beside_study(const CheckedStudy& study) {
+  const fs::path beside = design::pack_place_at(study.place.pack).key;
+  std::error_code error;
+  return fs::equivalent(beside, study.key_path, error);
+}
+
+int checked_stations(const KeyCheckArguments& arguments) {
+  const CheckedStudy study = checked_study(arguments);
+  const std::vector<StationFinding> findings = station_findings(arguments, study);
+  const bool beside = lies_beside_study(study);
+  const bool is_protected = design::is_protected(study.key_path);
+  if (arguments.json) {
+    nlohmann::ordered_json stations = nlohmann::ordered_json::array();
+    for (const StationFinding& finding : findings) {
+      stations.push_back({{"station", finding.name},
+                          {"file", finding.file.string()},
+                          {"opens", finding.fault.empty()},
+                          {"fault", finding.fault}});
+    }
+    print(json_text(nlohmann::ordered_json{{"study", study.key.study.name},
+                                           {"key", study.key_path.string()},
+                                           {"protected", is_protected},
+                                           {"beside_study", beside},
+                                           {"stations", stations}}));
+  } else {
+    std::string text = fmt::format("key {} ({}protected by a passphrase)\n",
+                                   study.key_path.string(), is_protected ? "" : "not ");
+    for (const StationFinding& finding : findings) {
+      text += fmt::format("station {}: {}: {}\n", finding.name, finding.file.string(),
+                          finding.fault.empty() ? "a test record opens with the key"
+                                                : "DOES NOT HOLD: " + one_line(finding.fault));
+    }
+    print(text);
+  }
+  if (beside) {
+    spdlog::warn(
+        "{}: the investigator's key lies beside the study; if people are run here, each session "
+        "records that as a deviation: move the key to another medium before the first participant",
+        study.key_path.string());
+  }
+  return std::ranges::all_of(findings, &std::string::empty, &StationFinding::fault) ? 0
+                                                                                    : kNotVerified;
+}
+
+/// The sessions of a database, by what the key does with them.
+struct OpenedKeys {
+  int open = 0;
+  int withdrawn = 0;
+  std::vector<std::string> faults;
+};
+
+OpenedKeys opened_keys(const store::StudyStore& store, const design::StudyKey& key) {
+  OpenedKeys counts;
+  for (const store::SessionRow& session : store.sessions()) {
+    try {
+      const auto own = analysis::participant_key(store, key, session);
+      ++(own ? counts.open : counts.withdrawn);
+    } catch (const VerificationError& error) {
+      counts.faults.emplace_back(error.what());
+    }
+  }
+  return counts;
+}
+
+int checked_database(const KeyCheckArguments& arguments) {
+  if (!arguments.station.empty() || !arguments.station_file.empty() || !arguments.pack.empty()) {
+    throw UsageError(
+        "key check: --station, --station-file and --pack are for a study, not for a "
+        "database; omit them");
+  }
+  const store::StudyStore store =
+      store::StudyStore::open(arguments.subject, store::StudyStore::Access::read_only);
+  const design::StudyKey key = key_of_database(store, arguments.subject, arguments.key);
+  const OpenedKeys counts = opened_keys(store, key);
+  const fs::path key_path = key_path_for(arguments.subject, arguments.key);
+  if (arguments.json) {
+    print(json_text(nlohmann::ordered_json{{"study", key.study.name},
+                                           {"key", key_path.string()},
+                                           {"protected", design::is_protected(key_path)},
+                                           {"open", counts.open},
+                                           {"withdrawn", counts.withdrawn},
+                                           {"faults", counts.faults}}));
+  } else {
+    std::string text =
+        fmt::format("key {}\nopens {}; {} withdrawn, which nothing opens\n", key_path.string(),
+                    analysis::counted(counts.open, "session"), counts.withdrawn);
+    for (const std::string& fault : counts.faults) {
+      text += "DOES NOT HOLD: " + one_line(fault) + "\n";
+    }
+    print(text);
+  }
+  return counts.faults.empty() ? 0 : kNotVerified;
+}
+
+int check_keys(const KeyCheckArguments& arguments) {
+  return is_database(arguments.subject) ? checked_database(arguments) : checked_stations(arguments);
+}
+
+}  // namespace
+
+void add_key_check_command(CLI::App& keys, Action& action) {
+  auto arguments = std::make_shared<KeyCheckArguments>();
+  CLI::App* command = keys.add_subcommand(
+      "check", "Prove that the key opens what stations seal, before the first participant");
+  command
+      ->add_option("STUDY", arguments->subject,
+                   "Study file, or its key; or a database, whose sessions the key must open")
+      ->required();
+  auto* station = command->add_option("--station", arguments->station,
+                                      "One station (default: all whose files are here)");
+  command
+      ->add_option("--station-file", arguments->station_file,
+                   "A station's file (default: <study>.station beside the pack)")
+      ->excludes(station);
+  add_pack_option(*command, arguments->pack);
+  add_key_option(*command, arguments->key,
+                 "Key of the study (default: beside the pack; for a database, DB.key)");
+  add_json_flag(*command, arguments->json);
+  command->callback([=, &action] { action = [=] { return check_keys(*arguments); }; });
+}
+
+}  // namespace touchtrial::app

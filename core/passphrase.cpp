@@ -1,0 +1,35 @@
+#include "core/passphrase.hpp"
+
+#include <new>
+#include <stdexcept>
+
+#include <sodium.h>
+
+namespace touchtrial {
+namespace {
+
+bool is_within(std::uint64_t number, std::uint64_t least, std::uint64_t most) {
+  return number >= least && number <= most;
+}
+
+}  // namespace
+
+SecretKey key_of_passphrase(std::string_view passphrase, const Salt& salt,
+                            const PassphraseCost& cost) {
+  static_assert(std::tuple_size_v<Salt> == crypto_pwhash_SALTBYTES);
+  const PassphraseCost& least = kLeastPassphraseCost;
+  const PassphraseCost& most = kMostPassphraseCost;
+  if (!is_within(cost.passes, least.passes, most.passes) ||
+      !is_within(cost.memory_bytes, least.memory_bytes, most.memory_bytes)) {
+    throw std::invalid_argument("key_of_passphrase: the cost is out of range");
+  }
+  if (sodium_init() < 0) throw std::runtime_error("libsodium cannot be used");
+  SecretKey key{};
+  const int failed =
+      crypto_pwhash(key.data(), key.size(), passphrase.data(), passphrase.size(), salt.data(),
+                    cost.passes, cost.memory_bytes, crypto_pwhash_ALG_ARGON2ID13);
+  if (failed != 0) throw std::bad_alloc();
+  return key;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,33 @@
+/// \file Makes a key of a passphrase with Argon2id (RFC 9106) by libsodium. It takes time and
+/// memory on purpose: whoever tries passphrases needs both for each. All functions are thread-safe.
+#pragma once
+
+#include "core/cipher.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace touchtrial {
+
+/// Random bytes in clear, so that one passphrase gives different keys.
+using Salt = std::array<std::uint8_t, 16>;
+
+/// What one key costs.
+struct PassphraseCost {
+  std::uint64_t passes = 3;
+  std::uint64_t memory_bytes = std::uint64_t{256} << 20U;
+
+  friend bool operator==(const PassphraseCost&, const PassphraseCost&) = default;
+};
+
+/// The range of a cost that key_of_passphrase accepts.
+inline constexpr PassphraseCost kLeastPassphraseCost{1, std::uint64_t{8} << 10U};
+inline constexpr PassphraseCost kMostPassphraseCost{32, std::uint64_t{4} << 30U};
+
+/// \throws std::invalid_argument if a number of the cost is out of range
+/// \throws std::bad_alloc if there is not enough memory
+[[nodiscard]] SecretKey key_of_passphrase(std::string_view passphrase, const Salt& salt,
+                                          const PassphraseCost& cost);
+
+}  // namespace touchtrial

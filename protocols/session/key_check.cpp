@@ -1,0 +1,131 @@
+#include "protocols/session/key_check.hpp"
+
+#include "core/cipher.hpp"
+#include "core/errors.hpp"
+#include "core/public_keys.hpp"
+#include "protocols/session/session.hpp"
+#include "protocols/store/sealing.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+namespace touchtrial::session {
+namespace {
+
+constexpr int kTestSession = 1;
+
+void require_holds(bool holds, const char* what) {
+  if (!holds) throw VerificationError(what);
+}
+
+void require_same_study(const design::StudyKey& key, const design::StationKey& station) {
+  require_holds(station.study_id == key.study_id,
+                "is another study's; give the station the file that was made with this key");
+  require_holds(
+      station.seal == key.seal && station.configuration == key.configuration,
+      "was made before or after a change of the study; run `touchtrial prepare`, and give "
+      "the station its new file");
+  const auto code = [](const design::KeyedStimulus& keyed) { return keyed.code; };
+  require_holds(std::ranges::equal(station.stimuli, key.stimuli, {}, code, code) &&
+                    station.catch_code == key.catch_code,
+                "has other codes than the key; give the station the file that was made with it");
+}
+
+void require_same_secrets(const design::StudyKey& key, const design::StationKey& station) {
+  require_holds(
+      station.investigator_box == key.box().public_half &&
+          station.investigator_signature == key.signer().public_half(),
+      "seals for another investigator; give the station the file that was made with this key");
+  const auto own = std::ranges::find(key.stations, station.station.name, &design::Station::name);
+  require_holds(own != key.stations.end(),
+                "is of a station that the key does not know; run `touchtrial plan`, and give the "
+                "station its file");
+  require_holds(
+      station.station.secret == own->secret,
+      "has another secret than the key gives this station; give the station the file that "
+      "was made with this key");
+  require_holds(station.station.ranges == own->ranges,
+                "has other enrolment numbers than the key gives this station; give the station its "
+                "new file");
+  const Bytes statement =
+      station_statement(station.study_id, station.station.name, station.signer().public_half());
+  require_holds(is_signed_by(key.signer().public_half(), statement, station.certificate),
+                "was not signed with this key; give the station the file that was made with it");
+}
+
+void require_pack(const design::StationKey& station, const engine::Pack& pack) {
+  const engine::PackManifest& manifest = pack.manifest();
+  require_holds(manifest.study_id == station.study_id,
+                "has another study's pack beside it, or one that is not complete; copy the pack "
+                "anew, or run `touchtrial prepare`");
+  for (const design::KeyedStimulus& keyed : station.stimuli) {
+    const bool is_whole =
+        std::ranges::count(manifest.entries, keyed.code, &engine::PackEntry::code) == 1 &&
+        pack.is_intact(keyed.code);
+    require_holds(is_whole,
+                  "has a pack whose fields are not those that were prepared; copy the pack "
+                  "anew, or run `touchtrial prepare`");
+  }
+}
+
+/// What a station stores when it opens a session.
+struct TestRecord {
+  int enrolment = 0;
+  Bytes wrapped;  ///< the participant's key, for the investigator
+  Bytes kept;     ///< the same, for the station
+  store::BufferedEvents events;
+};
+
+TestRecord test_record(const design::StationKey& station) {
+  TestRecord record;
+  record.enrolment = station.station.ranges.front().first;
+  SystemEntropy entropy;
+  const SecretKey key = entropy.secret("participant key");
+  record.wrapped =
+      store::wrap_participant_key(station.investigator_box, kTestSession, key).participant;
+  record.kept = store::keep_participant_key(station.station.secret, kTestSession, key);
+  const design::Schedule schedule = design::make_schedule(
+      station.study, station.draw_of(record.enrolment, design::Draws::people));
+  Session session(schedule, station.study.trials,
+                  store::SessionRecorder(kTestSession, key, record.events));
+  store::SessionOpening opening;
+  opening.participant = "test";
+  opening.enrolment = record.enrolment;
+  opening.study_id = station.study_id;
+  opening.seal = station.seal;
+  session.open({}, opening, design::schedule_to_json(schedule, station));
+  return record;
+}
+
+/// The schedule that the key opens in a record.
+std::optional<design::Schedule> opened_schedule(const design::StudyKey& key,
+                                                const TestRecord& record) {
+  const auto own = store::unwrap_participant_key(key.box(), kTestSession, record.wrapped);
+  if (!own) return std::nullopt;
+  const auto opened = store::opened_event(record.events.events.front(), *own);
+  if (!opened) return std::nullopt;
+  return design::schedule_from_json(opened->secret, key);
+}
+
+}  // namespace
+
+void require_opens(const design::StudyKey& key, const design::StationKey& station,
+                   const engine::Pack& pack) {
+  require_same_study(key, station);
+  require_same_secrets(key, station);
+  require_pack(station, pack);
+  require_holds(!station.station.ranges.empty(),
+                "has no enrolment numbers; hand some out with `touchtrial plan --extend`");
+  const TestRecord record = test_record(station);
+  require_holds(store::kept_participant_key(station.station.secret, kTestSession, record.kept) ==
+                    store::unwrap_participant_key(key.box(), kTestSession, record.wrapped),
+                "sealed a test record whose key the station cannot take up again");
+  const auto schedule = opened_schedule(key, record);
+  require_holds(schedule.has_value(), "sealed a test record that the key does not open");
+  require_holds(*schedule == design::make_schedule(
+                                 key.study, key.draw_of(record.enrolment, design::Draws::people)),
+                "draws another schedule than the key");
+}
+
+}  // namespace touchtrial::session

@@ -1,0 +1,151 @@
+#include "analysis/exports/export_people.hpp"
+
+#include "analysis/exports/csv_reading.hpp"
+#include "analysis/fake_study.hpp"
+#include "core/errors.hpp"
+#include "support/catch.hpp"
+
+#include <chrono>
+
+namespace touchtrial {
+namespace {
+
+using std::chrono::milliseconds;
+
+const store::InterruptionDetail kOverspeed{
+    .safety_fault = "overspeed", .device_fault = "none", .ticks = 1, .flight = "tick\r\n0\r\n"};
+
+/// Somebody whose session had a fault, a deviation and a stop.
+FakeSession with_a_cramp(const std::string& participant, int enrolment) {
+  return {.participant = participant,
+          .enrolment = enrolment,
+          .answers = FakeStudy::always_right(),
+          .complete = false,
+          .stop_after = 0,
+          .before_trials = [](store::SessionRecorder& recorder) {
+            recorder.deviated(milliseconds(10), {.code = "no-curtain", .text = "in the wash"});
+            recorder.remarked(milliseconds(50), store::EventKind::noted, "tall");
+            recorder.presented(milliseconds(100), 1, 0);
+            recorder.interrupted(milliseconds(1500), 1, "device fault", kOverspeed);
+            recorder.stopped(milliseconds(2500), {.code = "", .text = "a cramp"});
+          }};
+}
+
+std::string all_text(const std::vector<std::filesystem::path>& files) {
+  std::string text;
+  for (const std::filesystem::path& file : files) text += text_of_file(file);
+  return text;
+}
+
+bool says(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+/// One who stopped and stays, one who stopped and is erased, one who is complete.
+void add_three(FakeStudy& study) {
+  study.add(with_a_cramp("P01", 1));
+  study.add(with_a_cramp("P02", 2));
+  study.add({.participant = "P03", .enrolment = 3, .answers = FakeStudy::always_right()});
+  study.store().note(2, milliseconds(20), "too-hot", "30 degrees");
+  study.store().note(2, milliseconds(21), "", "wrote a letter");
+  study.store().exclude(3, milliseconds(22), "asleep");
+  study.store().withdraw(2, milliseconds(30), "asked to");
+}
+
+}  // namespace
+
+TEST_CASE("The safety record has everybody's stops, faults and deviations, and no outcome") {
+  FakeStudy study(design::identification::classification(), {.simulated = false});
+  add_three(study);
+  const auto files = analysis::export_safety(study.store(), nullptr, study.folder() / "codes");
+  REQUIRE(files.size() == 2);
+  const std::vector<CsvRow> sessions = rows_of(files[0]);
+  REQUIRE(sessions.size() == 3);
+  CHECK(sessions[1].at("participant") == "P02");
+  CHECK(sessions[1].at("erased") == "1");
+  CHECK(sessions[1].at("interruptions") == "1");
+  CHECK(sessions[1].at("stops") == "1");
+  CHECK(sessions[1].at("deviations") == "2");
+  CHECK(sessions[2].at("stops") == "0");
+  const std::vector<CsvRow> events = rows_of(files[1]);
+  REQUIRE(events.size() == 3 + 3 + 3);  // in two sessions, and on the file's chain
+  CHECK(events[0].at("kind") == "deviated");
+  CHECK(events[0].at("code") == "no-curtain");
+  CHECK(events[1].at("kind") == "interrupted");
+  CHECK(events[1].at("trial") == "1");
+  CHECK(events[1].at("code") == "device fault");
+  CHECK(events[1].at("safety_fault") == "overspeed");
+  CHECK(events[2].at("kind") == "stopped");
+  for (const CsvRow& event : events) {
+    CHECK(event.at("text").empty());
+    CHECK(event.at("at_s").empty());
+  }
+  const std::string text = all_text(files);
+  for (const char* const words : {"wash", "cramp", "30 degrees", "asleep", "letter", "tall"}) {
+    CHECK_FALSE(says(text, words));
+  }
+}
+
+TEST_CASE("With the key the safety record has what was typed, also of erased people") {
+  FakeStudy study(design::identification::classification(), {.simulated = false});
+  add_three(study);
+  const auto files = analysis::export_safety(study.store(), &study.key(), study.folder() / "texts");
+  const std::string text = all_text(files);
+  for (const char* const words : {"wash", "cramp", "30 degrees", "asleep", "asked to"}) {
+    CHECK(says(text, words));
+  }
+  // Remarks, answers and flight records belong to the participant's key.
+  for (const char* const words : {"letter", "tall", "response", "position", "bark"}) {
+    CHECK_FALSE(says(text, words));
+  }
+  const std::vector<CsvRow> events = rows_of(files[1]);
+  CHECK(events[2].at("text") == "a cramp");
+  CHECK(events[2].at("at_s") == "2.5");
+  CHECK(events[5].at("participant") == "P02");
+  CHECK(events[5].at("text") == "a cramp");
+  CHECK(events[1].at("at_s").empty());
+
+  constexpr auto kLater = std::chrono::hours(24 * 366 * 11);
+  study.store().withdraw(2, kLater, "", store::Kept::nothing);
+  const std::string after =
+      all_text(analysis::export_safety(study.store(), &study.key(), study.folder() / "less"));
+  CHECK_FALSE(says(after, "30 degrees"));
+  CHECK_FALSE(says(after, "asked to"));
+  CHECK(says(after, "too-hot"));
+  CHECK(says(after, "asleep"));
+}
+
+TEST_CASE("A participant's export has that participant alone, and outcomes only where given") {
+  FakeStudy study(design::identification::classification(), {.simulated = false});
+  study.add({.participant = "P-1", .enrolment = 1, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P2", .enrolment = 2, .answers = FakeStudy::confusing(0, 1)});
+  study.store().note(1, milliseconds(20), "", "wrote a letter");
+  store::PersonalRecord person;
+  person.participant = "P-1";
+  person.consent_version = "3";
+  person.contact = "somebody@example.org";
+  const auto folder = study.folder() / "one";
+  const auto clear = analysis::export_participant({study.store()}, "P-1", person, folder);
+  REQUIRE(clear.size() == 6);
+  CHECK(clear[0].filename() == "PZd1_sessions.csv");
+  CHECK(rows_of(clear[0]).size() == 1);
+  CHECK(rows_of(clear[1]).size() == 1);
+  CHECK(rows_of(clear[2]).size() == 12);
+  CHECK(says(all_text(clear), "somebody@example.org"));
+  CHECK_FALSE(says(all_text(clear), "P2"));
+  CHECK_FALSE(says(all_text(clear), "response"));
+
+  study.store().look_at("P-1", milliseconds(30), "asked for the data");
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key(), "P-1");
+  const auto whole =
+      analysis::export_participant({study.store(), &outcomes, &study.key()}, "P-1", {}, folder);
+  CHECK(rows_of(whole[2]).size() == 12);
+  CHECK(rows_of(whole[2])[0].at("correct") == "1");
+  CHECK(says(all_text(whole), "wrote a letter"));
+  CHECK_FALSE(says(all_text(whole), "P2"));
+  CHECK_FALSE(std::filesystem::exists(folder / "PZd1_personal.csv"));  // of the export before
+
+  CHECK_THROWS_AS(analysis::export_participant({study.store()}, "P9", {}, folder), StoreError);
+}
+
+}  // namespace touchtrial

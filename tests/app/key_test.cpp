@@ -1,0 +1,368 @@
+// The investigator's key: checked, printed, restored, copied and protected, as a user does it.
+#include "app/study_folder.hpp"
+#include "app/touchtrial_process.hpp"
+#include "protocols/design/key_protection.hpp"
+#include "support/catch.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+using namespace touchtrial;
+
+namespace {
+
+const std::string kSecret = "a passphrase of words";
+
+/// A prepared study.
+struct KeyedStudy : StudyFolder {
+  explicit KeyedStudy(const std::vector<std::string>& options = {}) {
+    replace_file(path() / "one.txt", kSecret + "\nnot this line\n", FileMode::owner_only);
+    replace_file(path() / "two.txt", "quite another passphrase\n", FileMode::owner_only);
+    std::vector<std::string> arguments = {"prepare", in("cloths.json")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramResult prepared = run(arguments);
+    INFO(prepared.errors);
+    REQUIRE(prepared.exit_code == 0);
+  }
+  /// `touchtrial key COMMAND ...`
+  [[nodiscard]] ProgramResult key(std::vector<std::string> words,
+                                  const std::string& input = "") const {
+    words.insert(words.begin(), "key");
+    return run_touchtrial(path(), words, input);
+  }
+  /// One rehearsed session in study.db, under the prepared study's secrets.
+  void rehearse() const {
+    const ProgramResult done = run({"run", in("cloths.json"), "--participant", "P01", "--db",
+                                    in("study.db"), "--subject", in("quick.json"), "--headless"});
+    INFO(done.errors);
+    REQUIRE(done.exit_code == 0);
+  }
+};
+
+void check_key_refused(const ProgramResult& result, int exit_code,
+                       const std::vector<std::string>& words) {
+  INFO(result.output << result.errors);
+  CHECK(result.exit_code == exit_code);
+  CHECK(line_count(result.errors) == 1);
+  for (const std::string& word : words) CHECK_THAT(result.errors, holds_text(word));
+}
+
+/// The program on a terminal of its own.
+class TerminalRun {
+ public:
+  explicit TerminalRun(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), TOUCHTRIAL_PROGRAM);
+    std::vector<char*> argv;
+    for (std::string& word : arguments) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    child_ = ::forkpty(&terminal_, nullptr, nullptr, nullptr);
+    if (child_ == 0) {
+      ::execv(argv[0], argv.data());
+      ::_exit(127);
+    }
+    REQUIRE(child_ > 0);
+  }
+  ~TerminalRun() { ::close(terminal_); }
+  TerminalRun(const TerminalRun&) = delete;
+  TerminalRun& operator=(const TerminalRun&) = delete;
+
+  /// Reads until the text was shown, then types the line.
+  void answer(const std::string& prompt, const std::string& line) {
+    read_until(prompt);
+    const std::string typed = line + "\r";
+    REQUIRE(::write(terminal_, typed.data(), typed.size()) == static_cast<ssize_t>(typed.size()));
+  }
+  /// The exit code.
+  [[nodiscard]] int finish() {
+    read_until("");
+    int status = 0;
+    REQUIRE(::waitpid(child_, &status, 0) == child_);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  [[nodiscard]] const std::string& shown() const { return shown_; }
+
+ private:
+  /// \param text  empty: read to the end
+  void read_until(const std::string& text) {
+    while (text.empty() || shown_.find(text, read_) == std::string::npos) {
+      char letter = 0;
+      if (::read(terminal_, &letter, 1) != 1) {
+        INFO(shown_);
+        REQUIRE(text.empty());
+        return;
+      }
+      shown_ += letter;
+    }
+    read_ = shown_.size();
+  }
+
+  int terminal_ = -1;
+  pid_t child_ = -1;
+  std::string shown_;
+  std::size_t read_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("key check proves a prepared study, and says where the key lies") {
+  const KeyedStudy study;
+  const ProgramResult beside = study.key({"check", study.in("cloths.json")});
+  INFO(beside.output << beside.errors);
+  CHECK(beside.exit_code == 0);
+  CHECK_THAT(beside.output, holds_text("cloths.key (not protected by a passphrase)"));
+  CHECK_THAT(beside.output, holds_text("station main: " + study.in("cloths.station") +
+                                       ": a test record opens with the key"));
+  CHECK_THAT(beside.errors, holds_text("lies beside the study"));
+  CHECK(study.key({"check", study.in("cloths.key")}).exit_code == 0);
+
+  fs::create_directory(study.path() / "stick");
+  fs::rename(study.path() / "cloths.key", study.path() / "stick" / "cloths.key");
+  const ProgramResult away =
+      study.key({"check", study.in("cloths.json"), "--key", study.in("stick/cloths.key")});
+  CHECK(away.exit_code == 0);
+  CHECK(away.errors.empty());
+  check_key_refused(study.key({"check", study.in("cloths.json")}), 1, {"there is no key", "--key"});
+  check_key_refused(study.key({"check", study.in("stick/cloths.key")}), 2,
+                    {"no station's file", "name the study file"});
+}
+
+TEST_CASE("key check names the station whose file does not hold") {
+  const KeyedStudy study;
+  REQUIRE(study.run({"plan", study.in("cloths.json"), "--participants", "4", "--stations", "2"})
+              .exit_code == 0);
+  fs::copy_file(study.path() / "cloths.1.station", study.path() / "older.station");
+  REQUIRE(
+      study.run({"plan", study.in("cloths.json"), "--participants", "9", "--extend"}).exit_code ==
+      0);
+  const ProgramResult both = study.key({"check", study.in("cloths.json"), "--json"});
+  CHECK(both.exit_code == 0);
+  CHECK(json::parse(both.output).at("stations").size() == 2);
+  fs::copy_file(study.path() / "older.station", study.path() / "cloths.1.station",
+                fs::copy_options::overwrite_existing);
+  const ProgramResult stale = study.key({"check", study.in("cloths.json")});
+  CHECK(stale.exit_code == 3);
+  CHECK_THAT(stale.output, holds_text("cloths.1.station: DOES NOT HOLD: has other enrolment"));
+  CHECK_THAT(stale.output, holds_text("cloths.2.station: a test record opens"));
+  CHECK(study.key({"check", study.in("cloths.json"), "--station", "2"}).exit_code == 0);
+  CHECK(study.key({"check", study.in("cloths.json"), "--station", "1"}).exit_code == 3);
+  const ProgramResult other =
+      study.key({"check", study.in("cloths.json"), "--station-file", study.in("older.station")});
+  CHECK(other.exit_code == 3);
+}
+
+TEST_CASE("key check counts the sessions of a database that the key opens") {
+  const KeyedStudy study;
+  REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
+  REQUIRE(study
+              .run({"withdraw", study.in("a.db"), "--participant", "P002", "--reason", "asked",
+                    "--erase"})
+              .exit_code == 0);
+  const ProgramResult checked = study.key({"check", study.in("a.db")});
+  INFO(checked.output << checked.errors);
+  CHECK(checked.exit_code == 0);
+  CHECK_THAT(checked.output, holds_text("opens 3 sessions; 1 withdrawn"));
+  check_key_refused(study.key({"check", study.in("a.db"), "--key", study.in("cloths.key")}), 3,
+                    {"is not the key of"});
+}
+
+TEST_CASE("a key that was lost is made again from its printed sheet") {
+  const KeyedStudy study;
+  study.rehearse();
+  const std::string key = content(study.path() / "cloths.key");
+  const std::string station = content(study.path() / "cloths.station");
+  const ProgramResult printed =
+      study.key({"sheet", study.in("cloths.key"), "--out", study.in("sheet.txt")});
+  INFO(printed.errors);
+  REQUIRE(printed.exit_code == 0);
+  CHECK((fs::status(study.path() / "sheet.txt").permissions() & fs::perms(0777)) ==
+        fs::perms(0600));
+  REQUIRE(study.key({"sheet", study.in("cloths.key"), "--out", study.in("sheet.html")}).exit_code ==
+          0);
+  const std::string sheet = content(study.path() / "sheet.txt");
+  const std::string master = json::parse(key).at("master");
+  for (std::size_t i = 0; i < master.size(); i += 4) {
+    CHECK_THAT(sheet, holds_text(master.substr(i, 4)));
+    CHECK_THAT(content(study.path() / "sheet.html"), holds_text(master.substr(i, 4)));
+  }
+  check_key_refused(study.key({"sheet", study.in("cloths.key"), "--out", study.in("sheet.txt")}), 2,
+                    {"exists already"});
+  check_key_refused(study.key({"sheet", study.in("cloths.key"), "--out", study.in("sheet.doc")}), 2,
+                    {".html or .txt"});
+
+  fs::remove(study.path() / "cloths.key");
+  fs::remove(study.path() / "cloths.station");
+  const std::vector<std::string> restore = {"restore", study.in("cloths.json"), "--out",
+                                            study.in("cloths.key")};
+  std::string mistyped = sheet;
+  const std::size_t place = mistyped.find("3: ") + 4;
+  mistyped[place] = mistyped[place] == '7' ? '8' : '7';
+  check_key_refused(study.key(restore, mistyped), 2, {"line 3 is not what the sheet says"});
+  check_key_refused(study.key(restore, "1: 12\n"), 2, {"line 1 is not what the sheet says"});
+  check_key_refused(study.key(restore, "nothing\n"), 2, {"line 1 of the sheet is missing"});
+  check_key_refused(study.key(restore), 2, {"standard input, which is empty"});
+  CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
+
+  const ProgramResult restored = study.key(restore, sheet);
+  INFO(restored.errors);
+  REQUIRE(restored.exit_code == 0);
+  CHECK(restored.errors.empty());
+  CHECK(content(study.path() / "cloths.key") == key);
+  check_key_refused(study.key(restore, sheet), 2, {"exists already"});
+  const ProgramResult opened =
+      study.key({"check", study.in("study.db"), "--key", study.in("cloths.key")});
+  CHECK(opened.exit_code == 0);
+  CHECK_THAT(opened.output, holds_text("opens 1 session;"));
+  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  CHECK(content(study.path() / "cloths.station") == station);
+}
+
+TEST_CASE("a simulated study's key needs no sheet") {
+  const StudyFolder study;
+  REQUIRE(study.simulate("a.db").exit_code == 0);
+  check_key_refused(
+      study.run({"key", "sheet", study.in("a.db.key"), "--out", study.in("sheet.txt")}), 2,
+      {"is simulated"});
+}
+
+TEST_CASE("a protected key opens with its passphrase alone, and stays protected") {
+  const StudyFolder unprepared;
+  replace_file(unprepared.path() / "open.txt", kSecret + "\n");
+  check_key_refused(unprepared.run({"prepare", unprepared.in("cloths.json"), "--passphrase",
+                                    "--passphrase-file", unprepared.in("open.txt")}),
+                    1, {"open.txt", "others may read"});
+  check_key_refused(unprepared.run({"prepare", unprepared.in("cloths.json"), "--passphrase"}), 2,
+                    {"asked for at a terminal"});
+  CHECK_FALSE(fs::exists(unprepared.path() / "cloths.key"));
+
+  TempFolder secrets;
+  const std::string one = (secrets.path() / "one.txt").string();
+  replace_file(one, kSecret + "\n", FileMode::owner_only);
+  const KeyedStudy study({"--passphrase", "--passphrase-file", one});
+  CHECK(design::is_protected(study.path() / "cloths.key"));
+  CHECK_FALSE(design::is_protected(study.path() / "cloths.station"));
+  const std::vector<std::string> check = {"check", study.in("cloths.json")};
+  check_key_refused(study.key(check), 1, {"protected by a passphrase", "--passphrase-file"});
+  check_key_refused(
+      study.key({"check", study.in("cloths.json"), "--passphrase-file", study.in("two.txt")}), 1,
+      {"cloths.key: the passphrase is wrong"});
+  const ProgramResult checked = study.key({"check", study.in("cloths.json"), "--passphrase-file",
+                                           study.in("two.txt"), "--passphrase-file", one});
+  CHECK(checked.exit_code == 0);
+  CHECK_THAT(checked.output, holds_text("(protected by a passphrase)"));
+
+  json changed = study_of("classification");
+  changed["trials"]["repeats"] = 3;
+  replace_file(study.path() / "cloths.json", changed.dump());
+  REQUIRE(study.run({"prepare", study.in("cloths.json"), "--passphrase-file", one}).exit_code == 0);
+  int keys = 0;
+  for (const auto& file : fs::directory_iterator(study.path())) {
+    if (file.path().filename().string().find(".key") == std::string::npos) continue;
+    CHECK(design::is_protected(file.path()));
+    ++keys;
+  }
+  CHECK(keys == 2);  // the new one, and the one from before the change
+}
+
+TEST_CASE("a copy has a passphrase of its own, and opens the same") {
+  const KeyedStudy study;
+  const std::string key = study.in("cloths.key");
+  const std::string copy = study.in("colleague.key");
+  REQUIRE(study.key({"protect", key, "--new-passphrase-file", study.in("one.txt")}).exit_code == 0);
+  const std::vector<std::string> plain_copy = {
+      "copy", key, "--out", copy, "--passphrase-file", study.in("one.txt")};
+  check_key_refused(study.key(plain_copy), 2, {"the copy would not be", "--passphrase"});
+  std::vector<std::string> own_copy = plain_copy;
+  own_copy.insert(own_copy.end(), {"--new-passphrase-file", study.in("two.txt")});
+  const ProgramResult copied = study.key(own_copy);
+  INFO(copied.errors);
+  REQUIRE(copied.exit_code == 0);
+  check_key_refused(study.key(own_copy), 2, {"exists already"});
+  check_key_refused(study.key({"check", copy, "--passphrase-file", study.in("one.txt")}), 1,
+                    {"colleague.key: the passphrase is wrong"});
+  REQUIRE(study.key({"protect", copy, "--remove", "--passphrase-file", study.in("two.txt")})
+              .exit_code == 0);
+  REQUIRE(
+      study.key({"protect", key, "--remove", "--passphrase-file", study.in("one.txt")}).exit_code ==
+      0);
+  CHECK(content(copy) == content(key));
+}
+
+TEST_CASE("run and prepare open a station's file with its passphrase") {
+  const KeyedStudy study;
+  const std::string station = study.in("cloths.station");
+  REQUIRE(study.key({"protect", station, "--new-passphrase-file", study.in("two.txt")}).exit_code ==
+          0);
+  const std::vector<std::string> session = {
+      "run",       study.in("cloths.json"), "--participant", "P01", "--db", study.in("study.db"),
+      "--subject", study.in("quick.json"),  "--headless"};
+  check_key_refused(study.run(session), 1, {"cloths.station", "--passphrase-file"});
+  std::vector<std::string> opened = session;
+  opened.insert(opened.end(), {"--passphrase-file", study.in("two.txt")});
+  const ProgramResult done = study.run(opened);
+  INFO(done.errors);
+  CHECK(done.exit_code == 0);
+  check_key_refused(study.run({"prepare", study.in("cloths.json")}), 1, {"cloths.station"});
+  CHECK(study.run({"prepare", study.in("cloths.json"), "--passphrase-file", study.in("two.txt")})
+            .exit_code == 0);
+  CHECK(design::is_protected(station));
+}
+
+TEST_CASE("a terminal asks for passphrases and shows nothing of them") {
+  const StudyFolder study;
+  {
+    TerminalRun run({"prepare", study.in("cloths.json"), "--passphrase"});
+    run.answer("new passphrase of ", kSecret);
+    run.answer("the same again: ", kSecret + "x");
+    CHECK(run.finish() == 2);
+    CHECK_THAT(run.shown(), holds_text("the two passphrases differ"));
+    CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
+  }
+  {
+    TerminalRun run({"prepare", study.in("cloths.json"), "--passphrase"});
+    run.answer("new passphrase of ", "\x15wrong\x15" + kSecret + "xx\x7f\x7f");
+    run.answer("the same again: ", kSecret);
+    CHECK(run.finish() == 0);
+    CHECK(run.shown().find(kSecret.substr(0, 6)) == std::string::npos);
+    CHECK(design::is_protected(study.path() / "cloths.key"));
+  }
+  {
+    TerminalRun run({"key", "check", study.in("cloths.json")});
+    run.answer("passphrase of ", "not this one");
+    run.answer("that is not it; passphrase of ", kSecret);
+    CHECK(run.finish() == 0);
+    CHECK_THAT(run.shown(), holds_text("a test record opens with the key"));
+  }
+  {
+    TerminalRun run({"key", "check", study.in("cloths.json")});
+    run.answer("passphrase of ", "\x03");
+    CHECK(run.finish() == 2);
+    CHECK_THAT(run.shown(), holds_text("no passphrase was given"));
+  }
+}
+
+TEST_CASE("a terminal asks for the lines of a sheet, and again for one that is mistyped") {
+  const KeyedStudy study;
+  REQUIRE(study.key({"sheet", study.in("cloths.key"), "--out", study.in("sheet.txt")}).exit_code ==
+          0);
+  const std::string key = content(study.path() / "cloths.key");
+  fs::remove(study.path() / "cloths.key");
+  const std::string sheet = content(study.path() / "sheet.txt");
+  TerminalRun run({"key", "restore", study.in("cloths.json"), "--out", study.in("cloths.key")});
+  for (int line = 1; line <= 7; ++line) {
+    const std::string label = "  " + std::to_string(line) + ": ";
+    const std::size_t begin = sheet.find(label);
+    REQUIRE(begin != std::string::npos);
+    const std::size_t text = begin + label.size();
+    const std::string typed = sheet.substr(text, sheet.find('\n', text) - text);
+    const std::string prompt = "line " + std::to_string(line) + ": ";
+    if (line == 4) run.answer(prompt, "0" + typed);
+    run.answer(prompt, line % 2 == 0 ? typed : std::to_string(line) + ": " + typed);
+  }
+  CHECK(run.finish() == 0);
+  CHECK(content(study.path() / "cloths.key") == key);
+}

@@ -1,0 +1,359 @@
+// Attacks by somebody who can write the database and its head files, and has the study file, the
+// pack and this program's source, but no station's file and no key.
+#include "analysis/text_matching.hpp"
+#include "analysis/verification/verification.hpp"
+#include "attacks/forger.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/store/head_file.hpp"
+#include "protocols/store/payload_json.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+using namespace touchtrial;
+using namespace touchtrial::attacks;
+using store::EventKind;
+
+namespace {
+
+const std::string kUnsigned = "neither the station nor the investigator signed the event";
+const std::string kUnsignedLook = "the investigator did not sign the event";
+const std::string kDoesNotOpen = "the sealed part does not open";
+const std::string kKeyAltered = "the participant's key was altered";
+
+Signer forger() {
+  return Signer(sha256(bytes_of("the forger's own key")));
+}
+
+void forge_answer(store::Event& event) {
+  event.sealed[event.sealed.size() / 2] ^= 1U;
+}
+
+/// Signs the station in the first event as if `investigator` were the study's.
+void certify(Forgery& forged, const Signer& investigator, const Signer& station) {
+  store::StudyCommitment commitment = store::commitment_from_json(forged.file().front().body);
+  commitment.investigator = investigator.public_half();
+  commitment.station->key = station.public_half();
+  commitment.station->certificate = investigator.sign(
+      station_statement(commitment.study_id, commitment.station->name, station.public_half()));
+  forged.file().front().body = store::to_json(commitment);
+}
+
+struct Attack {
+  std::string what;
+  std::function<void(Forgery&)> forge;
+  std::string found;  ///< what `verify` says once all chains are made anew
+};
+
+/// In clear, on the file's chain, and in sessions that have ended.
+const std::vector<Attack> kAttacks = {
+    {"an answer's sealed bytes altered",
+     [](Forgery& it) { forge_answer(it.first(2, EventKind::answered)); }, kUnsigned},
+    {"an event's body altered",
+     [](Forgery& it) { set(it.first(3, EventKind::presented), "block", "7"); }, kUnsigned},
+    {"an exclusion moved before the look",
+     [](Forgery& it) { std::swap(it.file()[3], it.file()[4]); }, kUnsigned},
+    {"an exclusion erased", [](Forgery& it) { it.file().erase(it.file().begin() + 4); }, kUnsigned},
+    {"an interim look erased", [](Forgery& it) { it.file().erase(it.file().begin() + 3); },
+     kUnsigned},
+    {"an interim look invented", [](Forgery& it) { it.file().push_back(it.file()[3]); },
+     kUnsignedLook},
+    {"a session dropped from the middle", [](Forgery& it) { it.drop(2); },
+     "session 3 is not opened in its turn"},
+    {"a session's end and its line removed",
+     [](Forgery& it) {
+       it.chains.at(3).pop_back();
+       it.file().erase(it.file().begin() + 8);
+     },
+     kUnsigned},
+    {"the station's clock shifted",
+     [](Forgery& it) {
+       for (store::Event& event : it.file()) event.at += std::chrono::hours(1);
+     },
+     kUnsigned},
+    {"two participants' sessions exchanged",
+     [](Forgery& it) {
+       for (store::Event* event :
+            {&it.chains.at(2).front(), &it.chains.at(3).front(), &it.file()[5], &it.file()[7]}) {
+         const bool is_second = contains(event->body, "P02");
+         set(*event, "participant", is_second ? "\"P03\"" : "\"P02\"");
+         set(*event, "enrolment", is_second ? "3" : "2");
+       }
+     },
+     kUnsigned},
+    {"sealed answers of two sessions exchanged",
+     [](Forgery& it) {
+       std::swap(it.first(2, EventKind::answered).sealed, it.first(3, EventKind::answered).sealed);
+     },
+     kUnsigned},
+    {"a participant's key replaced by one's own", [](Forgery& it) { it.keys[2] = it.keys.at(3); },
+     kUnsigned},
+    {"a signature copied to another event",
+     [](Forgery& it) { it.file()[3].signature = it.file()[4].signature; }, kUnsignedLook},
+    {"signatures taken off",
+     [](Forgery& it) {
+       for (store::Event& event : it.file()) event.signature.clear();
+     },
+     kUnsigned},
+    {"everything signed with one's own key",
+     [](Forgery& it) {
+       const Signer own = forger();
+       for (store::Event& event : it.file()) event = store::signed_event(event, own);
+     },
+     kUnsigned},
+    {"a station of one's own that the investigator did not sign for",
+     [](Forgery& it) {
+       set(it.file().front(), "station",
+           R"({"name": "own", "key": ")" + to_hex(forger().public_half()) +
+               R"(", "certificate": ")" + std::string(128, '0') + "\"}");
+     },
+     "the investigator did not sign for station own"},
+};
+
+/// Of the open session, whose chain nobody has signed beyond its first event.
+const std::vector<Attack> kAttacksOnOpenSession = {
+    {"an answer's sealed bytes altered",
+     [](Forgery& it) { forge_answer(it.first(4, EventKind::answered)); }, kDoesNotOpen},
+    {"an event's body altered",
+     [](Forgery& it) { set(it.first(4, EventKind::presented), "block", "7"); }, kDoesNotOpen},
+    {"an event removed from the middle",
+     [](Forgery& it) { it.chains.at(4).erase(it.chains.at(4).begin() + 2); }, kDoesNotOpen},
+    {"two answers exchanged",
+     [](Forgery& it) {
+       // opened; then presented, first-contact, trace-stored, answered for each trial
+       std::swap(it.chains.at(4).at(4).sealed, it.chains.at(4).at(8).sealed);
+     },
+     kDoesNotOpen},
+    {"an answer of another session put in",
+     [](Forgery& it) { it.chains.at(4).at(4).sealed = it.first(2, EventKind::answered).sealed; },
+     kDoesNotOpen},
+    {"a trace and its digest exchanged",
+     [](Forgery& it) {
+       std::swap(it.first(4, EventKind::trace_stored).body, it.chains.at(4).at(7).body);
+       for (const int at : {3, 7}) {
+         set(it.chains.at(4).at(static_cast<std::size_t>(at)), "trial", at == 3 ? "1" : "2");
+       }
+       store::SealedTrace* ours = nullptr;
+       for (store::SealedTrace& trace : it.traces) {
+         if (trace.session != 4 || trace.trial > 2) continue;
+         if (ours != nullptr) std::swap(ours->box, trace.box);
+         ours = &trace;
+       }
+     },
+     kDoesNotOpen},
+    {"an event's time written in clear",
+     [](Forgery& it) { it.first(4, EventKind::answered).at = std::chrono::seconds(1); },
+     "the time of the event is not sealed"},
+    {"the session's end invented",
+     [](Forgery& it) {
+       store::Event end = it.chains.at(4).back();
+       end.kind = EventKind::closed;
+       end.body = R"({"complete":true})";
+       it.chains.at(4).push_back(end);
+     },
+     "the session is closed, but not on the file's chain"},
+};
+
+void require_found(AttackedStudy& study, const Attack& attack) {
+  INFO(attack.what);
+  Forgery forged(study.database());
+  attack.forge(forged);
+  forged.relink();
+  forged.write();
+  INFO(study.found());
+  CHECK(contains(study.found(), attack.found));
+  note(attack.what, Outcome::named);
+}
+
+/// Whether this station can go on with the open session: every event opens with the key it kept.
+bool can_resume(const AttackedStudy& study) {
+  const store::StudyStore store =
+      store::StudyStore::open(study.database(), store::StudyStore::Access::read_only);
+  const std::optional<Bytes> kept = store.kept_key(AttackedStudy::open_session());
+  if (!kept) return false;
+  const auto own = store::kept_participant_key(study.station().station.secret,
+                                               AttackedStudy::open_session(), *kept);
+  if (!own) return false;
+  const std::vector<store::Event> events = store.events(AttackedStudy::open_session());
+  return std::ranges::all_of(events, [&](const store::Event& event) {
+    return store::opened_event(event, *own).has_value();
+  });
+}
+
+/// The database as it was left, for one attack after the other.
+class Restored {
+ public:
+  explicit Restored(AttackedStudy& study) : study_(study), whole_(read_file(study.database())) {}
+  Restored(const Restored&) = delete;
+  Restored& operator=(const Restored&) = delete;
+  void restore() const { replace_file(study_.database(), ByteView(whole_)); }
+
+ private:
+  AttackedStudy& study_;
+  Bytes whole_;
+};
+
+}  // namespace
+
+TEST_CASE("an untouched study holds, with the key and without, and its session can go on") {
+  AttackedStudy study;
+  study.close();
+  CHECK(study.found().empty());
+  CHECK(study.found_without_key().empty());
+  CHECK(can_resume(study));
+  // A forger's tools alone change nothing.
+  const std::string before = rows_of(study.database());
+  Forgery forged(study.database());
+  forged.relink();
+  forged.write();
+  CHECK(rows_of(study.database()) == before);
+  CHECK(study.found().empty());
+}
+
+TEST_CASE("whoever makes the chains anew without a station's file is named by a signature") {
+  AttackedStudy study;
+  study.close();
+  const Restored whole(study);
+  for (const Attack& attack : kAttacks) {
+    whole.restore();
+    require_found(study, attack);
+    INFO(attack.what);
+    CHECK(contains(study.found_without_key(), attack.found));
+  }
+}
+
+TEST_CASE("an open session made anew does not open, and its head gives it away without a key") {
+  AttackedStudy study;
+  study.close();
+  const Restored whole(study);
+  for (const Attack& attack : kAttacksOnOpenSession) {
+    whole.restore();
+    require_found(study, attack);
+    INFO(attack.what);
+    CHECK_FALSE(study.found_without_key().empty());
+    CHECK_FALSE((attack.found == kDoesNotOpen && can_resume(study)));
+  }
+}
+
+TEST_CASE("swapped and replaced traces and keys are named where no chain was made anew") {
+  AttackedStudy study;
+  study.close();
+  const Restored whole(study);
+  const std::vector<std::pair<std::string, std::string>> attacks = {
+      {"UPDATE traces SET box = (SELECT t.box FROM traces t WHERE t.session = 3 AND t.trial = 1) "
+       "WHERE session = 2 AND trial = 1",
+       "trace of trial 1 was altered"},
+      {"UPDATE participant_keys SET wrapped = (SELECT k.wrapped FROM participant_keys k WHERE "
+       "k.session = 3) WHERE session = 2",
+       kKeyAltered},
+      {"DELETE FROM participant_keys WHERE session = 2", "missing without a withdrawal"},
+      // What the program takes for "replaced" must not pass for what it takes for "nobody".
+      {"UPDATE sessions SET replaced_by = '' WHERE session = 2", "derived table sessions"},
+      {"UPDATE sessions SET own_session = session WHERE session = 2", "derived table sessions"},
+      {"UPDATE events SET own_session = session WHERE session = 2", "says its own number twice"},
+      {"UPDATE events SET own_session = session WHERE session = 0", "says its own number twice"},
+      {"INSERT INTO station_keys SELECT session + 4294967296, kept FROM station_keys",
+       "the station holds the key of a session that is not open"},
+      {"UPDATE station_keys SET kept = zeroblob(length(kept))",
+       "the station's copy of the key was altered"},
+  };
+  for (const auto& [sql, found] : attacks) {
+    INFO(sql);
+    whole.restore();
+    with_sql(study.database(), sql);
+    INFO(study.found());
+    CHECK(contains(study.found(), found));
+    note("rows altered behind the program's back", Outcome::named);
+  }
+}
+
+TEST_CASE("a participant's key wrapped by a forger for the investigator is named") {
+  AttackedStudy study;
+  study.close();
+  const SecretKey own = sha256(bytes_of("the forger's participant"));
+  Forgery forged(study.database());
+  const store::NewKeys wrapped = store::wrap_participant_key(study.key().investigator_box, 2, own);
+  forged.keys[2] = {.participant = wrapped.participant, .safety = wrapped.safety};
+  forged.write();
+  CHECK(contains(study.found(), kKeyAltered));
+  forged.relink();
+  forged.write();
+  CHECK(contains(study.found(), kUnsigned));
+  note("a participant's key wrapped by the forger", Outcome::named);
+}
+
+TEST_CASE("a study made anew with an investigator of one's own is found by the key alone") {
+  AttackedStudy study;
+  study.close();
+  const Signer own = forger();
+  Forgery forged(study.database());
+  std::erase_if(forged.file(),
+                [](const store::Event& event) { return event.kind == EventKind::study_unblinded; });
+  certify(forged, own, own);
+  forged.relink(&own);
+  forged.write();
+  CHECK(contains(study.found(), "the database names another investigator than the key's holder"));
+  CHECK_FALSE(study.found_without_key().empty());  // the genuine head file is still there
+  note("an investigator of one's own", Outcome::named);
+  // Without the key only the investigator that `verify` prints differs.
+  fs::remove(study.head());
+  CHECK(study.found_without_key().empty());
+  const analysis::Verification verification = analysis::verify_study(
+      store::StudyStore::open(study.database(), store::StudyStore::Access::read_only), nullptr,
+      nullptr);
+  CHECK(verification.investigator == own.public_half());
+  CHECK_FALSE(verification.investigator == study.key().investigator_signature);
+  note("an investigator of one's own, checked without the key", Outcome::possible);
+}
+
+TEST_CASE("sessions dropped from the end are named by the head files, and by a head on paper") {
+  AttackedStudy study;
+  const Digest on_paper = study.store().file_head().hash;
+  study.close();
+  Forgery forged(study.database());
+  forged.drop(4);
+  forged.drop(3);
+  forged.write();
+  CHECK(contains(study.found(), "heads: "));
+  CHECK(contains(study.found_without_key(), "the file's chain has 7 events; the head file knows"));
+  note("sessions dropped from the end", Outcome::named);
+  fs::remove(study.head());
+  CHECK(study.found_without_key().empty());
+  CHECK(contains(study.found_by_head(on_paper), "its end was cut off"));
+  note("sessions dropped from the end, and the head files removed", Outcome::possible);
+}
+
+TEST_CASE("a session that has ended cannot be opened again to be sealed by the station") {
+  AttackedStudy study(0);
+  study.close();
+  Forgery forged(study.database());
+  forged.chains.at(3).pop_back();
+  forged.file().pop_back();
+  forged.write();
+  CHECK(contains(study.found(), "heads: "));
+  study.open();
+  // The station does not hold the key any more, and says so instead of going on.
+  CHECK_FALSE(study.store().kept_key(3));
+  note("an ended session opened again", Outcome::refused);
+}
+
+TEST_CASE("the station signs nothing on top of a chain that somebody made anew") {
+  AttackedStudy study;
+  study.close();
+  Forgery forged(study.database());
+  forged.file().erase(forged.file().begin() + 3);  // the interim look
+  forged.relink();
+  forged.write();
+  study.store() = store::StudyStore::open(study.database(), store::StudyStore::Access::read_write);
+  study.store().sign_with(study.station().signer());
+  const std::string refusal =
+      complaint_of<StoreError>([&] { study.store().note(2, std::chrono::seconds(9), "", "late"); });
+  CHECK(contains(refusal, kUnsigned));
+  note("a forged chain continued by the station", Outcome::refused);
+}

@@ -1,0 +1,105 @@
+/// The proof before the first participant that sealed data will open.
+#include "protocols/session/key_check.hpp"
+
+#include "core/errors.hpp"
+#include "protocols/session/tiny_study.hpp"
+#include "support/catch.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+design::StationKey station_of(const design::StudyKey& key) {
+  return design::station_key(key, key.stations.front().name);
+}
+
+/// What a station's file that was changed in one way is refused with.
+std::string fault_of(const TinyStudy& study,
+                     const std::function<void(design::StationKey&)>& change) {
+  design::StationKey station = station_of(study.key());
+  change(station);
+  try {
+    session::require_opens(study.key(), station, study.pack());
+  } catch (const VerificationError& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+}  // namespace
+
+TEST_CASE("what a station seals opens with its study's key") {
+  for (const bool comparison : {false, true}) {
+    TinyStudyOptions options;
+    options.comparison = comparison;
+    const TinyStudy study(options);
+    CHECK_NOTHROW(session::require_opens(study.key(), station_of(study.key()), study.pack()));
+  }
+}
+
+TEST_CASE("every station of a divided study is proved, and an older file of one is not") {
+  const TinyStudy study;
+  design::StudyKey key = study.key();
+  const std::vector<std::string> names = {"attic", "cellar"};
+  std::vector<design::Station> stations = design::stations_named(names);
+  design::hand_out_enrolments(stations, 10);
+  design::divide(key, stations);
+  const design::StationKey older = design::station_key(key, "cellar");
+  for (const std::string& name : names) {
+    CHECK_NOTHROW(session::require_opens(key, design::station_key(key, name), study.pack()));
+  }
+  design::hand_out_enrolments(stations, 14);
+  design::divide(key, stations);
+  CHECK_THROWS_WITH(session::require_opens(key, older, study.pack()),
+                    holds_text("other enrolment numbers"));
+  CHECK_THROWS_WITH(session::require_opens(key, station_of(study.key()), study.pack()),
+                    holds_text("a station that the key does not know"));
+}
+
+TEST_CASE("a station's file that differs from the key in anything is refused") {
+  const TinyStudy study;
+  using Key = design::StationKey;
+  CHECK(fault_of(study, [](Key&) {}) == "nothing");
+  CHECK_THAT(fault_of(study, [](Key& key) { key.study_id = "0123"; }), holds_text("another study"));
+  CHECK_THAT(fault_of(study, [](Key& key) { key.seal[0] ^= 1U; }), holds_text("a change of the"));
+  CHECK_THAT(fault_of(study, [](Key& key) { key.configuration += " "; }),
+             holds_text("a change of the study"));
+  CHECK_THAT(fault_of(study, [](Key& key) { std::swap(key.stimuli[0], key.stimuli[1]); }),
+             holds_text("other codes"));
+  CHECK_THAT(fault_of(study, [](Key& key) { key.catch_code = key.stimuli[0].code; }),
+             holds_text("other codes"));
+  CHECK_THAT(fault_of(study, [](Key& key) { key.investigator_box[5] ^= 1U; }),
+             holds_text("another investigator"));
+  CHECK_THAT(fault_of(study, [](Key& key) { key.investigator_signature[5] ^= 1U; }),
+             holds_text("another investigator"));
+  CHECK_THAT(fault_of(study, [](Key& key) { key.station.name = "other"; }),
+             holds_text("a station that the key does not know"));
+  CHECK_THAT(fault_of(study, [](Key& key) { key.station.secret[0] ^= 1U; }),
+             holds_text("another secret"));
+  CHECK_THAT(fault_of(study, [](Key& key) { key.station.ranges.front().first = 2; }),
+             holds_text("other enrolment numbers"));
+  CHECK_THAT(fault_of(study, [](Key& key) { key.certificate[63] ^= 1U; }),
+             holds_text("not signed with this key"));
+}
+
+TEST_CASE("another study's pack, and a pack with an altered field, are refused") {
+  const TinyStudy study;
+  TinyStudyOptions options;
+  options.secret = 2;
+  const TinyStudy other(options);
+  const design::StationKey station = station_of(study.key());
+  CHECK_THROWS_WITH(session::require_opens(study.key(), station, other.pack()),
+                    holds_text("another study's pack"));
+  const auto field =
+      study.pack().folder() / (study.pack().manifest().entries.front().code + ".field");
+  Bytes bytes = read_file(field);
+  bytes.back() ^= 1U;
+  replace_file(field, bytes);
+  CHECK_THROWS_WITH(session::require_opens(study.key(), station, study.pack()),
+                    holds_text("fields are not those that were prepared"));
+}
+
+}  // namespace touchtrial
