@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -21,17 +22,6 @@ namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<PublicKey> signers_of(const store::StudyCommitment& commitment) {
-  std::vector<PublicKey> signers = {commitment.investigator};
-  if (commitment.station) signers.push_back(commitment.station->key);
-  return signers;
-}
-
-std::string station_of(const store::StudyStore& store) {
-  const auto& station = store.commitment().station;
-  return station ? station->name : std::string();
-}
 
 /// What is missing: each session once, and the file's chain, by the head file that knows most.
 std::vector<store::Loss> losses_of(const store::StudyStore& store,
@@ -48,6 +38,8 @@ std::vector<store::Loss> losses_of(const store::StudyStore& store,
     std::vector<store::Loss> losses = store::losses(reading.record, store);
     std::erase_if(losses, [&](const store::Loss& loss) { return named.contains(loss.session); });
     for (store::Loss& loss : losses) {
+      if (found.empty())
+        loss.what = "as " + one_line(reading.file.string()) + " knows it, " + loss.what;
       named.insert(loss.session);
       found.push_back(std::move(loss));
     }
@@ -74,15 +66,18 @@ std::string answers_words(const store::HeadRecord& record) {
 
 void accept(store::StudyStore& store, const std::vector<store::Loss>& losses,
             const std::string& reason) {
-  std::set<int> sessions;
+  std::map<int, std::string> sessions;
   std::int64_t answers = 0;
   for (const store::Loss& loss : losses) {
-    if (loss.session > 0 && store.last_event(loss.session)) sessions.insert(loss.session);
+    if (loss.session > 0 && store.last_event(loss.session)) sessions[loss.session] = loss.what;
     answers = std::max(answers, loss.answers);
   }
-  const std::vector<int> concerned(sessions.begin(), sessions.end());
-  store.accept_loss({.reason = reason, .missing = words_of(losses), .answers = answers}, concerned,
+  store.accept_loss({.reason = reason, .missing = words_of(losses), .answers = answers}, sessions,
                     utc_now());
+}
+
+void warn_of_no_loss() {
+  spdlog::warn("--accept-loss: no head file knows of a loss, and none was recorded");
 }
 
 bool is_on_disk_of(const fs::path& file, const fs::path& database) {
@@ -108,7 +103,7 @@ void warn_if_on_one_disk(const store::HeadFiles& files, const store::StudyStore&
 void refuse_lost_database(const std::filesystem::path& database,
                           const store::StudyCommitment& commitment, const HeadOptions& options) {
   if (!options.accept_loss.empty()) return;
-  const store::HeadFiles files(database, signers_of(commitment), options.folder);
+  const store::HeadFiles files(database, store::head_signers(commitment), options.folder);
   const std::vector<store::HeadReading> readings = files.read();
   if (readings.empty()) return;
   throw StoreError(fmt::format(
@@ -121,15 +116,26 @@ void refuse_lost_database(const std::filesystem::path& database,
 
 void keep_heads(store::StudyStore& store, const fs::path& database, const Signer& signer,
                 const HeadOptions& options, HeadUse use) {
-  const fs::path own = database.string() + ".head";
-  if (use == HeadUse::if_there && !is_there(own)) return;
-  const store::HeadFiles files(database, signers_of(store.commitment()), options.folder);
+  const fs::path own = store::head_path_for(database);
+  if (use == HeadUse::if_there && !is_there(own)) {
+    if (!options.accept_loss.empty()) warn_of_no_loss();
+    if (!store.commitment().simulated && store.stations() == 0) {
+      spdlog::warn(
+          "{}: has no head file beside it, so that nobody can tell whether it lacks something",
+          one_line(database.string()));
+    }
+    return;
+  }
+  const store::HeadFiles files(database, store::head_signers(store.commitment()), options.folder);
   const std::vector<store::HeadReading> readings = files.read();
   std::vector<store::Loss> missing = losses_of(store, readings);
   if (readings.empty() && !store.sessions().empty()) {
-    missing.push_back({.session = 0,
-                       .what = "its head file " + one_line(own.string()) +
-                               " is gone, so that nobody can tell what else is missing"});
+    missing.push_back(
+        {.session = 0,
+         .what =
+             "its head file " + one_line(own.string()) +
+             " is gone, so that nobody can tell what else is missing (if there is a second head "
+             "file, name its folder with run --heads)"});
   }
   if (const fs::path second = second_that_is_gone(files, readings); !second.empty()) {
     missing.push_back(
@@ -142,14 +148,12 @@ void keep_heads(store::StudyStore& store, const fs::path& database, const Signer
                      "; restore the database and its -wal from where they are whole, or go on "
                      "without with --accept-loss REASON, which is recorded");
   }
-  if (missing.empty() && !options.accept_loss.empty()) {
-    spdlog::warn("--accept-loss: nothing is missing, and nothing was recorded");
-  }
+  if (missing.empty() && !options.accept_loss.empty()) warn_of_no_loss();
   if (!missing.empty()) {
     accept(store, missing, options.accept_loss);
     files.update(signer, [&](store::HeadRecord& record) {
       const std::int64_t count = record.count;
-      record = store::record_of(store, station_of(store));
+      record = store::record_of(store);
       record.count = count;
     });
   }
@@ -159,17 +163,15 @@ void keep_heads(store::StudyStore& store, const fs::path& database, const Signer
 }
 
 void make_head(const store::StudyStore& store, const fs::path& database, const Signer& signer) {
-  fs::path own = database;
-  own += ".head";
+  const fs::path own = store::head_path_for(database);
   std::error_code ignored;
   fs::remove(own, ignored);  // of a database that is gone
-  store::HeadFile(own).update(signer, [&](store::HeadRecord& record) {
-    record = store::record_of(store, station_of(store));
-  });
+  store::HeadFile(own).update(signer,
+                              [&](store::HeadRecord& record) { record = store::record_of(store); });
 }
 
 std::string head_words(const store::StudyStore& store) {
-  const store::HeadRecord now = store::record_of(store, station_of(store));
+  const store::HeadRecord now = store::record_of(store);
   return fmt::format("head {}, {} acknowledged", store::spoken_head(now), answers_words(now));
 }
 

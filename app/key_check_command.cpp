@@ -94,12 +94,15 @@ CheckedStudy checked_study(const KeyCheckArguments& arguments) {
   return {place, key_path, std::move(key)};
 }
 
-fs::path pack_of(const CheckedStudy& study, const design::StationKey& station) {
-  return is_there(station.pack_folder) ? station.pack_folder : study.place.pack;
+/// As `run` chooses it.
+/// \param named  with --pack; empty: nothing
+fs::path pack_of(const CheckedStudy& study, const design::StationKey& station,
+                 const fs::path& named) {
+  return named.empty() && is_there(station.pack_folder) ? station.pack_folder : study.place.pack;
 }
 
 StationFinding station_finding(const CheckedStudy& study, const std::string& name,
-                               const fs::path& file) {
+                               const fs::path& file, const fs::path& pack) {
   StationFinding finding{name, file, ""};
   try {
     const design::StationKey station = design::load_station_key(file);
@@ -107,7 +110,7 @@ StationFinding station_finding(const CheckedStudy& study, const std::string& nam
       throw VerificationError("is the file of station " + station.station.name);
     }
     finding.name = station.station.name;
-    session::require_opens(study.key, station, engine::Pack(pack_of(study, station)));
+    session::require_opens(study.key, station, engine::Pack(pack_of(study, station, pack)));
   } catch (const Error& error) {
     finding.fault = error.what();
   }
@@ -117,14 +120,14 @@ StationFinding station_finding(const CheckedStudy& study, const std::string& nam
 std::vector<StationFinding> station_findings(const KeyCheckArguments& arguments,
                                              const CheckedStudy& study) {
   if (!arguments.station_file.empty()) {
-    return {station_finding(study, arguments.station, arguments.station_file)};
+    return {station_finding(study, arguments.station, arguments.station_file, arguments.pack)};
   }
   std::vector<StationFinding> findings;
   for (const design::Station& station : study.key.stations) {
     if (!arguments.station.empty() && station.name != arguments.station) continue;
     const fs::path file = study.place.station(station.name);
     if (is_there(file) || !arguments.station.empty()) {
-      findings.push_back(station_finding(study, station.name, file));
+      findings.push_back(station_finding(study, station.name, file, arguments.pack));
     }
   }
   if (findings.empty()) {

@@ -32,6 +32,12 @@ store::StudyStore opened(const fs::path& database, const SigningFiles& files) {
   return store;
 }
 
+/// What was recorded is the new end of the file's chain.
+void print_head(const store::StudyStore& store, const fs::path& database) {
+  if (!is_there(store::head_path_for(database))) return;
+  print(head_words(store) + "; write it on the day sheet\n");
+}
+
 void add_signing_options(CLI::App& command, SigningFiles& files) {
   command.add_option("--station-file", files.station,
                      "This station's file (default: the one beside the database, or here)");
@@ -88,6 +94,7 @@ int exclude(const PeopleArguments& arguments) {
   }
   store.exclude(session, utc_now(), arguments.reason);
   print(place_of(arguments) + ": excluded (session " + std::to_string(session) + ")\n");
+  print_head(store, arguments.database);
   return 0;
 }
 
@@ -97,6 +104,7 @@ int replace(const PeopleArguments& arguments) {
   store.replace(row.session, arguments.with, utc_now(), arguments.reason);
   print(place_of(arguments) + ": replaced; " + arguments.with + " inherits enrolment " +
         std::to_string(row.enrolment) + "\n");
+  print_head(store, arguments.database);
   return 0;
 }
 
@@ -104,6 +112,7 @@ int note(const PeopleArguments& arguments) {
   store::StudyStore store = opened(arguments.database, arguments.files);
   store.note(session_of(store, arguments), utc_now(), arguments.deviation, arguments.text);
   print(place_of(arguments) + ": noted\n");
+  print_head(store, arguments.database);
   return 0;
 }
 
@@ -271,6 +280,7 @@ int close(const CloseArguments& arguments) {
                                 open));
   }
   print(database.string() + ": collection is closed\n");
+  print_head(store, database);
   return 0;
 }
 

@@ -9,11 +9,11 @@
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
 
-#include <array>
 #include <optional>
 #include <span>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <spdlog/spdlog.h>
 
@@ -62,6 +62,8 @@ std::optional<design::StationKey> station_key_in(std::span<const std::filesystem
       try {
         design::StationKey key = design::load_station_key(entry.path());
         if (key.signer().public_half() == commitment.station->key) return key;
+      } catch (const UsageError&) {
+        throw;  // a question for a passphrase was broken off
       } catch (const Error& error) {
         damaged += std::string("; ") + error.what();
       }
@@ -77,8 +79,12 @@ Signer signer_for(const store::StudyStore& store, const std::filesystem::path& d
   if (!files.key.empty() || is_there(key_path_for(database, {}))) {
     return key_of_database(store, database, files.key).signer();
   }
-  const std::array folders = {database.has_parent_path() ? database.parent_path() : ".",
-                              std::filesystem::path(".")};
+  std::vector<std::filesystem::path> folders = {"."};
+  std::error_code ignored;
+  if (database.has_parent_path() &&
+      !std::filesystem::equivalent(database.parent_path(), ".", ignored)) {
+    folders.insert(folders.begin(), database.parent_path());
+  }
   std::string damaged;
   if (const auto key = station_key_in(folders, store.commitment(), damaged)) {
     return key->signer();

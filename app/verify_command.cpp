@@ -7,6 +7,8 @@
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
 
+#include <cctype>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -18,6 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kSpokenDigits = 16;
+constexpr std::size_t kHashDigits = 64;
+
 struct VerifyArguments {
   fs::path database;
   fs::path key;
@@ -27,14 +32,17 @@ struct VerifyArguments {
   bool json = false;
 };
 
-std::optional<Digest> head_of(const VerifyArguments& arguments) {
-  if (arguments.head.empty()) return std::nullopt;
-  const std::optional<Digest> head = digest_from_hex(arguments.head);
-  if (!head) {
-    throw UsageError(
-        "--head: is not a hash of 64 hexadecimal digits; give one that verify printed");
+/// The digits of a head, in lower case and without the blanks between groups.
+std::string head_of(const VerifyArguments& arguments) {
+  std::string head;
+  for (const char digit : arguments.head) {
+    if (digit != ' ') head += static_cast<char>(std::tolower(static_cast<unsigned char>(digit)));
   }
-  return head;
+  const bool is_hex = head.find_first_not_of("0123456789abcdef") == std::string::npos;
+  const bool is_long_enough = head.size() >= kSpokenDigits && head.size() <= kHashDigits;
+  if (head.empty() || (is_hex && is_long_enough)) return head;
+  throw UsageError(
+      "--head: is none; give the 16 digits of a day sheet, or the 64 that verify printed");
 }
 
 /// The key file; empty for a study on a server, which has none beside it.
@@ -44,7 +52,7 @@ fs::path key_for(const VerifyArguments& arguments) {
 }
 
 int verify(const VerifyArguments& arguments) {
-  const std::optional<Digest> head = head_of(arguments);
+  const std::string head = head_of(arguments);
   const analysis::StudyFiles files{.database = arguments.database,
                                    .key = key_for(arguments),
                                    .key_named = !arguments.key.empty(),
@@ -69,8 +77,10 @@ void add_verify_command(CLI::App& program, Action& action) {
   add_key_option(*command, arguments->key, "Key of the study (default: DB.key, if it exists)");
   command->add_option("--pack", arguments->pack,
                       "Pack of the study (default: the one that the key names)");
-  command->add_option("--head", arguments->head,
-                      "A former head of the file's chain, which the chain must still contain");
+  command->add_option(
+      "--head", arguments->head,
+      "A former head of the file's chain, of a day sheet for instance, which the chain must still "
+      "contain");
   command->add_option("--head-file", arguments->heads,
                       "A head file beside DB.head, whose knowledge the database must have");
   add_json_flag(*command, arguments->json);

@@ -186,4 +186,12 @@ MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
   return *this;
 }
 
+std::filesystem::path beside_database(const std::filesystem::path& database, const char* suffix) {
+  std::error_code error;
+  const bool is_link = std::filesystem::is_symlink(database, error);
+  std::filesystem::path path = is_link ? std::filesystem::weakly_canonical(database) : database;
+  path += suffix;
+  return path;
+}
+
 }  // namespace touchtrial

@@ -62,4 +62,8 @@ class MappedFile {
   std::size_t size_ = 0;
 };
 
+/// The file of this name beside a database, beside the one that a link leads to if it is a link.
+[[nodiscard]] std::filesystem::path beside_database(const std::filesystem::path& database,
+                                                    const char* suffix);
+
 }  // namespace touchtrial

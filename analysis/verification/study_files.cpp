@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <system_error>
 #include <vector>
 
@@ -106,18 +107,34 @@ void put(Verification& verification, const char* name, const Opened<File>& opene
   if (check != verification.checks.end()) *check = {name, opened.state, opened.why};
 }
 
+/// The second head file that a database's own names; empty: none.
+fs::path second_head(const fs::path& own, std::span<const PublicKey> signers) {
+  const auto known = store::HeadFile(own).read(signers);
+  if (!known || known->also.empty()) return {};
+  return fs::path(known->also) / own.filename();
+}
+
 /// What the database lacks and its head files know. Made only where there are head files.
 void check_heads(const store::StudyStore& store, const StudyFiles& files,
                  Verification& verification) {
   std::vector<fs::path> heads = files.heads;
-  const fs::path own = files.database.string() + ".head";
+  const fs::path own = store::head_path_for(files.database);
   if (is_there(own)) heads.insert(heads.begin(), own);
-  if (heads.empty()) return;
+  if (heads.empty()) {
+    if (!verification.simulated) verification.notes.emplace_back("there is no head file beside it");
+    return;
+  }
   Check check{"heads", CheckState::passed, "the database has all that its head files know"};
   try {
-    const store::StudyCommitment& commitment = store.commitment();
-    std::vector<PublicKey> signers = {commitment.investigator};
-    if (commitment.station) signers.push_back(commitment.station->key);
+    const std::vector<PublicKey> signers = store::head_signers(store.commitment());
+    if (const fs::path second = second_head(own, signers); !second.empty()) {
+      if (is_there(second)) {
+        heads.push_back(second);
+      } else {
+        verification.notes.push_back("the second head file " + one_line(second.string()) +
+                                     " is not there, and was not compared");
+      }
+    }
     for (const fs::path& head : heads) {
       const auto found = store::HeadFile(head).reading(signers);
       if (!found) throw VerificationError("there is no " + one_line(head.string()));
@@ -150,7 +167,7 @@ Verification of_damaged(const store::DamagedStore& error) {
 
 }  // namespace
 
-Verification verify_files(const StudyFiles& files, const std::optional<Digest>& head,
+Verification verify_files(const StudyFiles& files, const std::string& head,
                           const StudyOpener& open) try {
   const store::StudyStore store =
       open ? open(files.database)

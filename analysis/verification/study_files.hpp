@@ -31,7 +31,7 @@ using StudyOpener = std::function<store::StudyStore(const std::filesystem::path&
 /// \param head  as for verify_study
 /// \param open  opens the database for reading; empty: StudyStore::open
 /// \throws StoreError if the database is missing, is not one of Touchtrial, or has a newer schema
-[[nodiscard]] Verification verify_files(const StudyFiles& files, const std::optional<Digest>& head,
+[[nodiscard]] Verification verify_files(const StudyFiles& files, const std::string& head,
                                         const StudyOpener& open = {});
 
 }  // namespace touchtrial::analysis

@@ -43,10 +43,11 @@ struct Verification {
 /// key); head, if one is given. The result reveals nothing about outcomes, so a running study may
 /// be verified.
 /// \param key,pack  null: the checks that need it are not made
-/// \param head  a hash that was once the end of the file's chain and must still be on the chain
+/// \param head  a hash, or its first digits, that was once the end of the file's chain and must
+/// still
+///   be on the chain; empty: none
 [[nodiscard]] Verification verify_study(const store::StudyStore& store, const design::StudyKey* key,
-                                        const engine::Pack* pack,
-                                        const std::optional<Digest>& head = {});
+                                        const engine::Pack* pack, const std::string& head = {});
 
 /// One JSON object, indented, ending with a line feed.
 [[nodiscard]] std::string verification_json(const Verification& verification);

@@ -162,7 +162,9 @@ store::StudyStore run_database_for(const RunOptions& options, const RunStudy& st
   store::StudyStore store = stored_study(options, study);
   keep_heads(store, options.database, study.key.signer(), options.heads, HeadUse::required);
   warn_of_clock(options, store);
-  if (!options.is_simulated()) print(head_words(store) + ", as on the last day sheet\n");
+  if (!options.is_simulated() && !store.sessions().empty()) {
+    print(head_words(store) + "; compare it with the last day sheet\n");
+  }
   return store;
 }
 

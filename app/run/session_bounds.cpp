@@ -21,6 +21,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
 namespace {
@@ -251,6 +252,10 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
         "{}: participant {} has withdrawn (session {}), and takes no further part; give "
         "another participant id",
         one_line(options.database.string()), row.participant, row.session));
+  }
+  if (row.excluded) {
+    spdlog::warn("{}: participant {} was excluded (session {}), and enters no outcomes",
+                 one_line(options.database.string()), row.participant, row.session);
   }
   const bool may_be_restarted =
       options.on_existing == OnExisting::restart && row.state == store::SessionState::stopped;

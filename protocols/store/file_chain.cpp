@@ -41,6 +41,9 @@ StudyState state_of_chain(std::span<const Event> chain) {
 }
 
 void FileChain::add(const Event& event) {
+  if (event.kind == EventKind::session_closed || event.kind == EventKind::study_unblinded) {
+    seen_by_.push_back(event);
+  }
   if ((event.kind == EventKind::study_committed) != !commitment_) {
     throw EventFault(event, commitment_ ? "the study is committed twice"
                                         : "the first event does not commit the study");
@@ -54,9 +57,7 @@ void FileChain::add(const Event& event) {
     case EventKind::session_closed:
       return close_session(event);
     case EventKind::participant_excluded:
-      static_cast<void>(body_of(event, participant_from_json));
-      known(event).excluded_at = event.sequence;
-      return;
+      return exclude(event);
     case EventKind::participant_withdrawn:
       return withdraw(event);
     case EventKind::participant_replaced:
@@ -112,6 +113,15 @@ void FileChain::close_session(const Event& event) {
   session.closed_at = event.sequence;
 }
 
+/// Nobody can pass an exclusion off as one from before a look.
+void FileChain::exclude(const Event& event) {
+  const ParticipantBody body = body_of(event, participant_from_json);
+  known(event).excluded_at = event.sequence;
+  if (body.after_outcomes || !state_of_chain(seen_by_).shows(body.session)) return;
+  throw EventFault(event, "hides that the outcomes of session " + std::to_string(body.session) +
+                              " had been seen before it was excluded");
+}
+
 void FileChain::withdraw(const Event& event) {
   const WithdrawalBody body = body_of(event, withdrawal_from_json);
   SessionOnFile& session = known(event);
@@ -123,8 +133,18 @@ void FileChain::withdraw(const Event& event) {
   if (body.kept == Kept::nothing && !session.erased_at) {
     refuse("loses its safety record before its outcomes");
   }
+  if (body.kept == Kept::nothing && session.safety_erased_at)
+    refuse("loses its safety record twice");
   session.withdrawn_at = event.sequence;
-  if (body.kept == Kept::safety_record) session.erased_at = event.sequence;
+  if (body.kept == Kept::nothing && !commitment_->simulated &&
+      event.at < session.erased_time + std::chrono::hours(24) * 365 *
+                                           std::int64_t{commitment_->safety_record_years}) {
+    refuse("loses its safety record before its time");
+  }
+  if (body.kept == Kept::safety_record) {
+    session.erased_at = event.sequence;
+    session.erased_time = event.at;
+  }
   if (body.kept == Kept::nothing) session.safety_erased_at = event.sequence;
 }
 

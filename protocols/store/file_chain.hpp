@@ -6,6 +6,7 @@
 #include "protocols/store/payload.hpp"
 #include "protocols/store/sealing.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -62,7 +63,9 @@ struct SessionOnFile {
   std::optional<std::int64_t> closed_at;
   std::optional<std::int64_t> excluded_at;
   std::optional<std::int64_t> withdrawn_at;
-  std::optional<std::int64_t> erased_at;         ///< the participant's key was destroyed
+  std::optional<std::int64_t> erased_at;
+  std::chrono::nanoseconds erased_time{};        ///< UTC, if erased_at is there         ///< the
+                                                 ///< participant's key was destroyed
   std::optional<std::int64_t> safety_erased_at;  ///< the safety key was destroyed
   std::optional<std::int64_t> replaced_at;
 
@@ -99,6 +102,7 @@ class FileChain {
  private:
   void open_session(const Event& event);
   void close_session(const Event& event);
+  void exclude(const Event& event);
   void withdraw(const Event& event);
   void replace(const Event& event);
   [[nodiscard]] SessionOnFile& known(const Event& event);
@@ -110,6 +114,7 @@ class FileChain {
   /// Of sessions that nobody has replaced.
   std::set<std::string> participants_;
   std::set<int> enrolments_;
+  std::vector<Event> seen_by_;  ///< what decides whose outcomes were seen: ends and looks
   bool closed_ = false;
 };
 

@@ -277,7 +277,9 @@ HeadSlots read_slots(const LockedHead& file, std::span<const PublicKey> signers,
   if (!first.record && !second.record) {
     refuse_head(path, "of its two copies, the first " + first.fault + ", the second " +
                           second.fault +
-                          "; if there is a second head file, copy it over this one, else compare "
+                          "; if it is another study's, name another folder; if there is another "
+                          "head file, copy it over "
+                          "this one, else compare "
                           "the database with the last day sheet and move this file away");
   }
   const bool second_is_newer =
@@ -395,10 +397,21 @@ void HeadRecord::know_answers(std::int64_t answers) {
   acknowledged = std::max(acknowledged, answers);
 }
 
-HeadRecord record_of(const StudyStore& store, const std::string& station) {
+std::filesystem::path head_path_for(const std::filesystem::path& database) {
+  return beside_database(database, ".head");
+}
+
+std::vector<PublicKey> head_signers(const StudyCommitment& commitment) {
+  std::vector<PublicKey> signers = {commitment.investigator};
+  if (commitment.station) signers.push_back(commitment.station->key);
+  return signers;
+}
+
+HeadRecord record_of(const StudyStore& store) {
+  const auto& station = store.commitment().station;
   const std::optional<Event> first = store.event_at(0, 0);
   HeadRecord record{.study_id = store.commitment().study_id,
-                    .station = station,
+                    .station = station ? station->name : "",
                     .database = first ? first->hash : Digest{},
                     .count = 0,
                     .file = store.file_head(),
@@ -491,14 +504,14 @@ bool HeadFile::create(const Signer& signer, const HeadChange& change) const {
 HeadFiles::HeadFiles(const std::filesystem::path& database, std::vector<PublicKey> signers,
                      std::optional<std::filesystem::path> also)
     : signers_(std::move(signers)) {
-  files_.emplace_back(database.string() + ".head");
+  files_.emplace_back(head_path_for(database));
   if (!also) {
     const std::optional<HeadRecord> own = files_.front().read(signers_);
     also = own ? own->also : std::string();
   }
   if (also->empty()) return;
   require_second_folder(*also, database);
-  also_ = std::filesystem::absolute(*also).string();
+  also_ = std::filesystem::weakly_canonical(*also).string();
   files_.emplace_back(std::filesystem::path(also_) / files_.front().path().filename());
 }
 
@@ -540,7 +553,7 @@ void HeadFiles::update(const Signer& signer, const HeadChange& change) const {
 }
 
 std::vector<Loss> losses(const HeadRecord& known, const StudyStore& store) {
-  const HeadRecord now = record_of(store, known.station);
+  const HeadRecord now = record_of(store);
   if (!know_one_database(known, now)) {
     return {{.session = 0,
              .what = "the database is not the one that the head file knows: it was made anew, its "
@@ -563,13 +576,7 @@ std::vector<Loss> losses(const HeadRecord& known, const StudyStore& store) {
 }
 
 std::string spoken_head(const HeadRecord& record) {
-  const Digest digest = FieldHasher()
-                            .add("touchtrial spoken head 1")
-                            .add(record.file.length)
-                            .add(ByteView(record.file.hash))
-                            .add(record.acknowledged)
-                            .finish();
-  const std::string digits = to_hex(digest);
+  const std::string digits = to_hex(record.file.hash);
   return digits.substr(0, 4) + " " + digits.substr(4, 4) + " " + digits.substr(8, 4) + " " +
          digits.substr(12, 4);
 }

@@ -9,6 +9,7 @@
 
 #include "core/public_keys.hpp"
 #include "protocols/store/event.hpp"
+#include "protocols/store/payload.hpp"
 
 #include <chrono>
 #include <cstddef>
@@ -50,7 +51,13 @@ struct HeadRecord {
 
 /// What a head file should know of a database as it is now: for its first record, and after a loss
 /// was accepted. `count` and `also` are left out.
-[[nodiscard]] HeadRecord record_of(const StudyStore& store, const std::string& station);
+[[nodiscard]] HeadRecord record_of(const StudyStore& store);
+
+/// `<database>.head`.
+[[nodiscard]] std::filesystem::path head_path_for(const std::filesystem::path& database);
+
+/// Whose signatures count on a head file.
+[[nodiscard]] std::vector<PublicKey> head_signers(const StudyCommitment& commitment);
 
 /// Changes a record. It may be called more than once, each time with a record to change. `update`
 /// sets `count` by itself.
@@ -150,8 +157,8 @@ struct Loss {
 /// \throws StoreError if the database cannot be read
 [[nodiscard]] std::vector<Loss> losses(const HeadRecord& known, const StudyStore& store);
 
-/// 16 hexadecimal digits in groups of four, computed from the end of the file's chain and the
-/// number of acknowledged answers, for people to write down and compare: "0f3a 91c2 77de 4b08".
+/// The first 16 digits of the file chain's hash in groups of four, for people to write down and
+/// compare: "0f3a 91c2 77de 4b08". `verify --head` takes them.
 [[nodiscard]] std::string spoken_head(const HeadRecord& record);
 
 }  // namespace touchtrial::store

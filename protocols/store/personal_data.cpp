@@ -73,7 +73,7 @@ auto translated(const std::filesystem::path& path, Work&& work) {
 }  // namespace
 
 std::filesystem::path personal_data_path(const std::filesystem::path& database) {
-  return database.string() + ".personal";
+  return beside_database(database, ".personal");
 }
 
 struct PersonalData::Impl {

@@ -301,7 +301,14 @@ void StoredStudy::check_replaced(const SessionRow& row) const {
   if (!row.replaced_by.empty()) {
     refuse(name + " was already replaced by participant " + row.replaced_by);
   }
-  if (row.excluded || row.withdrawn || row.state == SessionState::stopped) return;
+  // A complete session whose data are kept is analysed, and its place is not free.
+  const bool left_early = row.withdrawn && row.state != SessionState::completed;
+  if (row.excluded || row.erased || left_early || row.state == SessionState::stopped) return;
+  if (row.withdrawn) {
+    refuse(name +
+           " is complete, and its data are kept and analysed; exclude it first if somebody "
+           "is to take its place");
+  }
   refuse(name + (row.state == SessionState::open ? " is still open" : " is complete") +
          "; who is replaced must have been stopped, excluded or withdrawn first");
 }

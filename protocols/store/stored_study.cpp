@@ -122,19 +122,17 @@ void StoredStudy::sign_with(const Signer& signer) {
 
 void StoredStudy::keep_heads(HeadKeeper keeper, HeadRecord now) {
   heads_ = std::move(keeper);
-  first_record_ = std::move(now);
+  known_ = std::move(now);
 }
 
-void StoredStudy::tell_heads(const HeadNews& news) const {
+void StoredStudy::tell_heads(const HeadNews& news) {
   if (!heads_) return;
+  known_.acknowledged += news.answers;
   const auto [file, session] = database_.run(
       [&] { return std::pair(head(0), news.session == 0 ? ChainHead{} : head(news.session)); });
   heads_([&](HeadRecord& record) {
-    if (record.count == 0) {
-      record = first_record_;
-    } else {
-      record.acknowledged += news.answers;
-    }
+    if (record.count == 0) record = known_;
+    record.know_answers(known_.acknowledged);
     record.know_file(file);
     if (news.ended) {
       record.sessions.erase(news.session);

@@ -66,7 +66,7 @@ class StoredStudy {
   /// \param now  record_of this database
   void keep_heads(HeadKeeper keeper, HeadRecord now);
   /// Tells the keeper of heads, if there is one, what was committed.
-  void tell_heads(const HeadNews& news) const;
+  void tell_heads(const HeadNews& news);
   /// The same for an event about a person, whose texts are sealed.
   /// \param body  whole
   void append_about(int session, EventKind kind, std::chrono::nanoseconds at,
@@ -133,7 +133,7 @@ class StoredStudy {
   mutable std::optional<StudyCommitment> commitment_;
   std::optional<Signer> signer_;
   HeadKeeper heads_;
-  HeadRecord first_record_;  ///< for a head file that is not there
+  HeadRecord known_;  ///< for a head file that is not there, and the answers so far
 };
 
 /// The durable sink: every event, or group of events, is one transaction.

@@ -107,7 +107,14 @@ void StudyStore::fill_new(const std::filesystem::path& draft, const StudyCommitm
 StudyStore StudyStore::open(const std::filesystem::path& path, Access access) {
   auto impl = std::make_unique<Impl>(open_current(
       path, access == Access::read_write ? Database::Mode::read_write : Database::Mode::read_only));
-  impl->run([&] { check_tables(impl->database()); });
+  impl->run([&] {
+    check_tables(impl->database());
+    if (access == Access::read_only) return;
+    // A trigger of somebody else's could swallow what is to be recorded.
+    if (const auto differs = schema_fault(impl->database())) {
+      impl->study.refuse(*differs + "; nothing is recorded in it, run `touchtrial verify`");
+    }
+  });
   return StudyStore(std::move(impl));
 }
 
@@ -126,8 +133,7 @@ void StudyStore::sign_with(const Signer& signer) {
 }
 
 void StudyStore::keep_heads(HeadKeeper keeper) {
-  const std::optional<StationIdentity>& station = commitment().station;
-  HeadRecord now = record_of(*this, station ? station->name : std::string());
+  HeadRecord now = record_of(*this);
   impl_->study.keep_heads(std::move(keeper), std::move(now));
   impl_->study.tell_heads({});
 }
@@ -372,16 +378,16 @@ void StudyStore::note(int session, std::chrono::nanoseconds at, const std::strin
   });
 }
 
-void StudyStore::accept_loss(const LossBody& loss, std::span<const int> sessions,
+void StudyStore::accept_loss(const LossBody& loss, const std::map<int, std::string>& sessions,
                              std::chrono::nanoseconds at) {
   impl_->change([&] {
     impl_->study.require_reason(loss.reason, "going on without what is lost");
     impl_->study.append_to_file(EventKind::loss_accepted, at, to_json(loss));
-    for (const int session : sessions) {
+    for (const auto& [session, what] : sessions) {
       static_cast<void>(impl_->study.session(session));
-      impl_->study.append_to_file(
-          EventKind::participant_noted, at,
-          to_json(NoteBody{.session = session, .code = "answers-lost", .text = loss.missing}));
+      impl_->study.append_about(
+          session, EventKind::participant_noted, at,
+          to_json(NoteBody{.session = session, .code = "answers-lost", .text = what}));
     }
   });
 }

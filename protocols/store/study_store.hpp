@@ -11,6 +11,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -186,7 +187,8 @@ class StudyStore {
   /// Records that the study goes on without what the database lost, and notes it as a deviation
   /// "answers-lost" of the sessions concerned.
   /// \throws StoreError if there is no such session, or the reason is empty
-  void accept_loss(const LossBody& loss, std::span<const int> sessions,
+  /// \param sessions  what each of them lost, sealed
+  void accept_loss(const LossBody& loss, const std::map<int, std::string>& sessions,
                    std::chrono::nanoseconds at);
 
   /// A session's keys, as far as they were not destroyed.

@@ -135,8 +135,8 @@ std::string AttackedStudy::found_without_key() const {
 }
 
 std::string AttackedStudy::found_by_head(const Digest& head) const {
-  return failed_checks(
-      analysis::verify_files({.database = database(), .key = {}, .heads = {}, .pack = {}}, head));
+  return failed_checks(analysis::verify_files(
+      {.database = database(), .key = {}, .heads = {}, .pack = {}}, to_hex(head)));
 }
 
 Forgery::Forgery(const fs::path& database) : path(database) {

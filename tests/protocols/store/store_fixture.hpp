@@ -242,9 +242,15 @@ inline void tamper(StoredFixture& study, const std::string& sql) {
     raw.exec("PRAGMA foreign_keys = OFF; PRAGMA synchronous = OFF");
     without_triggers(raw, [&] { raw.exec(sql); });
   }
-  study.store = store::StudyStore::open(study.path, store::StudyStore::Access::read_write);
-  // What was tampered with may be who signs.
-  static_cast<void>(refusal_of([&] { study.store->sign_with(investigator()); }));
+  // What was tampered with may be the schema, or who signs.
+  using Access = store::StudyStore::Access;
+  const std::string refused = refusal_of([&] {
+    study.store = store::StudyStore::open(study.path, Access::read_write);
+    study.store->sign_with(investigator());
+  });
+  if (!refused.empty() && !study.store) {
+    study.store = store::StudyStore::open(study.path, Access::read_only);
+  }
 }
 
 }  // namespace touchtrial::fixture
