@@ -146,7 +146,8 @@ HeadSlot read_slot(std::string bytes, std::span<const PublicKey> signers) {
   HeadSlot slot{.bytes = std::move(bytes), .record = {}, .fault = "is not whole"};
   const auto parts = parts_of_slot(slot.bytes);
   if (!parts) return slot;
-  const auto& [text, signature] = *parts;
+  const std::string_view text = parts->first;
+  const Bytes& signature = parts->second;
   const std::string statement = head_statement(text);
   slot.fault = "is altered, or signed by none of this study's keys";
   if (std::ranges::none_of(signers, [&](const PublicKey& signer) {

@@ -128,16 +128,16 @@ void StoredStudy::keep_heads(HeadKeeper keeper, HeadRecord now) {
 void StoredStudy::tell_heads(const HeadNews& news) {
   if (!heads_) return;
   known_.acknowledged += news.answers;
-  const auto [file, session] = database_.run(
+  const std::pair heads = database_.run(
       [&] { return std::pair(head(0), news.session == 0 ? ChainHead{} : head(news.session)); });
   heads_([&](HeadRecord& record) {
     if (record.count == 0) record = known_;
     record.know_answers(known_.acknowledged);
-    record.know_file(file);
+    record.know_file(heads.first);
     if (news.ended) {
       record.sessions.erase(news.session);
     } else if (news.session != 0) {
-      record.know_session(news.session, session);
+      record.know_session(news.session, heads.second);
     }
   });
 }
