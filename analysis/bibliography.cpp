@@ -7,6 +7,10 @@ namespace touchtrial::analysis {
 namespace {
 
 constexpr std::array kPublications = {
+    Publication{Source::benjamini_hochberg, "benjamini1995",
+                "Benjamini Y, Hochberg Y (1995). Controlling the false discovery rate: a practical "
+                "and powerful approach to multiple testing. Journal of the Royal Statistical "
+                "Society B 57(1), 289-300."},
     Publication{
         Source::brown_cai_dasgupta, "brown2001",
         "Brown LD, Cai TT, DasGupta A (2001). Interval estimation for a binomial proportion. "
@@ -41,6 +45,9 @@ constexpr std::array kPublications = {
     Publication{Source::hyndman_fan, "hyndman1996",
                 "Hyndman RJ, Fan Y (1996). Sample quantiles in statistical packages. The American "
                 "Statistician 50(4), 361-365."},
+    Publication{Source::ince, "ince2021",
+                "Ince RAA, Paton AT, Kay JW, Schyns PG (2021). Bayesian inference of population "
+                "prevalence. eLife 10, e62461."},
     Publication{Source::kuhn, "kuhn1955",
                 "Kuhn HW (1955). The Hungarian method for the assignment problem. Naval Research "
                 "Logistics Quarterly 2(1-2), 83-97."},
@@ -59,6 +66,11 @@ constexpr std::array kPublications = {
     Publication{Source::miller, "miller1955",
                 "Miller GA (1955). Note on the bias of information estimates. In: Quastler H (ed), "
                 "Information Theory in Psychology, 95-100. Free Press."},
+    Publication{Source::miller_jackknife, "miller1974",
+                "Miller RG (1974). The jackknife: a review. Biometrika 61(1), 1-15."},
+    Publication{Source::paule_mandel, "paule1982",
+                "Paule RC, Mandel J (1982). Consensus values and weighting factors. Journal of "
+                "Research of the National Bureau of Standards 87(5), 377-385."},
     Publication{
         Source::phipson_smyth, "phipson2010",
         "Phipson B, Smyth GK (2010). Permutation p-values should never be zero: calculating "
@@ -80,6 +92,9 @@ constexpr std::array kPublications = {
         "Townsend JT, Landon DE (1982). An experimental and theoretical investigation of the "
         "constant-ratio rule and other models of visual letter confusion. Journal of "
         "Mathematical Psychology 25(2), 119-162."},
+    Publication{Source::viechtbauer, "viechtbauer2007",
+                "Viechtbauer W (2007). Confidence intervals for the amount of heterogeneity in "
+                "meta-analysis. Statistics in Medicine 26(1), 37-52."},
     Publication{Source::wilson, "wilson1927",
                 "Wilson EB (1927). Probable inference, the law of succession, and statistical "
                 "inference. Journal of the American Statistical Association 22(158), 209-212."},

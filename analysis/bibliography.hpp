@@ -9,6 +9,7 @@ namespace touchtrial::analysis {
 
 /// A publication that a report may cite.
 enum class Source {
+  benjamini_hochberg,
   brown_cai_dasgupta,
   clopper_pearson,
   cochran,
@@ -19,16 +20,20 @@ enum class Source {
   hesterberg,
   holm,
   hyndman_fan,
+  ince,
   kuhn,
   lin,
   luce,
   mantel_haenszel,
   miller,
+  miller_jackknife,
+  paule_mandel,
   phipson_smyth,
   robins_breslow_greenland,
   student,
   tan_reed_durlach,
   townsend_landon,
+  viechtbauer,
   wilson,
 };
 

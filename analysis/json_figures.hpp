@@ -14,6 +14,8 @@
 
 namespace touchtrial::analysis {
 
+struct StudyHead;
+
 /// The number, or null if it does not exist or is not finite.
 [[nodiscard]] nlohmann::ordered_json figure_json(std::optional<double> figure);
 
@@ -44,6 +46,8 @@ void put_state(nlohmann::ordered_json& object, const store::StudyState& state, b
 /// How sessions were conducted: prescription, flow, deviations and sessions.
 [[nodiscard]] nlohmann::ordered_json collection_object(const Collection& collection);
 [[nodiscard]] nlohmann::ordered_json registration_object(const design::Registration& registration);
+/// Adds what was registered, the answer, the prevalence, looks at outcomes and departures.
+void put_registered(nlohmann::ordered_json& object, const StudyHead& head);
 /// Every publication behind the report's statistics, by its key.
 [[nodiscard]] nlohmann::ordered_json references_object();
 /// Adds how a section's numbers were computed.

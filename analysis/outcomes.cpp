@@ -137,6 +137,7 @@ Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& k
   require_sealed_ends(store, key);
   outcomes.collection = load_collection(store, &key);
   outcomes.visual = outcomes.collection.visual;
+  outcomes.looked = look_record(store, key.study.registration);
   std::map<int, SessionOutcome> sessions;
   for (const store::SessionRow& row : rows) {
     if (!shows(row)) {

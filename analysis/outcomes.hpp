@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/collection.hpp"
+#include "analysis/looks.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/study_store.hpp"
 
@@ -54,6 +55,7 @@ struct Outcomes {
   int sessions_unseen = 0;
   std::vector<TrialOutcome> trials;  ///< by session and trial, without erased sessions
   design::Study design;              ///< the study file, which has the rule for drawing orders
+  LookRecord looked;                 ///< who looked at outcomes, and what was decided after that
   Collection collection;
 };
 

@@ -25,6 +25,9 @@ StudyHead head_of(const Outcomes& outcomes) {
   head.collection = outcomes.collection;
   head.state = outcomes.state;
   head.registration = outcomes.design.registration;
+  head.looks = outcomes.looked.looks;
+  head.departures = departures_of(outcomes);
+  head.course = course_of(outcomes, head.participants);
   return head;
 }
 
@@ -38,6 +41,7 @@ std::string framed_json(const StudyHead& head, const std::string& members) {
   object["warnings"] = head.warnings;
   object["registration"] = registration_object(head.registration);
   object["collection"] = collection_object(head.collection);
+  put_registered(object, head);
   return json_text(object);
 }
 

@@ -3,7 +3,10 @@
 
 #include "analysis/collection.hpp"
 #include "analysis/outcomes.hpp"
+#include "analysis/registered.hpp"
+#include "analysis/statistics/prevalence.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,18 +20,23 @@ struct StudyHead {
   int participants = 0;  ///< participants with a session that counts
   int trials = 0;        ///< trials that count
   std::vector<std::string> classes;
-  Collection collection;              ///< how it was collected
-  store::StudyState state{};          ///< unblinded; an interim look if not closed
-  design::Registration registration;  ///< the registration deposited before collection
-  std::vector<std::string> warnings;  ///< how a reader could misread the numbers
+  Collection collection;                   ///< how it was collected
+  store::StudyState state{};               ///< unblinded; an interim look if not closed
+  design::Registration registration;       ///< the registration deposited before collection
+  std::vector<std::string> warnings;       ///< how a reader could misread the numbers
+  std::vector<Look> looks{};               ///< at outcomes, by whomever
+  std::vector<std::string> departures{};   ///< departures_of
+  StudyCourse course{};                    ///< numbers of people and looks
+  std::optional<PrimaryResult> primary{};  ///< if the protocol has a question that decides
+  std::optional<Prevalence> prevalence{};  ///< if each participant takes a test against chance
 };
 
-/// Fills in everything except the warnings.
+/// Fills in everything except the warnings, `primary` and `prevalence`.
 [[nodiscard]] StudyHead head_of(const Outcomes& outcomes);
 
 /// The JSON object of a report: the head's members, the protocol's own members, then warnings,
-/// registration and collection. Indented, ending with a line feed.
-/// \param members  the protocol's members, as a JSON object
+/// registration, collection, and what was registered with its answer. Indented, ending with a line
+/// feed. \param members  the protocol's members, as a JSON object
 [[nodiscard]] std::string framed_json(const StudyHead& head, const std::string& members);
 
 }  // namespace touchtrial::analysis

@@ -51,8 +51,8 @@ planning::FreeParameters free_of(const FitArguments& arguments) {
   const auto is_free = [&](const char* name) {
     return std::ranges::find(arguments.fixed, name) == arguments.fixed.end();
   };
-  return {is_free("weber"), is_free("lapse"), is_free("position"), is_free("classes"),
-          is_free("swaps")};
+  return {is_free("weber"),   is_free("lapse"), is_free("position"),
+          is_free("classes"), is_free("swaps"), is_free("spread")};
 }
 
 engine::Pack pack_for(const store::StudyStore& store, const design::StudyKey& key,
@@ -254,10 +254,11 @@ void add_fit_command(CLI::App& program, Action& action) {
   command
       ->add_option(
           "--fix", arguments->fixed,
-          "Parameters that keep the subject model's values: weber, lapse, position, classes, swaps")
+          "Parameters that keep the subject model's values: weber, lapse, position, classes, "
+          "swaps, spread")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"weber", "lapse", "position", "classes", "swaps"}));
+      ->check(CLI::IsMember({"weber", "lapse", "position", "classes", "swaps", "spread"}));
   CLI::Option* accuracies =
       command
           ->add_option("--accuracies", arguments->accuracies,

@@ -310,6 +310,7 @@ int power(PowerArguments arguments) {
   const planning::Shard shard =
       arguments.has_shard ? shard_named(arguments.shard) : planning::Shard{};
   const PowerPreparation prepared(arguments, design::load_study(arguments.study));
+  plan.level = prepared.test.alpha;
   planning::PowerProgress progress = planning::new_progress(prepared.setting(), plan, shard);
   if (!arguments.folder.empty()) {
     make_folder(arguments.folder);

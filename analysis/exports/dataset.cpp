@@ -93,6 +93,9 @@ Meanings of_sessions() {
       {"counted_session", yes_or_no("Whether the session's trials enter the report")},
       {"device", {"Driver of the haptic device"}},
       {"replaced_by", {"Participant who took this one's place in the order of enrolment"}},
+      {"after_look",
+       {"What was decided about the session after its outcomes had been seen: excluded, replaced, "
+        "erased"}},
       {"shown", yes_or_no("Whether outcomes of the session may be shown yet")},
   };
 }

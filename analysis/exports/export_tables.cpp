@@ -114,6 +114,7 @@ std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
       add(file, table);
     }
     add("unscored_trials.csv", unscored_table(*outcomes));
+    add("looks.csv", looks_table(*outcomes));
   }
   add("study.csv", study_table(store, outcomes, collection));
   if (outcomes) files.push_back(text_file("study_file.json", outcomes->design.text));

@@ -4,6 +4,8 @@
 
 #include <map>
 
+#include <fmt/ranges.h>
+
 namespace touchtrial::analysis {
 namespace {
 
@@ -86,8 +88,17 @@ void add_record(std::vector<DataCell>& row, const SessionRecord& record, bool un
   }
 }
 
+/// What was decided about a session after a look at its outcomes, separated by "; ".
+std::string decided_after_look(const LookRecord& looked, int session) {
+  std::vector<std::string> decided;
+  if (looked.excluded_afterwards.contains(session)) decided.emplace_back("excluded");
+  if (looked.replaced_afterwards.contains(session)) decided.emplace_back("replaced");
+  if (looked.erased_afterwards.contains(session)) decided.emplace_back("erased");
+  return fmt::format("{}", fmt::join(decided, "; "));
+}
+
 std::vector<DataCell> session_cells(const store::SessionRow& row, const store::StudyStore& store,
-                                    const store::StudyState& state) {
+                                    const store::StudyState& state, const LookRecord& looked) {
   const bool shown = !state.unblinded || state.reports(row.session);
   return {row.participant,
           std::int64_t{row.session},
@@ -101,6 +112,7 @@ std::vector<DataCell> session_cells(const store::SessionRow& row, const store::S
           flag(shown && session_counts(row, store.commitment())),
           row.device,
           row.replaced_by,
+          decided_after_look(looked, row.session),
           flag(shown)};
 }
 
@@ -158,17 +170,19 @@ DataTable study_table(const store::StudyStore& store, const std::optional<Outcom
 }
 
 DataTable participants_table(const store::StudyStore& store, const Collection& collection) {
-  DataTable table{{"participant", "session", "enrolment", "state", "excluded", "withdrawn",
-                   "erased", "pilot", "simulated", "counted", "device", "replaced_by", "shown"},
-                  {}};
+  DataTable table{
+      {"participant", "session", "enrolment", "state", "excluded", "withdrawn", "erased", "pilot",
+       "simulated", "counted", "device", "replaced_by", "after_look", "shown"},
+      {}};
   std::map<int, const SessionRecord*> records;
   for (const SessionRecord& record : collection.sessions) records[record.row.session] = &record;
   const store::StudyState state = store.state();
+  const LookRecord looked = look_record(store, {});
   for (const RecordColumn& column : kRecordColumns) {
     if (state.unblinded || !column.after_unblinding) table.columns.emplace_back(column.name);
   }
   for (const store::SessionRow& row : store.sessions()) {
-    table.rows.push_back(session_cells(row, store, state));
+    table.rows.push_back(session_cells(row, store, state, looked));
     add_record(table.rows.back(), *records.at(row.session), state.unblinded);
   }
   return table;
@@ -195,6 +209,17 @@ DataTable servo_table(const Collection& collection, bool simulated) {
                           health.lateness_p50_us, health.lateness_p99_us, health.lateness_p999_us,
                           health.lateness_worst_us, health.lost, health.held, overruns,
                           flag(simulated)});
+  }
+  return table;
+}
+
+DataTable looks_table(const Outcomes& outcomes) {
+  DataTable table{{"at", "kind", "participants", "participant", "station", "reason", "simulated"},
+                  {}};
+  for (const Look& look : outcomes.looked.looks) {
+    table.rows.push_back({iso_date(look.at), name_of(look.kind), std::int64_t{look.participants},
+                          look.participant, std::int64_t{look.station}, look.reason,
+                          flag(outcomes.simulated)});
   }
   return table;
 }

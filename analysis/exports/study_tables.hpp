@@ -29,6 +29,9 @@ namespace touchtrial::analysis {
 /// The servo's timing: one row for each trial that ran in real time, none for simulated sessions.
 [[nodiscard]] DataTable servo_table(const Collection& collection, bool simulated);
 
+/// The looks at outcomes, in their order.
+[[nodiscard]] DataTable looks_table(const Outcomes& outcomes);
+
 /// The collection of the outcomes; without outcomes, the collection that the store holds in clear.
 [[nodiscard]] Collection collection_of(const store::StudyStore& store,
                                        const std::optional<Outcomes>& outcomes);

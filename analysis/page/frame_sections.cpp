@@ -210,7 +210,27 @@ ServoNumbers servo_numbers(const std::vector<ServoTrial>& trials) {
 
 }  // namespace
 
-Section participants_section(const Collection& collection) {
+namespace {
+
+Table looks_table(const std::vector<Look>& looks) {
+  Table table{
+      "looks",
+      "When outcomes were looked at",
+      {{"date", Align::left}, {"participants"}, {"look", Align::left}, {"why", Align::left}}};
+  for (const Look& look : looks) {
+    std::string kind = name_of(look.kind);
+    if (!look.participant.empty()) kind += ", " + look.participant;
+    if (look.station > 0) kind += fmt::format(", station {}", look.station);
+    table.rows.push_back(
+        {date_text(look.at), std::to_string(look.participants), kind, look.reason});
+  }
+  return table;
+}
+
+}  // namespace
+
+Section participants_section(const Collection& collection, const std::vector<Look>& looks,
+                             bool has_departures) {
   Section section{"participants", "Participants", {}};
   section.blocks.emplace_back(flow_of(collection.flow));
   for (const std::string& note : people_notes(collection)) {
@@ -220,8 +240,13 @@ Section participants_section(const Collection& collection) {
   if (auto deviations = deviations_table(collection.sessions)) {
     section.blocks.emplace_back(std::move(*deviations));
   } else {
-    section.blocks.emplace_back(Cited{"No deviation from the protocol was recorded.", {}});
+    section.blocks.emplace_back(Cited{
+        has_departures ? "No deviation was recorded during sessions; departures from the plan are "
+                         "listed above."
+                       : "No deviation from the protocol was recorded.",
+        {}});
   }
+  if (!looks.empty()) section.blocks.emplace_back(looks_table(looks));
   if (auto sessions = sessions_table(collection.sessions)) {
     section.blocks.emplace_back(std::move(*sessions));
   }
@@ -231,13 +256,15 @@ Section participants_section(const Collection& collection) {
 Section registration_section(const design::Registration& registration) {
   Section section{"registration", "What was registered beforehand", {}, true};
   const auto stated = [](const std::string& text) { return text.empty() ? "not stated" : text; };
-  section.blocks.emplace_back(Definitions{
+  Definitions definitions{
       {{"hypothesis", stated(registration.hypothesis)},
        {"primary test", stated(registration.primary_test)},
        {"participants planned",
         registration.participants > 0 ? std::to_string(registration.participants) : "not stated"},
        {"stopping rule", stated(registration.stopping_rule)},
-       {"exclusions", stated(registration.exclusions)}}});
+       {"exclusions", stated(registration.exclusions)}}};
+  for (const auto& field : design::fields_of(registration)) definitions.entries.push_back(field);
+  section.blocks.emplace_back(std::move(definitions));
   return section;
 }
 

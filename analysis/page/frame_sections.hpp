@@ -6,14 +6,25 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace touchtrial::analysis {
 
 [[nodiscard]] Section warnings_section(const std::vector<std::string>& warnings);
 
-/// The flow of participants, the conditions, and deviations from the protocol. Contains nothing
-/// about outcomes.
-[[nodiscard]] Section participants_section(const Collection& collection);
+/// The answer to the registered question, departures from what was registered, and the estimate
+/// under every choice of sessions and trials.
+/// \return without blocks if the study has no question and no departure
+[[nodiscard]] std::vector<Block> verdict_blocks(const StudyHead& head);
+/// Adds to every table and every sentence with a p that it is not adjusted for unregistered looks.
+void say_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sections);
+
+/// The flow of participants, the conditions, looks at outcomes, and deviations from the protocol.
+/// Contains nothing about outcomes.
+/// \param has_departures  whether the report lists departures from what was registered
+[[nodiscard]] Section participants_section(const Collection& collection,
+                                           const std::vector<Look>& looks = {},
+                                           bool has_departures = false);
 /// What was registered before the study.
 [[nodiscard]] Section registration_section(const design::Registration& registration);
 /// The timing of the servo over the trials that ran in real time.

@@ -99,10 +99,15 @@ Document framed_document(const StudyHead& head, Section headline, std::vector<Se
   document.stamp = joined(head.simulated ? "SIMULATED" : "", further_stamp(head.pilot, provenance));
   document.banners = banners_of(head, provenance);
   document.header = header_of(head, provenance, figures_missing);
-  std::vector<Section> sections = {std::move(headline), warnings_section(head.warnings),
-                                   participants_section(head.collection),
-                                   registration_section(head.registration)};
+  std::vector<Block> verdict = verdict_blocks(head);
+  headline.blocks.insert(headline.blocks.begin(), std::make_move_iterator(verdict.begin()),
+                         std::make_move_iterator(verdict.end()));
+  std::vector<Section> sections = {
+      std::move(headline), warnings_section(head.warnings),
+      participants_section(head.collection, head.looks, !head.departures.empty()),
+      registration_section(head.registration)};
   std::ranges::move(results, std::back_inserter(sections));
+  say_unadjusted(head.looks, sections);
   for (Section& section : sections) {
     if (!section.blocks.empty()) document.sections.push_back(std::move(section));
   }

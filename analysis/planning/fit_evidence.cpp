@@ -126,6 +126,17 @@ double believed(double probability) noexcept {
   return std::clamp(probability, kLeastProbability, 1.0);
 }
 
+Cells cells_of(const AnswerTable& table, const FitCounts& counts) {
+  Cells cells(counts.layouts.size());
+  for (std::size_t layout = 0; layout < cells.size(); ++layout) {
+    for (int stimulus = 0; stimulus < table.stimuli(); ++stimulus) {
+      const auto answers = table.answers(static_cast<int>(layout), stimulus);
+      cells[layout].insert(cells[layout].end(), answers.begin(), answers.end());
+    }
+  }
+  return cells;
+}
+
 Cells zeros(std::size_t layouts, const AnswerTable& table) {
   const auto cells = static_cast<std::size_t>(table.stimuli()) * table.classes();
   return {layouts, std::vector<double>(cells, 0.0)};

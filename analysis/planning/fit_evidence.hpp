@@ -78,6 +78,9 @@ inline constexpr double kLeastProbability = 1e-12;
 /// \return the probability, between kLeastProbability and 1
 [[nodiscard]] double believed(double probability) noexcept;
 
+/// \return the table's probabilities
+[[nodiscard]] Cells cells_of(const AnswerTable& table, const FitCounts& counts);
+
 /// \return a zero for every cell of the table
 [[nodiscard]] Cells zeros(std::size_t layouts, const AnswerTable& table);
 

@@ -9,7 +9,6 @@ namespace {
 // Beyond these bounds, answers are perfect, at chance, or all the same.
 constexpr double kLeastWeber = 1e-3;
 constexpr double kMostWeber = 10.0;
-constexpr double kMostLapse = 0.98;
 constexpr double kMostLogOdds = 20.0;
 /// The step of ln(weber) for the derivative.
 constexpr double kStep = 2e-4;

@@ -11,6 +11,9 @@
 
 namespace touchtrial::planning {
 
+/// More lapses than this leave answers at chance.
+inline constexpr double kMostLapse = 0.98;
+
 /// The parameters that are estimated; the others stay as in the subject model.
 struct FreeParameters {
   bool weber = true;
@@ -18,6 +21,7 @@ struct FreeParameters {
   bool position = true;
   bool classes = true;
   bool swaps = true;
+  bool spread = true;  ///< of noise between people; from participants' own answers
 };
 
 enum class ParameterKind { weber, lapse, position, class_bias };

@@ -39,6 +39,19 @@ std::string estimates_text(const SubjectFit& fit, const FitOrigin& origin) {
          table.text();
 }
 
+std::string people_text(const SubjectFit& fit) {
+  if (!fit.people) return "";
+  const PeopleSpread& people = *fit.people;
+  return analysis::wrapped(
+      "  ",
+      fmt::format(
+          "spread of noise between people: {:.3f}, 95 % [{}, {}]; people who do not differ: "
+          "p = {}; the subject's spread of {:.3f}: p = {}, {}",
+          people.spread, end_text(people.interval.lower), end_text(people.interval.upper),
+          analysis::p_value(people.alike_p), fit.given_spread, analysis::p_value(people.given_p),
+          fit.spread_taken ? "replaced by the estimate" : "kept"));
+}
+
 std::string swap_text(const SubjectFit& fit) {
   std::string text;
   for (const SwapCandidate& one : fit.swaps) {
@@ -97,7 +110,7 @@ std::string fit_text(const SubjectFit& fit, const FitOrigin& origin) {
       analysis::counted(fit.participants, "participant"), analysis::counted(fit.trials, "trial"),
       fit.no_response > 0 ? fmt::format(", {} without left out", fit.no_response) : "",
       origin.pilot ? ", PILOT" : "", origin.interim ? ", INTERIM LOOK" : "");
-  text += estimates_text(fit, origin) + swap_text(fit);
+  text += estimates_text(fit, origin) + people_text(fit) + swap_text(fit);
   for (std::size_t m = 0; m < fit.methods.size(); ++m) text += confusion_text(fit, m, origin);
   text += goodness_text(fit);
   if (!fit.warnings.empty()) text += analysis::heading("to bear in mind", origin.simulated);
@@ -168,6 +181,17 @@ Json estimates_json(const SubjectFit& fit) {
   return all;
 }
 
+Json people_json(const SubjectFit& fit) {
+  if (!fit.people) return nullptr;
+  const PeopleSpread& people = *fit.people;
+  return {{"spread", people.spread},
+          {"interval", {number(people.interval.lower), number(people.interval.upper)}},
+          {"alike_p", people.alike_p},
+          {"given_spread", fit.given_spread},
+          {"given_p", people.given_p},
+          {"taken", fit.spread_taken}};
+}
+
 Json swaps_json(const SubjectFit& fit) {
   Json tried = Json::array();
   for (const SwapCandidate& one : fit.swaps) {
@@ -202,6 +226,7 @@ std::string fit_json(const SubjectFit& fit, const FitOrigin& origin) {
   object["fitted"] = Json::parse(simulation::subject_model_json(fit.subject));
   object["estimates"] = estimates_json(fit);
   object["weber_lapse_correlation"] = number(fit.weber_lapse_correlation);
+  object["differences_between_people"] = people_json(fit);
   object["label_swaps"] = swaps_json(fit);
   object["log_likelihood"] = number(fit.log_likelihood);
   object["goodness_of_fit"] = {{"g_squared", number(fit.g_squared)},

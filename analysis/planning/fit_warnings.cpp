@@ -91,6 +91,22 @@ void warn_of_guessing(const SubjectFit& fit, std::vector<std::string>& warnings)
       "than chance; noise and lapses have no upper limit");
 }
 
+/// Warns of people who differ more, or less, than the subject model says.
+void warn_of_spread(const SubjectFit& fit, std::vector<std::string>& warnings) {
+  if (!fit.people || fit.people->given_p > kMisfit) return;
+  const std::string what = fmt::format(
+      "participants differ {} than the subject says (spread of noise {:.2f}, p = {:.3g})",
+      fit.people->spread > fit.given_spread ? "more" : "less", fit.given_spread,
+      fit.people->given_p);
+  warnings.push_back(
+      fit.spread_taken ? what + fmt::format(": everything was fitted with the spread of their own "
+                                            "answers, {:.2f}",
+                                            fit.people->spread)
+                       : what +
+                             ": the fit describes people who are not these; leave out --fix "
+                             "spread");
+}
+
 void warn_of_classes(const SubjectFit& fit, std::vector<std::string>& warnings) {
   const Margins margins = margins_of(fit);
   for (std::size_t c = 0; c < fit.classes.size(); ++c) {
@@ -164,6 +180,7 @@ std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit&
         "all participants had the pictures in one order: a preference for positions cannot be told "
         "from one for classes, and stays as the subject model has it");
   }
+  warn_of_spread(fit, warnings);
   warn_of_extremes(fit, warnings);
   warn_of_guessing(fit, warnings);
   warn_of_classes(fit, warnings);

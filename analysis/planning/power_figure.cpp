@@ -50,8 +50,7 @@ Axis power_axis(const PowerReport& report) {
 }
 
 Axis error_axis(const PowerReport& report) {
-  Axis axis{
-      "type-I error", "significant under the null, %", {}, {100.0 * analysis::kSignificanceLevel}};
+  Axis axis{"type-I error", "significant under the null, %", {}, {100.0 * report.plan.level}};
   for (const PowerRow& row : report.rows) {
     axis.rows.push_back({1.0 * row.participants, 100.0 * row.estimated_error(),
                          100.0 * row.type_one.low, 100.0 * row.type_one.high});

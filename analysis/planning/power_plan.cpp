@@ -99,7 +99,8 @@ std::optional<int> certain_after(const PowerPlan& plan, std::span<const PowerRun
   if (!plan.stop_early) return std::nullopt;
   for (const int look : looks_of(plan)) {
     if (static_cast<std::size_t>(look) > runs.size()) return std::nullopt;
-    const auto significant = std::ranges::count_if(runs.first(look), is_significant);
+    const auto significant = std::ranges::count_if(
+        runs.first(look), [&](const PowerRun& run) { return is_significant(run, plan.level); });
     if (is_certain(plan, {look, static_cast<int>(significant)})) return look;
   }
   return std::nullopt;

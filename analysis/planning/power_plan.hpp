@@ -31,6 +31,7 @@ struct PowerPlan {
   bool servo = false;       ///< use ServoFeelings
   int explorations = 1000;  ///< BankedFeelingsOptions
   int trainings = 16;       ///< BankedFeelingsOptions
+  double level = 0.05;      ///< of the primary test
 
   friend bool operator==(const PowerPlan&, const PowerPlan&) = default;
 };

@@ -35,7 +35,8 @@ ordered_json stored_plan(const PowerPlan& plan) {
           {"stop_early", plan.stop_early},
           {"servo", plan.servo},
           {"explorations", plan.explorations},
-          {"trainings", plan.trainings}};
+          {"trainings", plan.trainings},
+          {"level", plan.level}};
 }
 
 ordered_json cell_object(const PowerCell& cell) {
@@ -88,6 +89,8 @@ PowerPlan plan_of(const ordered_json& object) {
   plan.servo = object.at("servo");
   plan.explorations = object.at("explorations");
   plan.trainings = object.at("trainings");
+  plan.level = object.at("level");
+  require(plan.level > 0.0 && plan.level < 1.0, "its level is out of range");
   const PowerPlan as_written = plan;
   settle(plan);
   require(plan == as_written, "its sizes are not in order");

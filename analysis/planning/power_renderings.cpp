@@ -6,6 +6,7 @@
 #include "analysis/text_figures.hpp"
 #include "analysis/text_table.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 #include <fmt/format.h>
@@ -86,10 +87,15 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
   sentences.push_back(looks_sentence(plan));
   sentences.push_back(null_sentence(report));
   if (!report.setting.has_fixed_counts) sentences.push_back(kOrdersSentence);
-  sentences.push_back(fmt::format(
-      "Attainable: the exact type-I error; counts are whole numbers, so no p is exactly {}. The "
-      "Monte-Carlo interval of the type-I error is Wilson's at 95 %.",
-      analysis::kSignificanceLevel));
+  const bool is_exact = std::ranges::any_of(
+      report.rows, [](const PowerRow& row) { return row.attainable != row.level; });
+  sentences.push_back(
+      is_exact
+          ? fmt::format("Attainable: the exact type-I error; sign patterns are counted, so no p "
+                        "is exactly {}.",
+                        report.plan.level)
+          : "Attainable: the level itself, which a t test of shares holds approximately.");
+  sentences.emplace_back("The Monte-Carlo interval of the type-I error is Wilson's at 95 %.");
   sentences.push_back("Interval width: of the 95 % t interval of the mean over participants.");
   return sentences;
 }
@@ -280,9 +286,8 @@ std::string power_json(const PowerReport& report) {
   object["claim"] = kPowerStamp;
   object["study"] = setting.study;
   object["protocol"] = setting.protocol;
-  object["test"] = {{"words", setting.test},
-                    {"level", analysis::kSignificanceLevel},
-                    {"estimate", setting.estimate}};
+  object["test"] = {
+      {"words", setting.test}, {"level", report.plan.level}, {"estimate", setting.estimate}};
   object["assumed"] = setting.subject;
   object["plan"] = plan_object(report.plan);
   object["sizes"] = ordered_json::array();

@@ -26,8 +26,9 @@ Moments moments_of(const std::vector<double>& values) {
   return moments;
 }
 
-analysis::Proportion significant_of(const PowerCell& cell) {
-  const auto significant = std::ranges::count_if(cell.runs, is_significant);
+analysis::Proportion significant_of(const PowerCell& cell, double level) {
+  const auto significant = std::ranges::count_if(
+      cell.runs, [level](const PowerRun& run) { return is_significant(run, level); });
   return {static_cast<int>(cell.runs.size()), static_cast<int>(significant)};
 }
 
@@ -45,8 +46,9 @@ PowerRow row_of(const PowerProgress& progress, const PowerCell& population, cons
   const PowerPlan& plan = progress.plan;
   PowerRow row;
   row.has_fixed_counts = progress.setting.has_fixed_counts;
+  row.level = plan.level;
   row.participants = population.participants;
-  row.significant = significant_of(population);
+  row.significant = significant_of(population, plan.level);
   row.power = power_interval(plan, row.significant);
   row.stopped_early = row.significant.n < plan.runs;
   std::vector<double> estimates;
@@ -55,10 +57,14 @@ PowerRow row_of(const PowerProgress& progress, const PowerCell& population, cons
   row.estimate = moments.mean;
   row.estimate_sd = moments.sd;
   row.width = widths_of(population);
-  row.false_alarms = significant_of(null);
+  row.false_alarms = significant_of(null, plan.level);
   row.type_one = analysis::wilson_interval(row.false_alarms);
-  for (const PowerRun& run : null.runs) {
-    row.attainable += run.attainable / static_cast<double>(null.runs.size());
+  std::vector<double> attainable;
+  for (const PowerRun& run : null.runs) attainable.push_back(run.attainable);
+  row.attainable = moments_of(attainable).mean;
+  // A test whose error is the same in all runs keeps it to the last digit.
+  if (!attainable.empty() && std::ranges::count(attainable, row.level) == std::ssize(attainable)) {
+    row.attainable = row.level;
   }
   return row;
 }
@@ -109,7 +115,7 @@ std::vector<std::string> warnings_of(const PowerReport& report) {
 
 ErrorVerdict verdict_of(const PowerRow& row) noexcept {
   if (!row.has_fixed_counts) return ErrorVerdict::conditional;
-  if (row.type_one.low > analysis::kSignificanceLevel) return ErrorVerdict::excessive;
+  if (row.type_one.low > row.level) return ErrorVerdict::excessive;
   if (row.type_one.high < row.attainable) return ErrorVerdict::conservative;
   return ErrorVerdict::holds;
 }

@@ -32,8 +32,9 @@ struct PowerRow {
   WidthFigures width;
   analysis::Proportion false_alarms;  ///< significant runs under the null
   analysis::Interval type_one{};      ///< Wilson, 95 %
-  double attainable = 0.0;       ///< the test's exact error, given that counts are whole numbers
-  bool has_fixed_counts = true;  ///< PowerSetting
+  double attainable = 0.0;            ///< mean of PowerRun::attainable
+  bool has_fixed_counts = true;       ///< PowerSetting
+  double level = 0.05;                ///< PowerPlan
 
   [[nodiscard]] double estimated_power() const { return significant.share().value_or(0.0); }
   [[nodiscard]] double estimated_error() const { return false_alarms.share().value_or(0.0); }

@@ -1,10 +1,11 @@
 #include "analysis/planning/primary_test.hpp"
 
+#include "analysis/statistics/descriptive.hpp"
+#include "analysis/statistics/paired_tests.hpp"
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "protocols/design/protocol.hpp"
-#include "protocols/identification/analysis/chance.hpp"
 
 #include <algorithm>
 
@@ -12,9 +13,6 @@
 
 namespace touchtrial::planning {
 namespace {
-
-/// 0.05 times (drawings + the study itself) is a whole number, so that p can equal the level.
-constexpr int kMostDeals = 999;
 
 std::string labels_of(const design::Study& study) {
   const auto presented = static_cast<std::size_t>(study.presented_methods());
@@ -30,20 +28,36 @@ int method_of(const design::Study& study, const std::string& label) {
 }
 
 PrimaryTest pair_test(const design::Study& study, const std::optional<MethodLabels>& methods) {
-  constexpr auto kKind = PrimaryTest::Kind::methods_differ;
+  std::optional<PrimaryTest> test =
+      analysis::identification::primary_question(study, study.presented_methods());
   if (!methods) {
-    if (study.presented_methods() == 2) return {kKind, 0, 1};
+    if (test) return *test;
     throw UsageError(
         "the study compares " + std::to_string(study.presented_methods()) +
         " methods; name the two of its primary test with --methods, of: " + labels_of(study));
   }
-  const PrimaryTest test{kKind, method_of(study, methods->first),
-                         method_of(study, methods->second)};
-  if (test.first == test.second) {
+  // Two methods have the usual test of a comparison.
+  if (!test) test = analysis::identification::primary_question(study, 2);
+  test->first = method_of(study, methods->first);
+  test->second = method_of(study, methods->second);
+  if (test->first == test->second) {
     throw UsageError("--methods: " + in_quotes(methods->first) +
                      " is given twice; a comparison needs two methods, of: " + labels_of(study));
   }
-  return test;
+  return *test;
+}
+
+bool is_difference(const PrimaryTest& test) {
+  return test.estimand == design::Estimand::difference;
+}
+
+/// The largest p within the level that these differences could have.
+double attainable_of(const PrimaryTest& test, const std::vector<double>& values) {
+  if (test.test == design::RegisteredTest::t) return test.alpha;
+  if (test.sides == analysis::Sides::two) {
+    return analysis::sign_flip_attainable(values, test.alpha);
+  }
+  return 0.5 * analysis::sign_flip_attainable(values, 2.0 * test.alpha);
 }
 
 }  // namespace
@@ -55,43 +69,34 @@ PrimaryTest primary_test_of(const design::Study& study,
   if (methods) {
     throw UsageError("--methods: the study presents one method; leave the option out");
   }
-  return {};
+  return *analysis::identification::primary_question(study, 1);
 }
 
 std::string words_of(const PrimaryTest& test, const design::Study& study) {
   const std::string& first = study.methods[test.first].label;
-  if (test.kind == PrimaryTest::Kind::above_chance) {
-    return fmt::format(
-        "accuracy above chance ({}): permutation over the orders of the design, one-sided, level "
-        "{}",
-        first, analysis::kSignificanceLevel);
-  }
-  return fmt::format(
-      "accuracy with {} against {}: sign flips over participants, two-sided, level {}", first,
-      study.methods[test.second].label, analysis::kSignificanceLevel);
+  const std::string what = is_difference(test) ? "accuracy with " + first + " less that with " +
+                                                     study.methods[test.second].label
+                                               : "mean accuracy with " + first + " against chance";
+  return fmt::format("{}: {}, level {}", what, analysis::identification::test_words(test),
+                     test.alpha);
 }
 
 std::string estimate_words(const PrimaryTest& test) {
-  return test.kind == PrimaryTest::Kind::above_chance ? "accuracy" : std::string(kDifferenceWords);
+  return is_difference(test) ? std::string(kDifferenceWords) : "accuracy";
 }
 
 PowerRun judged(const PrimaryTest& test, const analysis::Outcomes& outcomes, bool with_attainable) {
-  if (test.kind == PrimaryTest::Kind::above_chance) {
-    const analysis::identification::ChanceFigures numbers =
-        analysis::identification::chance_figures(outcomes, test.first, kMostDeals);
-    return {numbers.chance ? numbers.chance->p : 1.0,
-            with_attainable && numbers.chance ? numbers.chance->attainable : 0.0,
-            numbers.mean.mean.value_or(0.0), numbers.mean.interval.low, numbers.mean.interval.high};
-  }
-  const analysis::identification::PairFigures numbers =
-      analysis::identification::pair_figures(outcomes, test.first, test.second, with_attainable);
-  const analysis::MethodComparison& overall = numbers.overall;
-  return {overall.p.value_or(1.0), numbers.attainable, overall.difference.value_or(0.0),
-          overall.interval.low, overall.interval.high};
+  const std::vector<double> values = analysis::identification::primary_values(test, outcomes);
+  const auto classes = static_cast<int>(outcomes.classes.size());
+  const analysis::Interval range{is_difference(test) ? -1.0 : 0.0, 1.0};
+  const analysis::MeanEstimate mean = analysis::participant_mean(values, range);
+  return {analysis::identification::primary_p(test, classes, values).value_or(1.0),
+          with_attainable ? attainable_of(test, values) : 0.0, mean.mean.value_or(0.0),
+          mean.interval.low, mean.interval.high};
 }
 
-bool is_significant(const PowerRun& run) noexcept {
-  return run.p <= analysis::kSignificanceLevel;
+bool is_significant(const PowerRun& run, double level) noexcept {
+  return run.p <= level;
 }
 
 }  // namespace touchtrial::planning

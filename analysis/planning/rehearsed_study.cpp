@@ -158,7 +158,7 @@ design::StimulusIndex RehearsedStudy::felt_stimulus(const design::StimulusIndex&
                                                     Hypothesis hypothesis,
                                                     std::uint64_t draw) const {
   if (hypothesis == Hypothesis::population) return presented;
-  if (test_.kind == PrimaryTest::Kind::above_chance) return of_method_[draw % of_method_.size()];
+  if (test_.estimand == design::Estimand::mean_accuracy) return of_method_[draw % of_method_.size()];
   design::StimulusIndex felt = presented;
   if (felt.method == test_.first || felt.method == test_.second) {
     felt.method = draw % 2 == 0 ? test_.first : test_.second;

@@ -147,6 +147,41 @@ SubjectFit described(const FitCounts& counts) {
   return fit;
 }
 
+/// The spread of noise between people, given everything else about a subject.
+std::optional<PeopleSpread> spread_of(const AnswerModel& model, const FitCounts& counts,
+                                      const simulation::SubjectModel& subject,
+                                      const FreeParameters& used) {
+  if (counts.people.size() < 2) return std::nullopt;
+  constexpr double kLeastNoise = 0.01;
+  constexpr double kMostNoise = 10.0;
+  NoiseAnswers answers{std::log(kLeastNoise), 0.25, counts.classes.size(), {}};
+  simulation::SubjectModel one = subject;
+  one.weber_spread = 0.0;
+  one.lapse = 0.0;
+  one.lapse_spread = 0.0;
+  for (double at = answers.least_log_noise; at <= std::log(kMostNoise); at += answers.step) {
+    one.weber = std::exp(at);
+    answers.answers.push_back(cells_of(model.answers(one, counts.layouts), counts));
+  }
+  return people_spread(answers, counts.people,
+                       {std::log(subject.weber), std::min(mean_lapse(subject), kMostLapse),
+                        subject.weber_spread, used.weber, used.lapse});
+}
+
+/// Whether the answers rule out the spread that a subject has.
+bool rules_out(const PeopleSpread& people) {
+  constexpr double kLevel = 0.05;
+  return people.given_p <= kLevel;
+}
+
+simulation::SubjectModel with_spread(simulation::SubjectModel subject, const PeopleSpread& people,
+                                     const FreeParameters& used) {
+  subject.weber_spread = people.spread;
+  if (used.weber) subject.weber = std::exp(people.log_noise);
+  if (used.lapse) subject.lapse = people.lapse;
+  return subject;
+}
+
 /// Adds all estimates in the order of the parameters; the eliminated class comes first among the
 /// classes.
 void estimate(const Fitted& fitted, const Fitted& otherwise, const FitProgress& progress,
@@ -181,11 +216,16 @@ SubjectFit fit_subject(const AnswerModel& model, const FitCounts& counts,
   FreeParameters used = options.free;
   if (counts.layouts.size() < 2 && used.classes) used.position = false;
   const SwapSearch search = search_swaps(model, evidence, subject, used);
-  if (progress) progress(kSearched);
-  const FitProblem problem(model, evidence, search.subject, used);
-  const FitProblem otherwise(model, evidence, search.subject, used, 1);
-  const Fitted fitted = at_best(problem, counts, search.subject);
   SubjectFit fit = described(counts);
+  fit.given_spread = subject.weber_spread;
+  fit.people = spread_of(model, counts, search.subject, used);
+  fit.spread_taken = used.spread && fit.people && rules_out(*fit.people);
+  const simulation::SubjectModel start =
+      fit.spread_taken ? with_spread(search.subject, *fit.people, used) : search.subject;
+  if (progress) progress(kSearched);
+  const FitProblem problem(model, evidence, start, used);
+  const FitProblem otherwise(model, evidence, start, used, 1);
+  const Fitted fitted = at_best(problem, counts, start);
   fit.subject = problem.subject_at(fitted.best.at);
   const Fitted other =
       fitted_at(otherwise, counts, {otherwise.numbers_of(fit.subject), fitted.best.value});

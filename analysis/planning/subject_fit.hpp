@@ -4,6 +4,7 @@
 
 #include "analysis/planning/fit_evidence.hpp"
 #include "analysis/planning/fit_problem.hpp"
+#include "analysis/planning/people_spread.hpp"
 #include "analysis/statistics/proportion.hpp"
 
 #include <cstdint>
@@ -20,12 +21,6 @@ struct FitOptions {
   int bootstraps = 499;    ///< studies simulated from the fit, for p and intervals; 0: none
   std::uint64_t seed = 1;  ///< of the simulated studies
   int jobs = 1;            ///< threads, >= 1; results do not depend on them
-};
-
-/// An interval; an end is missing where the data set none.
-struct OpenInterval {
-  std::optional<double> lower;
-  std::optional<double> upper;
 };
 
 struct ParameterEstimate {
@@ -64,14 +59,19 @@ struct SubjectFit {
   std::optional<double> p;     ///< of g_squared, by bootstrap
   int bootstraps = 0;
   std::optional<double> weber_lapse_correlation;  ///< of the two estimates
-  std::vector<std::string> warnings;              ///< one line each
+  std::optional<PeopleSpread> people;             ///< nothing with one participant
+  double given_spread = 0.0;          ///< of noise between people, as the given subject has it
+  bool spread_taken = false;          ///< the given spread was replaced by the participants'
+  std::vector<std::string> warnings;  ///< one line each
 };
 
 /// Receives the finished share of a fit, 0 .. 1.
 using FitProgress = std::function<void(double share)>;
 
 /// Maximises the likelihood of the counts, from several fixed starts. A label swap is taken if it
-/// makes the answers 20 times likelier than any other explanation, all pairs together. Cost: some
+/// makes the answers 20 times likelier than any other explanation, all pairs together. Then the
+/// spread of noise between people is estimated from each participant's own answers; if they rule
+/// out the given spread (p <= 0.05), everything is fitted anew with the estimated one. Cost: some
 /// 200 to 1,000 evaluations of the model; a bootstrap draw refits a log-linear model with the fit's
 /// probabilities and slopes. The result depends on the arguments alone.
 /// \param model  of the same study, with `subject`'s hand and training

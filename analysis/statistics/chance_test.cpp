@@ -141,8 +141,8 @@ struct Distribution {
   }
 };
 
-void count_orders(int classes, std::span<const AnsweredBlock> blocks, ChanceTest& test) {
-  std::map<ClassCounts, std::vector<double>> known;
+void count_orders(int classes, std::span<const AnsweredBlock> blocks, KnownMatches& known,
+                  ChanceTest& test) {
   Distribution right;
   for (const AnsweredBlock& block : blocks) {
     const auto trials = static_cast<int>(block.presented.size());
@@ -241,8 +241,8 @@ bool can_be_counted(std::span<const AnsweredBlock> blocks) {
 }
 
 void test_permuted(int classes, std::span<const AnsweredBlock> blocks, int deals,
-                   ChanceTest& test) {
-  if (can_be_counted(blocks)) return count_orders(classes, blocks, test);
+                   KnownMatches& known, ChanceTest& test) {
+  if (can_be_counted(blocks)) return count_orders(classes, blocks, known, test);
   RandomStream random(0, "chance test");
   deal_anew(classes, blocks, any_order(blocks, random), deals, test);
 }
@@ -267,7 +267,8 @@ std::vector<double> match_probabilities(const ClassCounts& counts, int trials) {
 }
 
 std::optional<ChanceTest> chance_test(int classes, std::span<const AnsweredBlock> blocks,
-                                      DealtOrder order, const RedrawnBlock& redraw, int deals) {
+                                      DealtOrder order, const RedrawnBlock& redraw, int deals,
+                                      KnownMatches* known) {
   require_valid(classes, blocks);
   if (order == DealtOrder::redrawn && !redraw) {
     throw std::invalid_argument("a chance test of redrawn blocks needs the rule that redraws them");
@@ -279,9 +280,11 @@ std::optional<ChanceTest> chance_test(int classes, std::span<const AnsweredBlock
   }
   if (test.trials == 0) return std::nullopt;
   switch (order) {
-    case DealtOrder::permuted:
-      test_permuted(classes, blocks, deals, test);
+    case DealtOrder::permuted: {
+      KnownMatches own;
+      test_permuted(classes, blocks, deals, known != nullptr ? *known : own, test);
       break;
+    }
     case DealtOrder::independent:
       take_binomial(classes, blocks, test);
       break;

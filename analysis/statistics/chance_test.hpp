@@ -1,12 +1,13 @@
 /// \file Whether participants did better than answers that do not depend on what was presented.
 /// Trials of a balanced order depend on each other, so a binomial test does not hold; instead,
-/// stimuli are dealt anew over the design that was used. Sources: docs/statistics.md, "Above
-/// chance"; Phipson, Smyth 2010; Riordan 1958, chapters 7 and 8 (rook polynomials, matching with
-/// multiplicities).
+/// stimuli are dealt anew over the design that was used. Sources: docs/statistics.md, "At least one
+/// participant"; Phipson, Smyth 2010; Riordan 1958, chapters 7 and 8 (rook polynomials, matching
+/// with multiplicities).
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <utility>
@@ -46,20 +47,22 @@ struct ChanceTest {
   double attainable = 0.0;
 };
 
+/// For every class, how often it was presented and how often it was answered.
+using ClassCounts = std::vector<std::pair<int, int>>;
+
+/// match_probabilities of counts that have occurred, so that several tests can share the work.
+using KnownMatches = std::map<ClassCounts, std::vector<double>>;
+
 /// Upper-tail probability of the number of right answers in all blocks together.
 /// `permuted` counts orders exactly with match_probabilities and convolves blocks; the error is
 /// below 1e-12.
 /// \param redraw  needed only for `redrawn`
+/// \param known  is used and completed, if not null
 /// \return nothing without trials
 /// \throws std::invalid_argument if a class is out of range, lengths differ, or `redraw` is missing
-[[nodiscard]] std::optional<ChanceTest> chance_test(int classes,
-                                                    std::span<const AnsweredBlock> blocks,
-                                                    DealtOrder order,
-                                                    const RedrawnBlock& redraw = {},
-                                                    int deals = 9999);
-
-/// For every class, how often it was presented and how often it was answered.
-using ClassCounts = std::vector<std::pair<int, int>>;
+[[nodiscard]] std::optional<ChanceTest> chance_test(
+    int classes, std::span<const AnsweredBlock> blocks, DealtOrder order,
+    const RedrawnBlock& redraw = {}, int deals = 9999, KnownMatches* known = nullptr);
 
 /// \param counts  each >= 0
 /// \param trials  presentations of all classes; answers may be fewer

@@ -1,8 +1,12 @@
 #include "analysis/statistics/choice_model.hpp"
 
+#include "analysis/statistics/common.hpp"
+#include "core/random.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include <boost/math/distributions/chi_squared.hpp>
 
@@ -54,17 +58,22 @@ bool fitted_together(const ChoiceModel& model, int i, int j) {
   return i != j && model.group[i] == model.group[j];
 }
 
+/// How far the weights are improved.
+struct Effort {
+  int most_sweeps = 100'000;
+  double least_change = 1e-13;
+};
+
 /// The weight of each answer against the others. Given the total of every pair of cells (i, j) and
 /// (j, i), the quasi-symmetric table is Bradley and Terry's model of "j was answered, not i", whose
 /// maximum exists within a group. This is Zermelo's problem, solved by Newman's iteration (2023,
 /// Journal of Machine Learning Research 24), each step of which scales one class to its margins.
 class Weights {
  public:
-  Weights(const ConfusionMatrix& confusion, const ChoiceModel& model)
+  Weights(const ConfusionMatrix& confusion, const ChoiceModel& model, const Effort& effort)
       : confusion_(confusion), model_(model), weights_(model.group.size(), 1.0) {
-    constexpr int kMostSweeps = 100'000;
-    for (int sweep = 0; sweep < kMostSweeps && !converged_; ++sweep) {
-      converged_ = change_of_sweep() < 1e-13;
+    for (int sweep = 0; sweep < effort.most_sweeps && !converged_; ++sweep) {
+      converged_ = change_of_sweep() < effort.least_change;
     }
   }
 
@@ -174,19 +183,55 @@ void judge_fit(const ConfusionMatrix& confusion, ChoiceModel& model) {
   model.p = boost::math::cdf(boost::math::complement(chi_squared, model.g_squared));
 }
 
-}  // namespace
-
-std::optional<ChoiceModel> choice_model(const ConfusionMatrix& confusion) {
-  if (!every_class_occurs(confusion)) return std::nullopt;
+ChoiceModel fitted(const ConfusionMatrix& confusion, const Effort& effort) {
   ChoiceModel model;
   find_groups(confusion, model);
-  const Weights weights(confusion, model);
+  const Weights weights(confusion, model, effort);
   model.converged = weights.converged();
   expect_counts(confusion, weights, model);
   find_similarities(model);
   find_biases(weights, model);
   judge_fit(confusion, model);
   return model;
+}
+
+/// As many answers to every class as there were, with the model's probabilities.
+ConfusionMatrix drawn_answers(const ChoiceModel& model, RandomStream& random) {
+  const int classes = model.expected.height();
+  ConfusionMatrix drawn(classes);
+  for (int i = 0; i < classes; ++i) {
+    const auto expected = model.expected.row(i);
+    double all = 0.0;
+    for (const double one : expected) all += one;
+    for (auto left_out = std::lround(all); left_out > 0; --left_out) {
+      double left = random.uniform() * all;
+      int answer = 0;
+      while (answer + 1 < classes && left >= expected[answer]) left -= expected[answer++];
+      drawn.add({i, answer});
+    }
+  }
+  return drawn;
+}
+
+}  // namespace
+
+std::optional<ChoiceModel> choice_model(const ConfusionMatrix& confusion) {
+  if (!every_class_occurs(confusion)) return std::nullopt;
+  return fitted(confusion, {});
+}
+
+std::optional<double> choice_model_p(const ChoiceModel& model, int draws, std::uint64_t index) {
+  if (draws < 1) throw std::invalid_argument("a bootstrap needs at least one draw");
+  if (model.degrees_of_freedom == 0) return std::nullopt;
+  constexpr Effort kOfDraws{.most_sweeps = 500, .least_change = 1e-7};
+  constexpr double kTie = 1e-9;
+  RandomStream random(0, "choice model", index);
+  int as_bad = 0;
+  for (int draw = 0; draw < draws; ++draw) {
+    const ChoiceModel one = fitted(drawn_answers(model, random), kOfDraws);
+    if (one.g_squared >= model.g_squared - kTie) ++as_bad;
+  }
+  return p_of_draws(as_bad, draws);
 }
 
 }  // namespace touchtrial::analysis

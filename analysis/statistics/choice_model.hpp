@@ -8,6 +8,7 @@
 #include "analysis/statistics/confusion.hpp"
 #include "core/plane.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -27,12 +28,24 @@ struct ChoiceModel {
   double g_squared = 0.0;      ///< likelihood ratio against the saturated model
   int degrees_of_freedom = 0;  ///< (K - 1)(K - 2) / 2, fewer where zeros leave nothing to fit
   std::optional<double> p;     ///< of g_squared under chi-square; nothing at 0 degrees
-  bool converged = false;      ///< the biases changed by less than 1e-12 in the last step
+  int draws = 0;               ///< of tables for the next number
+  std::optional<double> drawn_p{};  ///< choice_model_p, if it was computed
+  bool converged = false;           ///< the biases changed by less than 1e-12 in the last step
 };
 
 /// Maximum likelihood over trials with a response, by iterative scaling of the quasi-symmetric
 /// table. Where the maximum lies at infinity, only the parameters that exist are estimated.
 /// \return nothing if a class was never presented with a response, or never answered
 [[nodiscard]] std::optional<ChoiceModel> choice_model(const ConfusionMatrix& confusion);
+
+/// The p of g_squared by a parametric bootstrap: the share of tables drawn from the fitted model,
+/// with as many answers to each class, whose own fit is as bad; (b + 1) / (m + 1). It needs no
+/// large counts, as chi-square does.
+/// \param draws  m, >= 1; cost: each draws all trials once
+/// \param index  chooses the stream of random numbers
+/// \return nothing at 0 degrees of freedom
+/// \throws std::invalid_argument if draws < 1
+[[nodiscard]] std::optional<double> choice_model_p(const ChoiceModel& model, int draws,
+                                                   std::uint64_t index = 0);
 
 }  // namespace touchtrial::analysis

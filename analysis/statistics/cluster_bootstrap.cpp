@@ -1,6 +1,7 @@
 #include "analysis/statistics/cluster_bootstrap.hpp"
 
 #include "analysis/statistics/common.hpp"
+#include "analysis/statistics/descriptive.hpp"
 #include "core/random.hpp"
 
 #include <algorithm>
@@ -121,6 +122,50 @@ std::optional<Interval> bootstrap_mean(std::span<const double> values, std::uint
     mean = sum / static_cast<double>(values.size());
   }
   return expanded_percentiles(std::move(means), values.size(), level);
+}
+
+std::optional<Interval> bootstrap_ratio(std::span<const Ratio> participants, std::uint64_t index,
+                                        int draws, double level) {
+  require_arguments(participants.size(), draws, level);
+  for (const Ratio& one : participants) {
+    if (!(one.above >= 0.0 && one.below >= 0.0 && std::isfinite(one.above + one.below))) {
+      throw std::invalid_argument("a bootstrap of a ratio needs finite parts >= 0");
+    }
+  }
+  if (participants.size() < 2) return std::nullopt;
+  RandomStream random(0, "bootstrap of a ratio", index);
+  IndexDraws drawn(random, participants.size());
+  std::vector<double> logs(static_cast<std::size_t>(draws));
+  for (double& one : logs) {
+    Ratio sum;
+    for (std::size_t i = 0; i < participants.size(); ++i) {
+      const Ratio& own = participants[drawn.next()];
+      sum.above += own.above;
+      sum.below += own.below;
+    }
+    if (sum.above == 0.0 && sum.below == 0.0) return std::nullopt;
+    one = std::log(sum.above) - std::log(sum.below);
+  }
+  const Interval ends = expanded_percentiles(std::move(logs), participants.size(), level);
+  if (!std::isfinite(ends.low) || !std::isfinite(ends.high)) return std::nullopt;
+  return Interval{std::exp(ends.low), std::exp(ends.high)};
+}
+
+JackknifeEstimate jackknife(double all, std::span<const double> without, const Interval& range,
+                            double level) {
+  require_level(level);
+  require_finite(without, "a jackknife");
+  require_finite(std::span(&all, 1), "a jackknife");
+  if (without.size() < 2) throw std::invalid_argument("a jackknife needs two participants or more");
+  const auto n = static_cast<double>(without.size());
+  const double mean = mean_of(without);
+  const double estimate = n * all - (n - 1.0) * mean;
+  const double error = std::sqrt(n - 1.0) * standard_deviation(without, mean, n);
+  const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 0.5 * (1.0 + level));
+  const auto inside = [&](double value) {
+    return std::clamp(without_noise(value), range.low, range.high);
+  };
+  return {inside(estimate), {inside(estimate - t * error), inside(estimate + t * error)}};
 }
 
 }  // namespace touchtrial::analysis

@@ -49,4 +49,39 @@ inline constexpr int kBootstrapDraws = 9999;
                                                      int draws = kBootstrapDraws,
                                                      double level = kConfidenceLevel);
 
+/// One participant's part of a ratio of two sums.
+struct Ratio {
+  double above = 0.0;
+  double below = 0.0;
+};
+
+/// The interval of sum(above) / sum(below), a ratio between 0 and infinity, by the same method.
+/// \param participants  both numbers finite and >= 0
+/// \param index  chooses the stream of random numbers
+/// \param draws  >= 1
+/// \return nothing with fewer than two participants, if an end would be 0 or infinite, or if both
+///   sums are 0 in some draw
+/// \throws std::invalid_argument if an argument is out of range
+[[nodiscard]] std::optional<Interval> bootstrap_ratio(std::span<const Ratio> participants,
+                                                      std::uint64_t index = 0,
+                                                      int draws = kBootstrapDraws,
+                                                      double level = kConfidenceLevel);
+
+/// An estimate and its interval, both within the range of possible values.
+struct JackknifeEstimate {
+  double value = 0.0;
+  Interval interval;
+};
+
+/// The jackknife over participants: an estimate without most of the bias that few participants give
+/// a statistic, n all - (n - 1) mean(without), and Student's t interval of n - 1 degrees from the
+/// spread of `without`. The estimate always lies in its interval. Source: docs/statistics.md,
+/// "Participants as clusters"; Miller 1974.
+/// \param all  the statistic of all participants
+/// \param without  the statistic without each of them, n >= 2
+/// \param range  of possible values, to which estimate and interval are cut
+/// \throws std::invalid_argument if there are fewer than two, or a number is not finite
+[[nodiscard]] JackknifeEstimate jackknife(double all, std::span<const double> without,
+                                          const Interval& range, double level = kConfidenceLevel);
+
 }  // namespace touchtrial::analysis

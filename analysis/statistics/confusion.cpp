@@ -1,9 +1,13 @@
 #include "analysis/statistics/confusion.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+
+#include <boost/math/distributions/binomial.hpp>
 
 namespace touchtrial::analysis {
 namespace {
@@ -151,6 +155,25 @@ LabelMatching best_label_matching(const ConfusionMatrix& confusion) {
   best.accuracy.n = confusion.accuracy().n;
   for (int i = 0; i < classes; ++i) best.accuracy.correct += confusion.count(i, best.answer_of[i]);
   return best;
+}
+
+double label_swap_p(const ConfusionMatrix& confusion, const LabelMatching& best) {
+  int moved = 0;
+  int own = 0;
+  int matched = 0;
+  for (int i = 0; i < confusion.classes(); ++i) {
+    if (best.answer_of[i] == i) continue;
+    ++moved;
+    own += confusion.count(i, i);
+    matched += confusion.count(i, best.answer_of[i]);
+  }
+  if (matched == 0) return 1.0;
+  // The number of orders of `moved` labels in which none keeps its place.
+  double exchanges = 1.0;
+  for (int k = 1; k <= moved; ++k) exchanges = k * exchanges + (k % 2 == 0 ? 1.0 : -1.0);
+  const boost::math::binomial_distribution<> coins(own + matched, 0.5);
+  const double tail = boost::math::cdf(boost::math::complement(coins, matched - 1));
+  return std::min(1.0, exchanges * tail);
 }
 
 }  // namespace touchtrial::analysis

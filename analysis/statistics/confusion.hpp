@@ -65,4 +65,12 @@ struct LabelMatching {
 /// answers. Cost: O(K^3) for K classes.
 [[nodiscard]] LabelMatching best_label_matching(const ConfusionMatrix& confusion);
 
+/// Tests somebody who gives classes their own labels at least as often as those of the best
+/// matching. Only answers to the moved classes count that agree with either: if neither is
+/// preferred, each of them is a fair coin. The p is the binomial tail, times the number of ways to
+/// exchange as many labels, because the matching was chosen from them.
+/// \param best  best_label_matching of the same counts
+/// \return in (0, 1]; 1 if no label is moved
+[[nodiscard]] double label_swap_p(const ConfusionMatrix& confusion, const LabelMatching& best);
+
 }  // namespace touchtrial::analysis

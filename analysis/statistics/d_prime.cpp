@@ -1,5 +1,7 @@
 #include "analysis/statistics/d_prime.hpp"
 
+#include "analysis/statistics/common.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -49,16 +51,23 @@ double proportion_correct_of(double d_prime, int alternatives) {
   return std::clamp(share, 0.0, 1.0);
 }
 
-DPrime d_prime(Proportion proportion, int alternatives, double level) {
+DPrime d_prime(Proportion proportion, int alternatives, const Interval& limits) {
   require_alternatives(alternatives);
-  const Interval exact = clopper_pearson_interval(proportion, level);
+  require_possible(proportion);
+  if (!(limits.low >= 0.0 && limits.low <= limits.high && limits.high <= 1.0)) {
+    throw std::invalid_argument("the limits of a share lie between 0 and 1");
+  }
   DPrime result;
-  if (proportion.correct > 0) result.low = d_prime_of(exact.low, alternatives);
-  if (proportion.correct < proportion.n) result.high = d_prime_of(exact.high, alternatives);
-  if (result.low && result.high) {
+  if (limits.low > 0.0 && limits.low < 1.0) result.low = d_prime_of(limits.low, alternatives);
+  if (limits.high > 0.0 && limits.high < 1.0) result.high = d_prime_of(limits.high, alternatives);
+  if (proportion.correct > 0 && proportion.correct < proportion.n) {
     result.estimate = d_prime_of(*proportion.share(), alternatives);
   }
   return result;
+}
+
+DPrime d_prime(Proportion proportion, int alternatives, double level) {
+  return d_prime(proportion, alternatives, clopper_pearson_interval(proportion, level));
 }
 
 }  // namespace touchtrial::analysis

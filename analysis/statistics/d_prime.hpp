@@ -18,10 +18,16 @@ namespace touchtrial::analysis {
 /// A nominal d'. Where nothing or everything is correct, a bound replaces the infinite estimate.
 struct DPrime {
   std::optional<double> estimate;  ///< nothing at 0 % and 100 %
-  std::optional<double> low;  ///< at the Clopper-Pearson interval's lower end; nothing if that is 0
-  std::optional<double> high;  ///< at its upper end; nothing if that is 1
+  std::optional<double> low;       ///< at the share's lower limit; nothing if that is 0
+  std::optional<double> high;      ///< at its upper limit; nothing if that is 1
 };
 
+/// \param limits  an interval of the share: the d' at its ends is an interval of d', of the same
+///   coverage
+/// \throws std::invalid_argument if alternatives < 2, or the proportion or a limit is impossible
+[[nodiscard]] DPrime d_prime(Proportion proportion, int alternatives, const Interval& limits);
+
+/// With the limits of Clopper and Pearson's interval, for independent trials.
 /// \throws std::invalid_argument if alternatives < 2 or the proportion is impossible
 [[nodiscard]] DPrime d_prime(Proportion proportion, int alternatives,
                              double level = kConfidenceLevel);

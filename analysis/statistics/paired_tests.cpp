@@ -53,28 +53,33 @@ double exact_share_at_least(std::span<const double> differences, double threshol
   return std::ldexp(static_cast<double>(count), -static_cast<int>(differences.size()));
 }
 
-/// The distances from zero of the sums of random sign patterns.
-std::vector<double> sampled_distances(std::span<const double> differences) {
+/// The sums of random sign patterns.
+std::vector<double> sampled_sums(std::span<const double> differences) {
   constexpr std::size_t kPatterns = 99'999;
   constexpr std::array<double, 2> kSign{-1.0, 1.0};
   RandomStream random(0, "sign flips");
-  std::vector<double> distances(kPatterns);
-  for (double& distance : distances) {
-    double sum = 0.0;
+  std::vector<double> sums(kPatterns);
+  for (double& sum : sums) {
     std::uint64_t signs = 0;
     for (std::size_t k = 0; k < differences.size(); ++k, signs >>= 1U) {
       if (k % 64 == 0) signs = random.bits();
       sum += kSign[signs & 1U] * differences[k];
     }
-    distance = std::abs(sum);
   }
+  return sums;
+}
+
+/// Their distances from zero.
+std::vector<double> sampled_distances(std::span<const double> differences) {
+  std::vector<double> distances = sampled_sums(differences);
+  for (double& distance : distances) distance = std::abs(distance);
   return distances;
 }
 
-double share_as_far(const std::vector<double>& distances, double threshold) {
-  const auto as_far = std::count_if(distances.begin(), distances.end(),
-                                    [&](double distance) { return distance >= threshold; });
-  return p_of_draws(static_cast<double>(as_far), static_cast<double>(distances.size()));
+double share_at_least(const std::vector<double>& drawn, double threshold) {
+  const auto as_far =
+      std::count_if(drawn.begin(), drawn.end(), [&](double one) { return one >= threshold; });
+  return p_of_draws(static_cast<double>(as_far), static_cast<double>(drawn.size()));
 }
 
 /// The largest p of any distance that does not exceed the level.
@@ -95,9 +100,15 @@ double sampled_attainable(std::span<const double> differences, double level, dou
 /// Two-sided p of a sum whose distance from zero is `threshold`.
 double two_sided_p(std::span<const double> differences, double threshold) {
   if (differences.size() > kExactSignFlips) {
-    return share_as_far(sampled_distances(differences), threshold);
+    return share_at_least(sampled_distances(differences), threshold);
   }
   return 2.0 * exact_share_at_least(differences, threshold);
+}
+
+/// One-sided p of a sum of `threshold`.
+double one_sided_p(std::span<const double> differences, double threshold) {
+  return differences.size() > kExactSignFlips ? share_at_least(sampled_sums(differences), threshold)
+                                              : exact_share_at_least(differences, threshold);
 }
 
 /// The largest possible sum.
@@ -133,6 +144,18 @@ struct StrataSums {
     return pr / (2.0 * r * r) + ps_qr / (2.0 * r * s) + qs / (2.0 * s * s);
   }
 };
+
+/// The places of p values in ascending order.
+std::vector<std::size_t> rising_order(std::span<const double> p_values) {
+  for (const double p : p_values) {
+    if (!(p >= 0.0 && p <= 1.0)) throw std::invalid_argument("a p lies between 0 and 1");
+  }
+  std::vector<std::size_t> rising(p_values.size());
+  std::iota(rising.begin(), rising.end(), std::size_t{0});
+  std::sort(rising.begin(), rising.end(),
+            [&](std::size_t a, std::size_t b) { return p_values[a] < p_values[b]; });
+  return rising;
+}
 
 using Occasions = std::span<const std::vector<bool>>;
 using RightByMethod = std::vector<std::int64_t>;
@@ -202,11 +225,12 @@ MethodComparison compare_methods(std::span<const PairedAccuracy> participants, s
           decibels(first, second), bootstrap_mean(differences, index, draws)};
 }
 
-std::optional<double> sign_flip_p(std::span<const double> differences) {
+std::optional<double> sign_flip_p(std::span<const double> differences, Sides sides) {
   if (differences.empty()) return std::nullopt;
   const double size = total_size(differences);
   const double sum = std::accumulate(differences.begin(), differences.end(), 0.0);
   // Differences of proportions often tie; rounding must not break a tie.
+  if (sides == Sides::one) return one_sided_p(differences, sum - kTie * size);
   const double threshold = std::abs(sum) - kTie * size;
   if (threshold <= 0.0) return 1.0;
   return two_sided_p(differences, threshold);
@@ -241,6 +265,20 @@ std::optional<OddsRatio> mantel_haenszel(
   const double z = boost::math::quantile(boost::math::normal_distribution<>(), 0.5 + level / 2.0);
   const double factor = std::exp(z * std::sqrt(sums.variance_of_log()));
   return OddsRatio{estimate, {estimate / factor, estimate * factor}};
+}
+
+std::optional<Interval> odds_ratio_bootstrap(
+    std::span<const std::pair<Proportion, Proportion>> participants, std::uint64_t index, int draws,
+    double level) {
+  std::vector<Ratio> parts;
+  for (const auto& [first, second] : participants) {
+    require_possible(first);
+    require_possible(second);
+    StrataSums own;
+    own.add(first, second);
+    parts.push_back({own.r, own.s});
+  }
+  return bootstrap_ratio(parts, index, draws, level);
 }
 
 double mcnemar_mid_p(int first_only, int second_only) {
@@ -308,19 +346,26 @@ std::optional<double> cochran_q_permuted_p(
 }
 
 std::vector<double> holm_adjusted(std::span<const double> p_values) {
-  for (const double p : p_values) {
-    if (!(p >= 0.0 && p <= 1.0)) throw std::invalid_argument("a p lies between 0 and 1");
-  }
-  std::vector<std::size_t> rising(p_values.size());
-  std::iota(rising.begin(), rising.end(), std::size_t{0});
-  std::sort(rising.begin(), rising.end(),
-            [&](std::size_t a, std::size_t b) { return p_values[a] < p_values[b]; });
+  const std::vector<std::size_t> rising = rising_order(p_values);
   std::vector<double> adjusted(p_values.size());
   double so_far = 0.0;
   for (std::size_t rank = 0; rank < rising.size(); ++rank) {
     const auto hypotheses_left = static_cast<double>(rising.size() - rank);
     so_far = std::max(so_far, std::min(1.0, hypotheses_left * p_values[rising[rank]]));
     adjusted[rising[rank]] = so_far;
+  }
+  return adjusted;
+}
+
+std::vector<double> discovery_adjusted(std::span<const double> p_values) {
+  const std::vector<std::size_t> rising = rising_order(p_values);
+  const auto hypotheses = static_cast<double>(rising.size());
+  std::vector<double> adjusted(p_values.size());
+  double so_far = 1.0;
+  for (std::size_t rank = rising.size(); rank > 0; --rank) {
+    const std::size_t place = rising[rank - 1];
+    so_far = std::min(so_far, hypotheses * p_values[place] / static_cast<double>(rank));
+    adjusted[place] = so_far;
   }
   return adjusted;
 }

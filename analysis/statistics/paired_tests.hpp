@@ -6,6 +6,7 @@
 #pragma once
 
 #include "analysis/statistics/cluster_bootstrap.hpp"
+#include "analysis/statistics/mean_test.hpp"
 #include "analysis/statistics/proportion.hpp"
 
 #include <cstdint>
@@ -49,14 +50,16 @@ struct MethodComparison {
 /// Up to this many participants sign_flip_p counts all sign patterns; beyond, 99,999 random ones.
 inline constexpr int kExactSignFlips = 32;
 
-/// The exact two-sided test of paired differences: if two methods do not differ, every
-/// participant's difference could as well have the other sign. p is the share of the sign patterns
-/// whose mean is at least as far from zero as the observed one; beyond kExactSignFlips it is (b +
-/// 1) / (m + 1) over m random patterns from a fixed seed (Phipson, Smyth 2010).
+/// The exact test of paired differences: if two methods do not differ, every participant's
+/// difference could as well have the other sign. p is the share of the sign patterns whose mean is
+/// at least as far from zero as the observed one, or at least as large if one-sided; beyond
+/// kExactSignFlips it is (b + 1) / (m + 1) over m random patterns from a fixed seed (Phipson, Smyth
+/// 2010).
 /// \param differences  one per participant, finite
-/// \return in (0, 1], never below 2 * 2^-n; nothing without differences
+/// \return in (0, 1], never below 2 * 2^-n, or 2^-n if one-sided; nothing without differences
 /// \throws std::invalid_argument if a difference is not finite
-[[nodiscard]] std::optional<double> sign_flip_p(std::span<const double> differences);
+[[nodiscard]] std::optional<double> sign_flip_p(std::span<const double> differences,
+                                                Sides sides = Sides::two);
 
 /// The largest p within the level that these differences could have, whatever their signs: the rate
 /// at which the test rejects if the methods do not differ. 0 if it cannot reject.
@@ -66,7 +69,8 @@ inline constexpr int kExactSignFlips = 32;
 
 struct OddsRatio {
   double estimate = 1.0;
-  Interval interval;  ///< by Robins, Breslow and Greenland 1986
+  Interval interval;  ///< by Robins, Breslow and Greenland 1986, as if trials were independent
+  std::optional<Interval> bootstrap{};  ///< odds_ratio_bootstrap: over participants
 };
 
 /// The odds of a right answer with the first method over those with the second: Mantel and
@@ -77,6 +81,15 @@ struct OddsRatio {
 [[nodiscard]] std::optional<OddsRatio> mantel_haenszel(
     std::span<const std::pair<Proportion, Proportion>> participants,
     double level = kConfidenceLevel);
+
+/// The interval of the common odds ratio over participants drawn with replacement, by expanded
+/// percentiles: it holds for participants who differ in how much better one method is to them.
+/// \param index,draws  of the bootstrap
+/// \return nothing with fewer than two participants, or if an end would be 0 or infinite
+/// \throws std::invalid_argument as mantel_haenszel does, or if draws < 1
+[[nodiscard]] std::optional<Interval> odds_ratio_bootstrap(
+    std::span<const std::pair<Proportion, Proportion>> participants, std::uint64_t index = 0,
+    int draws = kBootstrapDraws, double level = kConfidenceLevel);
 
 /// McNemar's two-sided mid-p test of one pair of right-or-wrong answers per participant: the
 /// probability of more extreme outcomes plus half that of equally extreme ones. Source: Fagerland,
@@ -115,5 +128,10 @@ struct CochranQ {
 /// \return the adjusted p values in the order given, each in [0, 1]
 /// \throws std::invalid_argument if a p is outside [0, 1]
 [[nodiscard]] std::vector<double> holm_adjusted(std::span<const double> p_values);
+
+/// Benjamini and Hochberg's (1995) adjustment, which holds the expected share of false ones among
+/// the hypotheses that are rejected, and with that the rate of rejecting any if all are true.
+/// Arguments, result and errors are those of holm_adjusted.
+[[nodiscard]] std::vector<double> discovery_adjusted(std::span<const double> p_values);
 
 }  // namespace touchtrial::analysis

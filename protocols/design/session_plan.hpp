@@ -6,6 +6,8 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::design {
@@ -81,6 +83,51 @@ struct SessionPlan {
   friend bool operator==(const SessionPlan&, const SessionPlan&) = default;
 };
 
+/// The quantity that a registration is about.
+enum class Estimand {
+  mean_accuracy,  ///< mean over participants of the share of right answers, against chance
+  difference,     ///< mean over participants of the accuracy with one method less that with another
+};
+
+enum class RegisteredTest {
+  t,          ///< Student's t test over participants
+  sign_flip,  ///< exact flips of the signs of participants' differences
+};
+
+/// How the error rate is spent over registered looks (Lan, DeMets 1983).
+enum class Spending { obrien_fleming, pocock };
+
+/// "mean-accuracy" or "difference"
+[[nodiscard]] std::string_view name_of(Estimand estimand);
+/// "t" or "sign-flip"
+[[nodiscard]] std::string_view name_of(RegisteredTest test);
+/// "obrien-fleming" or "pocock"
+[[nodiscard]] std::string_view name_of(Spending spending);
+
+/// The registered reasons for leaving a session out, besides that it was stopped or its participant
+/// withdrew.
+struct ExclusionRules {
+  std::vector<std::string> deviations;     ///< codes; a session with one of them is left out
+  std::optional<double> invalid_trials{};  ///< share of its trials; a session with more is left out
+
+  friend bool operator==(const ExclusionRules&, const ExclusionRules&) = default;
+};
+
+/// The part of a registration that the program holds a study against.
+struct RegisteredAnalysis {
+  Estimand estimand = Estimand::mean_accuracy;
+  std::vector<std::string> methods;  ///< labels: the first less the second; empty: the study's two
+  RegisteredTest test = RegisteredTest::t;
+  bool one_sided = true;                    ///< against larger values
+  double alpha = 0.05;                      ///< in (0, 0.5]
+  std::optional<double> smallest_effect{};  ///< worth having: an accuracy, or a difference
+  std::vector<int> looks;                   ///< numbers of participants at interim looks, ascending
+  Spending spending = Spending::obrien_fleming;
+  std::optional<ExclusionRules> exclusion_rules{};
+
+  friend bool operator==(const RegisteredAnalysis&, const RegisteredAnalysis&) = default;
+};
+
 /// The study file's "registration", which is deposited before the first participant.
 struct Registration {
   std::string hypothesis;
@@ -91,8 +138,13 @@ struct Registration {
   /// That stops, faults, largest forces, reasons and deviations of somebody whose data were erased
   /// are kept, from the session on.
   int safety_record_years = 10;
+  std::optional<RegisteredAnalysis> analysis{};
 
   friend bool operator==(const Registration&, const Registration&) = default;
 };
+
+/// The fields of the registered analysis as names and values in words; empty without one.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> fields_of(
+    const Registration& registration);
 
 }  // namespace touchtrial::design

@@ -150,6 +150,7 @@ Study read_study(const JsonValue& place) {
   check_size(place, study);
   study.protocol->check(place, study);
   check_practice(place, study);
+  check_registration(place, study);
   return study;
 }
 

@@ -1,4 +1,4 @@
-/// \file The study file's "classes", "trials", "practice" and "registration".
+/// \file The study file's "classes", "trials" and "practice".
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
@@ -60,13 +60,6 @@ void read_resumption(const JsonObject& object, TrialOptions& options) {
   if (const auto member = object.find("resume_within_h")) {
     options.resume_within_h = member->number({.low = 0.0, .high = kYear_h, .open_low = true});
   }
-}
-
-constexpr std::size_t kLongestStatement = 4000;  // bytes
-constexpr int kMostParticipants = 100'000;
-
-void read_statement(const JsonObject& object, std::string_view key, std::string& statement) {
-  if (const auto member = object.find(key)) statement = read_paragraphs(*member, kLongestStatement);
 }
 
 }  // namespace
@@ -152,32 +145,6 @@ nlohmann::json to_json(const PracticePlan& practice) {
     classes.push_back({{"label", shown.label}, {"images", {shown.images.front().string()}}});
   }
   return {{"classes", classes}, {"criterion", practice.criterion}, {"rounds", practice.rounds}};
-}
-
-Registration read_registration(const JsonValue& place) {
-  const JsonObject object = place.object({"hypothesis", "participants", "stopping_rule",
-                                          "exclusions", "primary_test", "safety_record_years"});
-  Registration registration;
-  read_statement(object, "hypothesis", registration.hypothesis);
-  if (const auto member = object.find("participants")) {
-    registration.participants = static_cast<int>(member->integer(0, kMostParticipants));
-  }
-  read_statement(object, "stopping_rule", registration.stopping_rule);
-  read_statement(object, "exclusions", registration.exclusions);
-  read_statement(object, "primary_test", registration.primary_test);
-  if (const auto member = object.find("safety_record_years")) {
-    registration.safety_record_years = static_cast<int>(member->integer(0, 100));
-  }
-  return registration;
-}
-
-nlohmann::json to_json(const Registration& registration) {
-  return {{"hypothesis", registration.hypothesis},
-          {"participants", registration.participants},
-          {"stopping_rule", registration.stopping_rule},
-          {"exclusions", registration.exclusions},
-          {"primary_test", registration.primary_test},
-          {"safety_record_years", registration.safety_record_years}};
 }
 
 }  // namespace touchtrial::design

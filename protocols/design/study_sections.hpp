@@ -49,6 +49,20 @@ inline constexpr std::array kEqualiseNames = {
     Named<engine::Equalise>{"none", engine::Equalise::none},
     Named<engine::Equalise>{"rms", engine::Equalise::rms}};
 
+inline constexpr std::array kEstimandNames = {
+    Named<Estimand>{"mean-accuracy", Estimand::mean_accuracy},
+    Named<Estimand>{"difference", Estimand::difference}};
+
+inline constexpr std::array kRegisteredTestNames = {
+    Named<RegisteredTest>{"t", RegisteredTest::t},
+    Named<RegisteredTest>{"sign-flip", RegisteredTest::sign_flip}};
+
+inline constexpr std::array kSidesNames = {Named<bool>{"one", true}, Named<bool>{"two", false}};
+
+inline constexpr std::array kSpendingNames = {
+    Named<Spending>{"obrien-fleming", Spending::obrien_fleming},
+    Named<Spending>{"pocock", Spending::pocock}};
+
 /// The word for a value; every value of the enumeration is in its table.
 template <typename Value, std::size_t size>
 [[nodiscard]] constexpr std::string_view word_for(const std::array<Named<Value>, size>& table,
@@ -101,12 +115,15 @@ inline constexpr int kMaxScoredTrials = 10'000;
 [[nodiscard]] PracticePlan read_practice(const JsonValue& place);
 [[nodiscard]] SessionPlan read_session(const JsonValue& place);
 [[nodiscard]] Registration read_registration(const JsonValue& place);
+/// Checks that the registered analysis is one of this study.
+/// \param file  the whole study file
+void check_registration(const JsonValue& file, const Study& study);
 
 /// The sections in the form of the study file, with every key explicit. A method has only the keys
 /// that belong to it, "control" if it has one, and "label" if it is not the default. The trials
 /// have "max_run", "on_interruption" and "resume_within_h" only if these differ from their
-/// defaults, so that studies sealed before these keys existed keep their seals. Equal options give
-/// equal JSON.
+/// defaults, and a registration has the keys of its analysis only if it has one, so that studies
+/// sealed before these keys existed keep their seals. Equal options give equal JSON.
 [[nodiscard]] nlohmann::json to_json(const engine::ExtractionOptions& method);
 [[nodiscard]] nlohmann::json to_json(const StudyMethod& method);
 [[nodiscard]] nlohmann::json to_json(const engine::RenderingOptions& rendering);

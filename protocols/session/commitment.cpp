@@ -76,6 +76,13 @@ std::string validity_of(const ValidityRule& rule) {
          line("servo", "no tick missed in contact");
 }
 
+/// The registered analysis, which the program holds the study against.
+std::string analysis_of(const design::Registration& registration) {
+  std::string lines;
+  for (const auto& [what, value] : design::fields_of(registration)) lines += line(what, value);
+  return lines;
+}
+
 std::string hashes_of(const design::StudyCodes& key, const engine::Pack& pack) {
   return line("seal", "`" + to_hex(key.seal) + "`") +
          line("pack", "`" + to_hex(pack.digest()) + "`") +
@@ -144,8 +151,9 @@ std::string registration_page(const design::StudyCodes& key, const engine::Pack&
          section("Stopping rule", registration.stopping_rule) +
          section("Exclusions", registration.exclusions) +
          section("Validity of trials", validity_of(ValidityRule{})) +
-         section("Primary test", registration.primary_test) + section("Design", design_of(study)) +
-         section("Commitment", hashes_of(key, pack));
+         section("Primary test", registration.primary_test) +
+         section("Analysis, as the program checks it", analysis_of(registration)) +
+         section("Design", design_of(study)) + section("Commitment", hashes_of(key, pack));
 }
 
 std::vector<std::string> unstated(const design::Registration& registration) {
@@ -158,6 +166,7 @@ std::vector<std::string> unstated(const design::Registration& registration) {
   look("stopping_rule", !registration.stopping_rule.empty());
   look("exclusions", !registration.exclusions.empty());
   look("primary_test", !registration.primary_test.empty());
+  look("estimand", registration.analysis.has_value());
   return places;
 }
 

@@ -16,6 +16,9 @@ constexpr int kRepeats = 4;
 design::StudyKey fake_key(const design::Protocol& protocol, const FakeOptions& options) {
   nlohmann::json text = nlohmann::json::parse(fake_study_text(protocol, options.label));
   if (!options.trials.empty()) text["trials"].update(nlohmann::json::parse(options.trials));
+  if (!options.registration.empty()) {
+    text["registration"] = nlohmann::json::parse(options.registration);
+  }
   const design::Study study = design::parse_study(text.dump(), ".", "fake.json");
   SeededEntropy entropy(11);
   design::StudyKey key = design::make_study_key(study, entropy, options.simulated);

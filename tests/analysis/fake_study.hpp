@@ -43,8 +43,9 @@ struct FakeOptions {
   bool simulated = true;
   std::string label = "bark";  ///< of the first class
   bool pilot = false;
-  std::string trials{};    ///< JSON that changes the study's trials; may be empty
-  bool with_pack = false;  ///< tiny fields in `folder() / "study.pack"`
+  std::string trials{};        ///< JSON that changes the study's trials; may be empty
+  std::string registration{};  ///< JSON; may be empty
+  bool with_pack = false;      ///< tiny fields in `folder() / "study.pack"`
   /// Divides eight enrolment numbers between stations of these names; the file is the first's.
   std::vector<std::string> stations{};
 };

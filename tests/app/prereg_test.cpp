@@ -10,11 +10,16 @@ namespace {
 
 json registered_study() {
   json study = study_of("classification");
-  study["registration"] = {{"hypothesis", "Hands tell cloths apart."},
-                           {"participants", 12},
-                           {"stopping_rule", "At twelve."},
-                           {"exclusions", "Withdrawals."},
-                           {"primary_test", "Permutation test."}};
+  study["registration"] = {
+      {"hypothesis", "Hands tell cloths apart."},
+      {"participants", 12},
+      {"stopping_rule", "At twelve."},
+      {"exclusions", "Withdrawals."},
+      {"primary_test", "A t test."},
+      {"estimand", "mean-accuracy"},
+      {"smallest_effect", 0.5},
+      {"looks", {6}},
+      {"exclusion_rules", {{"deviations", {"asleep"}}, {"invalid_trials", 0.2}}}};
   return study;
 }
 
@@ -30,8 +35,14 @@ TEST_CASE("prereg writes the registration, the design and the hashes, and no sec
   CHECK(result.errors.empty());
   for (const char* part :
        {"# Preregistration of the study cloths", "Hands tell cloths apart.", "12 participants.",
-        "At twelve.", "Withdrawals.", "Permutation test.", "3 (corduroy, granite, linen)",
-        "scored trials a participant: 6", "at least 300 mm", "- seal: `", "- pack: `"}) {
+        "At twelve.", "Withdrawals.", "A t test.",
+        "- estimand: mean over participants of the share of right answers, against chance",
+        "- test: Student's t test over participants, one-sided", "- alpha: 0.05",
+        "- smallest worth having: 50 % right", "- interim looks: at 6 participants",
+        "- exclusion rules: a session with a deviation \"asleep\" or more than 20 % of trials not "
+        "valid",
+        "3 (corduroy, granite, linen)", "scored trials a participant: 6", "at least 300 mm",
+        "- seal: `", "- pack: `"}) {
     CHECK_THAT(result.output, holds_text(part));
   }
   const json key = json::parse(content(study.path() / "cloths.key"));

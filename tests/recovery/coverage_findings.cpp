@@ -7,6 +7,8 @@
 #include "recovery/population.hpp"
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/normal.hpp>
@@ -197,6 +199,131 @@ void add_odds_ratio(int participants, int repetitions, std::vector<Finding>& fin
                               "a normal approximation on the logarithm"));
 }
 
+/// People whose log odds with two methods are normal, with as many trials of each.
+struct TwoMethods {
+  double effect = 0.7;  ///< of the first method on the log odds
+  double spread = 0.8;  ///< SD between people of the log odds with both
+  double slope = 0.0;   ///< SD between people of the effect
+};
+
+std::pair<double, double> drawn_chances(const TwoMethods& two, RandomStream& random) {
+  const double own = 1.0 + two.spread * random.normal();
+  const double effect = two.effect + two.slope * random.normal();
+  const auto chance = [](double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); };
+  return {chance(own + 0.5 * effect), chance(own - 0.5 * effect)};
+}
+
+/// The common odds ratio of an unlimited number of people.
+double true_odds_ratio(const TwoMethods& two) {
+  constexpr int kPeople = 400'000;
+  RandomStream random(1, "odds ratio of many people");
+  double above = 0.0;
+  double below = 0.0;
+  for (int i = 0; i < kPeople; ++i) {
+    const auto [first, second] = drawn_chances(two, random);
+    above += first * (1.0 - second);
+    below += (1.0 - first) * second;
+  }
+  return above / below;
+}
+
+int right_of(double chance, RandomStream& random) {
+  int right = 0;
+  for (int i = 0; i < 25; ++i) right += random.uniform() < chance ? 1 : 0;
+  return right;
+}
+
+void add_odds_ratio_of_people(double slope, int participants, int repetitions,
+                              std::vector<Finding>& findings) {
+  const TwoMethods two{.slope = slope};
+  const double truth = true_odds_ratio(two);
+  const std::string who =
+      fmt::format("{} participants, log odds of SD {}, their difference 0.7 of SD {}", participants,
+                  two.spread, slope);
+  const auto share = [&](auto interval_of) {
+    return average_of(repetitions, "odds of people" + who, [&](RandomStream& random) {
+      std::vector<std::pair<analysis::Proportion, analysis::Proportion>> strata;
+      for (int i = 0; i < participants; ++i) {
+        const auto [first, second] = drawn_chances(two, random);
+        const int right = right_of(first, random);
+        strata.emplace_back(analysis::Proportion{25, right},
+                            analysis::Proportion{25, right_of(second, random)});
+      }
+      const std::optional<analysis::Interval> interval = interval_of(strata);
+      return interval ? holds(*interval, truth) : 0.0;
+    });
+  };
+  const Average drawn =
+      share([](const auto& strata) { return analysis::odds_ratio_bootstrap(strata, 0, kDraws); });
+  findings.push_back(coverage("odds ratio, bootstrap over participants", who, drawn, 0.925, 0.965,
+                              "as the cluster bootstrap of a mean"));
+  const Average trials = share([](const auto& strata) {
+    const auto ratio = analysis::mantel_haenszel(strata);
+    return ratio ? std::optional(ratio->interval) : std::nullopt;
+  });
+  findings.push_back(coverage(
+      "odds ratio, Mantel-Haenszel", who, trials, slope > 0.0 ? 0.6 : 0.94,
+      slope > 0.0 ? 0.85 : 0.965,
+      slope > 0.0 ? "pseudo-replication: trials as if independent" : "all have one odds ratio"));
+}
+
+/// The d' at an accuracy.
+double d_prime_at(double accuracy, int classes) {
+  constexpr int kMany = 100'000'000;
+  const auto right = static_cast<int>(std::lround(kMany * accuracy));
+  return analysis::d_prime({kMany, right}, classes).estimate.value_or(0.0);
+}
+
+void add_pooled_d_prime(int participants, int repetitions, std::vector<Finding>& findings) {
+  const Population people{.d_prime = 1.5, .spread = 0.6};
+  const double truth = d_prime_at(true_accuracy(people), people.classes);
+  const std::string who = described(people, participants);
+  const auto share = [&](bool over_participants) {
+    return average_of(repetitions, "pooled d'" + who, [&](RandomStream& random) {
+      const auto right = accuracies(study_of(people, participants, random));
+      analysis::Proportion all;
+      for (const auto& one : right) all = {all.n + one.n, all.correct + one.correct};
+      const auto limits = over_participants ? analysis::cluster_bootstrap(right, 0, kDraws).value()
+                                            : analysis::clopper_pearson_interval(all);
+      const analysis::DPrime found = analysis::d_prime(all, people.classes, limits);
+      return holds({found.low.value_or(-9.0), found.high.value_or(9.0)}, truth);
+    });
+  };
+  findings.push_back(coverage("nominal d' of the mean accuracy, bootstrap over participants", who,
+                              share(true), 0.925, 0.965, "as the bootstrap of the accuracy"));
+  findings.push_back(coverage("nominal d' of the mean accuracy, Clopper-Pearson's ends", who,
+                              share(false), 0.6, 0.75, "pseudo-replication"));
+}
+
+void add_class(const Population& people, int participants, int repetitions,
+               std::vector<Finding>& findings) {
+  const std::string who = described(people, participants) + ", one class of 5 trials each";
+  // All classes are equally hard without a bias.
+  const double truth = true_accuracy(people);
+  const auto share = [&](auto interval_of) {
+    return average_of(repetitions, "class" + who, [&](RandomStream& random) {
+      std::vector<analysis::Proportion> own;
+      for (const auto& choices : study_of(people, participants, random)) {
+        own.push_back(analysis::ConfusionMatrix(people.classes, choices).accuracy(0));
+      }
+      return holds(interval_of(own), truth);
+    });
+  };
+  const Average t =
+      share([](const auto& own) { return analysis::participant_mean(shares(own)).interval; });
+  findings.push_back(coverage("accuracy with a class, t over participants", who, t, 0.925, 0.965,
+                              "accuracies of 5 trials are steps of 20 %"));
+  const Average wilson = share([](const auto& own) {
+    analysis::Proportion all;
+    for (const auto& one : own) all = {all.n + one.n, all.correct + one.correct};
+    return analysis::wilson_interval(all);
+  });
+  findings.push_back(coverage(
+      "accuracy with a class, Wilson of pooled trials", who, wilson,
+      people.spread > 0.0 ? 0.8 : 0.93, people.spread > 0.0 ? 0.94 : 0.965,
+      people.spread > 0.0 ? "pseudo-replication, of 5 trials each" : "people do not differ"));
+}
+
 }  // namespace
 
 std::vector<Finding> coverage_findings(int repetitions) {
@@ -213,6 +340,13 @@ std::vector<Finding> coverage_findings(int repetitions) {
     add_differences(participants, 0.5, repetitions, findings);
   }
   add_odds_ratio(20, repetitions, findings);
+  for (const int participants : {8, 20}) {
+    add_odds_ratio_of_people(0.0, participants, repetitions, findings);
+    add_odds_ratio_of_people(0.8, participants, repetitions, findings);
+    add_pooled_d_prime(participants, repetitions, findings);
+    add_class({.d_prime = 1.5, .spread = 0.0}, participants, repetitions, findings);
+    add_class({.d_prime = 1.5, .spread = 0.6}, participants, repetitions, findings);
+  }
   return findings;
 }
 

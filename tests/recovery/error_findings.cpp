@@ -158,6 +158,42 @@ void add_holm(int repetitions, std::vector<Finding>& findings) {
                            "pairs share participants: Holm is on the safe side"));
 }
 
+/// Groups of classes that feel alike; the rest is answered right, but for 5 % at random.
+Plane<double> alike_within(const std::vector<std::vector<int>>& groups) {
+  constexpr double kRandom = 0.05;
+  Plane<double> p(5, 5, kRandom / 5.0);
+  for (const auto& group : groups) {
+    for (const int i : group) {
+      for (const int j : group) p.at(i, j) += (1.0 - kRandom) / static_cast<double>(group.size());
+    }
+  }
+  return p;
+}
+
+/// A study of 20 people who answer 5 presentations of each of 5 classes with these probabilities.
+double any_swap(const Plane<double>& p, RandomStream& random) {
+  std::vector<double> p_values;
+  for (int person = 0; person < 20; ++person) {
+    const analysis::ConfusionMatrix own = answers_with(p, 5, random);
+    p_values.push_back(analysis::label_swap_p(own, analysis::best_label_matching(own)));
+  }
+  return rejected(std::ranges::min(analysis::discovery_adjusted(p_values)));
+}
+
+void add_swaps(int repetitions, std::vector<Finding>& findings) {
+  const auto add = [&](const std::string& who, const Plane<double>& p) {
+    const Average share = average_of(repetitions, "swaps" + who,
+                                     [&](RandomStream& random) { return any_swap(p, random); });
+    findings.push_back(error("labels said to be swapped, by anybody", who, share, 0.0, kLevel,
+                             "whole numbers, and a correction for the choice of the exchange"));
+  };
+  add("20 guessers", Plane<double>(5, 5, 0.2));
+  add("20 people to whom two classes feel alike", alike_within({{0, 1}, {2}, {3}, {4}}));
+  add("20 people to whom two pairs of classes feel alike", alike_within({{0, 1}, {2, 3}, {4}}));
+  add("20 people to whom three classes feel alike", alike_within({{0, 1, 2}, {3}, {4}}));
+  add("20 people to whom four classes feel alike", alike_within({{0, 1, 2, 3}, {4}}));
+}
+
 }  // namespace
 
 std::vector<Finding> error_findings(int repetitions) {
@@ -172,6 +208,7 @@ std::vector<Finding> error_findings(int repetitions) {
   add_cochran(0.15, 0.10, 0.45, "people like methods differently: occasions are not independent",
               repetitions, findings);
   add_holm(repetitions, findings);
+  add_swaps(repetitions, findings);
   return findings;
 }
 

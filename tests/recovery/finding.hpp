@@ -42,5 +42,11 @@ struct Average {
 [[nodiscard]] std::vector<Finding> coverage_findings(int repetitions);
 [[nodiscard]] std::vector<Finding> error_findings(int repetitions);
 [[nodiscard]] std::vector<Finding> estimate_findings(int repetitions);
+/// Lines of several groups about the registered question.
+[[nodiscard]] std::vector<Finding> registered_findings(int repetitions);
+/// Of every group, on observers of single cues.
+[[nodiscard]] std::vector<Finding> cue_findings(int repetitions);
+/// Of every group, on differences between people.
+[[nodiscard]] std::vector<Finding> people_findings(int repetitions);
 
 }  // namespace touchtrial::recovery

@@ -134,6 +134,44 @@ analysis::ConfusionMatrix confusion_of(int classes,
   return confusion;
 }
 
+std::vector<double> luce_bias() {
+  return {0.3, 0.2, 0.2, 0.2, 0.1};
+}
+
+Plane<double> luce_probabilities(const std::vector<double>& bias) {
+  Plane<double> p(5, 5);
+  for (int i = 0; i < 5; ++i) {
+    double sum = 0.0;
+    for (int j = 0; j < 5; ++j) {
+      const double similarity = i == j ? 1.0 : (i + j == 1 ? 0.3 : 0.1);
+      p.at(i, j) = similarity * bias[j];
+      sum += p.at(i, j);
+    }
+    for (int j = 0; j < 5; ++j) p.at(i, j) /= sum;
+  }
+  return p;
+}
+
+void add_answers(const Plane<double>& p, int of_each, RandomStream& random,
+                 analysis::ConfusionMatrix& confusion) {
+  for (int i = 0; i < confusion.classes(); ++i) {
+    for (int n = 0; n < of_each; ++n) {
+      double rest = random.uniform();
+      int answer = 0;
+      while (answer + 1 < confusion.classes() && rest >= p.at(i, answer)) {
+        rest -= p.at(i, answer++);
+      }
+      confusion.add({i, answer});
+    }
+  }
+}
+
+analysis::ConfusionMatrix answers_with(const Plane<double>& p, int of_each, RandomStream& random) {
+  analysis::ConfusionMatrix confusion(p.height());
+  add_answers(p, of_each, random, confusion);
+  return confusion;
+}
+
 std::vector<analysis::Proportion> accuracies(
     const std::vector<std::vector<analysis::Choice>>& study) {
   std::vector<analysis::Proportion> all;
@@ -149,6 +187,21 @@ std::vector<analysis::Proportion> accuracies(
 std::vector<double> shares(const std::vector<analysis::Proportion>& accuracies) {
   std::vector<double> all;
   for (const analysis::Proportion& one : accuracies) all.push_back(one.share().value_or(0.0));
+  return all;
+}
+
+double TwoKinds::spread() const {
+  return std::sqrt(share * (1.0 - share)) * std::abs(first - second);
+}
+
+std::vector<analysis::Proportion> accuracies_of(const TwoKinds& people, int participants,
+                                                RandomStream& random) {
+  std::vector<analysis::Proportion> all;
+  for (int i = 0; i < participants; ++i) {
+    const double p = random.uniform() < people.share ? people.first : people.second;
+    analysis::Proportion& own = all.emplace_back(analysis::Proportion{people.trials, 0});
+    for (int k = 0; k < people.trials; ++k) own.correct += random.uniform() < p ? 1 : 0;
+  }
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include "core/plane.hpp"
 #include "core/random.hpp"
 
+#include <string>
 #include <vector>
 
 namespace touchtrial::recovery {
@@ -47,9 +48,40 @@ struct Population {
 [[nodiscard]] analysis::ConfusionMatrix confusion_of(
     int classes, const std::vector<std::vector<analysis::Choice>>& study);
 
+/// A similarity choice model's probabilities of answers: similarities 0.3 of the first two classes,
+/// else 0.1.
+/// \param bias  of the five answers, > 0
+[[nodiscard]] Plane<double> luce_probabilities(const std::vector<double>& bias);
+/// 3 : 2 : 2 : 2 : 1.
+[[nodiscard]] std::vector<double> luce_bias();
+
+/// Adds answers with these probabilities.
+/// \param of_each  presentations of each class
+void add_answers(const Plane<double>& p, int of_each, RandomStream& random,
+                 analysis::ConfusionMatrix& confusion);
+[[nodiscard]] analysis::ConfusionMatrix answers_with(const Plane<double>& p, int of_each,
+                                                     RandomStream& random);
+
 /// Each participant's right answers.
 [[nodiscard]] std::vector<analysis::Proportion> accuracies(
     const std::vector<std::vector<analysis::Choice>>& study);
 [[nodiscard]] std::vector<double> shares(const std::vector<analysis::Proportion>& accuracies);
+
+/// People whose own probability of a right answer takes one of two values.
+struct TwoKinds {
+  std::string name;
+  double share = 0.0;  ///< of the first kind
+  double first = 0.0;  ///< their probability of a right answer
+  double second = 0.0;
+  int trials = 25;  ///< of a participant
+
+  [[nodiscard]] double mean() const { return share * first + (1.0 - share) * second; }
+  [[nodiscard]] double spread() const;
+};
+
+/// The right answers of each participant of one study.
+[[nodiscard]] std::vector<analysis::Proportion> accuracies_of(const TwoKinds& people,
+                                                              int participants,
+                                                              RandomStream& random);
 
 }  // namespace touchtrial::recovery

@@ -10,6 +10,8 @@ namespace {
 
 /// Enough to detect errors of some 4 %; the table in docs/statistics-recovery.md uses more.
 constexpr int kRepetitions = 400;
+/// For what takes tens of milliseconds a study.
+constexpr int kFewRepetitions = 120;
 
 void check_all(const std::vector<Finding>& findings) {
   REQUIRE_FALSE(findings.empty());
@@ -31,8 +33,20 @@ TEST_CASE("tests of a true null reject as seldom as they say") {
   check_all(error_findings(kRepetitions));
 }
 
+TEST_CASE("the registered question keeps its levels, with looks and among people who differ") {
+  check_all(registered_findings(kRepetitions));
+}
+
 TEST_CASE("known sensitivity, bias, lapses and swaps are found again") {
   check_all(estimate_findings(kRepetitions));
+}
+
+TEST_CASE("divergences cover the truth, and equal observers are seldom told apart") {
+  check_all(cue_findings(kFewRepetitions));
+}
+
+TEST_CASE("the spread between people is found, and people alike are seldom told from it") {
+  check_all(people_findings(kFewRepetitions));
 }
 
 TEST_CASE("simulated participants answer with their stated probabilities") {

@@ -1,12 +1,10 @@
 #include "protocols/identification/analysis/chance.hpp"
 
 #include "analysis/statistics/common.hpp"
-#include "analysis/statistics/paired_tests.hpp"
 #include "core/random.hpp"
-#include "protocols/identification/analysis/counted_trials.hpp"
-#include "protocols/identification/analysis/report_parts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <numeric>
 #include <span>
@@ -26,6 +24,7 @@ constexpr int kMostBlockDeals = 1'000'000;  ///< takes at most one second
 
 /// A block's counted trials, each with its place among the scored presentations of the method.
 struct PlacedBlock {
+  int session = 0;
   AnsweredBlock answers;
   std::vector<int> places;
 };
@@ -43,6 +42,7 @@ std::vector<PlacedBlock> blocks_of(const Outcomes& outcomes, int method) {
     const int place = next_place[id]++;
     if (!trial.counted) continue;
     PlacedBlock& block = blocks[id];
+    block.session = trial.row.session;
     block.answers.presented.push_back(trial.stimulus.class_index);
     block.answers.answered.push_back(trial.response);
     block.places.push_back(place);
@@ -113,6 +113,15 @@ int deals_for(std::size_t blocks, int most_deals) {
   return std::clamp(affordable, std::min(kFewestDeals, most_deals), most_deals);
 }
 
+/// The number of draws of one participant's test; level * (draws + 1) is whole.
+int own_deals_for(std::size_t blocks) {
+  constexpr std::array kDeals = {999, 199};
+  for (const int deals : kDeals) {
+    if (blocks * static_cast<std::size_t>(deals) <= std::size_t{kMostBlockDeals}) return deals;
+  }
+  return 99;
+}
+
 }  // namespace
 
 DealtOrder dealt_order(const design::Study& study) {
@@ -123,52 +132,81 @@ DealtOrder dealt_order(const design::Study& study) {
   return DealtOrder::redrawn;
 }
 
-std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method, int most_deals) {
-  const auto classes = static_cast<int>(outcomes.classes.size());
+namespace {
+
+/// The chance tests of some of a study's blocks, over the same drawn orders.
+class BlockTests {
+ public:
+  /// \param placed,known  must outlive this; `known` may be null
+  BlockTests(const Outcomes& outcomes, int method, const std::vector<PlacedBlock>& placed,
+             int deals, KnownMatches* known)
+      : classes_(static_cast<int>(outcomes.classes.size())),
+        placed_(placed),
+        order_(dealt_order(outcomes.design)),
+        deals_(deals),
+        known_(known) {
+    if (order_ != DealtOrder::redrawn || placed.empty()) return;
+    draws_.emplace(outcomes.design, method, placed.size(), deals);
+    const auto fits = [&](const PlacedBlock& block) {
+      return static_cast<std::size_t>(block.places.back()) < draws_->length();
+    };
+    // If a block has places that the schedules do not have, the test permutes the block's classes
+    // without the study's rule.
+    if (!std::ranges::all_of(placed, fits)) order_ = DealtOrder::permuted;
+  }
+
+  /// \param first,last  blocks
+  [[nodiscard]] std::optional<ChanceTest> of(std::size_t first, std::size_t last) {
+    std::vector<AnsweredBlock> blocks;
+    for (std::size_t i = first; i < last; ++i) blocks.push_back(placed_[i].answers);
+    RedrawnBlock redraw;
+    if (order_ == DealtOrder::redrawn && draws_) {
+      redraw = [this, first](std::size_t block, int deal) {
+        return draws_->drawn(first + block, deal, placed_[first + block].places);
+      };
+    } else if (order_ == DealtOrder::redrawn) {
+      return std::nullopt;  // without blocks
+    }
+    return chance_test(classes_, blocks, order_, redraw, deals_, known_);
+  }
+
+ private:
+  int classes_;
+  const std::vector<PlacedBlock>& placed_;
+  DealtOrder order_;
+  int deals_;
+  KnownMatches* known_;
+  std::optional<OrderDraws> draws_;
+};
+
+}  // namespace
+
+std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method, int most_deals,
+                                    KnownMatches* known) {
   const std::vector<PlacedBlock> placed = blocks_of(outcomes, method);
-  std::vector<AnsweredBlock> blocks;
-  for (const PlacedBlock& block : placed) blocks.push_back(block.answers);
-  const DealtOrder order = dealt_order(outcomes.design);
-  if (order != DealtOrder::redrawn || blocks.empty()) return chance_test(classes, blocks, order);
-  const int deals = deals_for(blocks.size(), most_deals);
-  const OrderDraws draws(outcomes.design, method, blocks.size(), deals);
-  const auto fits = [&](const PlacedBlock& block) {
-    return static_cast<std::size_t>(block.places.back()) < draws.length();
-  };
-  // If a block has places that the schedules do not have, the test permutes the block's classes
-  // without the study's rule.
-  if (!std::ranges::all_of(placed, fits)) {
-    return chance_test(classes, blocks, DealtOrder::permuted);
-  }
-  const RedrawnBlock redraw = [&](std::size_t block, int deal) {
-    return draws.drawn(block, deal, placed[block].places);
-  };
-  return chance_test(classes, blocks, order, redraw, deals);
+  const bool redrawn = dealt_order(outcomes.design) == DealtOrder::redrawn;
+  const int deals = redrawn ? deals_for(placed.size(), most_deals) : kMostChanceDeals;
+  return BlockTests(outcomes, method, placed, deals, known).of(0, placed.size());
 }
 
-ChanceFigures chance_figures(const Outcomes& outcomes, int method, int most_deals) {
-  const CountedTrials counted = counted_by_method(outcomes);
-  std::vector<double> shares;
-  for (const OwnTrials& trials : counted.trials[method]) {
-    if (!trials.empty()) shares.push_back(accuracy_of(trials).share().value_or(0.0));
+std::optional<Prevalence> own_prevalence(const Outcomes& outcomes, int method,
+                                         KnownMatches* known) {
+  const std::vector<PlacedBlock> placed = blocks_of(outcomes, method);
+  BlockTests tests(outcomes, method, placed, own_deals_for(placed.size()), known);
+  Proportion passed;
+  double level = 0.0;
+  for (std::size_t first = 0; first < placed.size();) {
+    std::size_t last = first + 1;
+    while (last < placed.size() && placed[last].session == placed[first].session) ++last;
+    if (const auto test = tests.of(first, last)) {
+      ++passed.n;
+      if (test->p <= kSignificanceLevel) ++passed.correct;
+      level += test->attainable;
+    }
+    first = last;
   }
-  return {participant_mean(shares), chance_of(outcomes, method, most_deals)};
-}
-
-PairFigures pair_figures(const Outcomes& outcomes, int first, int second, bool with_attainable) {
-  std::vector<PairedAccuracy> accuracies;
-  std::vector<double> differences;
-  for (const auto& [a, b] : paired_proportions(counted_by_method(outcomes), first, second)) {
-    accuracies.push_back({a.share().value_or(0.0), b.share().value_or(0.0)});
-    differences.push_back(without_noise(accuracies.back().first - accuracies.back().second));
-  }
-  PairFigures numbers;
-  numbers.overall = compare_methods(accuracies, 0, 1);
-  numbers.overall.bootstrap.reset();
-  if (with_attainable) {
-    numbers.attainable = sign_flip_attainable(differences, kSignificanceLevel);
-  }
-  return numbers;
+  if (passed.n == 0) return std::nullopt;
+  return prevalence_of(passed, level / passed.n);
 }
 
 }  // namespace touchtrial::analysis::identification

@@ -4,8 +4,7 @@
 
 #include "analysis/outcomes.hpp"
 #include "analysis/statistics/chance_test.hpp"
-#include "analysis/statistics/descriptive.hpp"
-#include "analysis/statistics/paired_tests.hpp"
+#include "analysis/statistics/prevalence.hpp"
 
 #include <optional>
 
@@ -20,28 +19,17 @@ inline constexpr int kMostChanceDeals = 9999;
 /// nor independent draws, the orders are drawn from schedules that the rule makes. In each block,
 /// only the places whose trials count are compared.
 /// \param most_deals  the most orders that are drawn from schedules
+/// \param known  is used and completed, if not null
 [[nodiscard]] std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method,
-                                                  int most_deals = kMostChanceDeals);
+                                                  int most_deals = kMostChanceDeals,
+                                                  KnownMatches* known = nullptr);
 
-/// One method against chance.
-struct ChanceFigures {
-  MeanEstimate mean;  ///< MethodReport::mean of the same outcomes
-  /// MethodReport::chance; if the orders are drawn from schedules, possibly with fewer draws.
-  std::optional<ChanceTest> chance;
-};
-
-/// \param method  index into the outcomes' methods
-/// \param most_deals  the most orders that are drawn from schedules, >= 1; a report uses 9,999
-[[nodiscard]] ChanceFigures chance_figures(const Outcomes& outcomes, int method, int most_deals);
-
-/// The difference between two methods, first minus second.
-struct PairFigures {
-  MethodComparison overall;  ///< MethodPair::overall of the same outcomes, without a bootstrap
-  double attainable = 0.0;   ///< sign_flip_attainable at kSignificanceLevel, if requested
-};
-
-/// \param with_attainable  also computes the attainable p, which takes longer than the test
-[[nodiscard]] PairFigures pair_figures(const Outcomes& outcomes, int first, int second,
-                                       bool with_attainable);
+/// The prevalence of people who would pass the chance test of their own trials. Every participant's
+/// test has the orders of chance_of; with orders drawn from schedules, each has 99 to 999 of them,
+/// fewer in large studies.
+/// \param known  is used and completed, if not null
+/// \return nothing if no trial counts
+[[nodiscard]] std::optional<Prevalence> own_prevalence(const Outcomes& outcomes, int method,
+                                                       KnownMatches* known = nullptr);
 
 }  // namespace touchtrial::analysis::identification

@@ -31,11 +31,14 @@ nlohmann::ordered_json choice_object(const ChoiceModel& model) {
               {"g_squared", figure_json(model.g_squared)},
               {"degrees_of_freedom", model.degrees_of_freedom},
               {"p", figure_json(model.p)},
-              {"converged", model.converged}};
+              {"converged", model.converged},
+              {"bootstrap_p", figure_json(model.drawn_p)},
+              {"draws", model.draws}};
   put_method(object,
              "similarity choice model, maximum likelihood; biases sum to 1 within a group of "
              "classes that answers connect in both directions; p of G squared under chi-square "
-             "against the saturated model",
+             "against the saturated model, and bootstrap_p, to quote, of tables drawn from the "
+             "model, (b+1)/(m+1)",
              {"luce1963", "townsend1982"});
   return object;
 }
@@ -81,6 +84,8 @@ Json classes_json(const MethodReport& method, const std::vector<std::string>& cl
     entry["wilson"] = interval_json(known(one.wilson, one.accuracy));
     entry["clopper_pearson"] = interval_json(known(one.clopper_pearson, one.accuracy));
     entry["jeffreys"] = interval_json(known(one.jeffreys, one.accuracy));
+    entry["mean"] = figure_json(one.mean.mean);
+    entry["interval"] = interval_json(one.mean.known_interval());
     all.push_back(std::move(entry));
   }
   return all;
@@ -101,9 +106,17 @@ Json participants_json(const MethodReport& method, const std::vector<std::string
     put_proportion(entry, one.accuracy);
     entry["best_matching"] = matching_json(one.matching, classes);
     entry["consistency_bits"] = figure_json(one.consistency);
+    entry["swap_p"] = figure_json(one.swap_p);
+    entry["swap_p_adjusted"] = figure_json(one.swap_adjusted);
     all.push_back(std::move(entry));
   }
   return all;
+}
+
+Json spread_json(const std::optional<Spread>& spread) {
+  if (!spread) return nullptr;
+  return {{"estimate", figure_json(spread->estimate)},
+          {"interval", interval_json(spread->interval)}};
 }
 
 Json overall_json(const MethodReport& method) {
@@ -114,9 +127,13 @@ Json overall_json(const MethodReport& method) {
   overall["sd"] = figure_json(method.mean.sd);
   overall["bootstrap"] = interval_json(method.bootstrap);
   put_method(overall,
-             "mean: of participants' own accuracies, with Student's t interval; bootstrap: "
-             "expanded percentiles of the pooled share in 9,999 draws of whole participants; 95 %",
-             {"student1908", "davison1997", "hesterberg2015"});
+             "mean: of participants' own accuracies, each of which weighs the same however many "
+             "trials it has, with Student's t interval; bootstrap: expanded percentiles of the "
+             "same mean in 9,999 draws of whole participants; sd: of the accuracies as they are; "
+             "spread: of participants' own probabilities of a right answer, by Paule and Mandel, "
+             "with the Q-profile interval; 95 %",
+             {"student1908", "davison1997", "hesterberg2015", "paule1982", "viechtbauer2007"});
+  overall["spread"] = spread_json(method.spread);
   return overall;
 }
 
@@ -134,18 +151,23 @@ Json chance_json(const std::optional<ChanceTest>& test) {
               {"p", figure_json(test->p)},
               {"exact", test->exact},
               {"deals", test->deals}};
-  put_method(object, how(*test), {"phipson2010"});
+  put_method(object, "that at least one participant can: " + how(*test), {"phipson2010"});
   return object;
 }
 
-Json d_prime_json(const DPrime& d_prime) {
-  Json object{{"estimate", figure_json(d_prime.estimate)},
-              {"low", figure_json(d_prime.low)},
-              {"high", figure_json(d_prime.high)}};
+Json d_prime_json(const MethodReport& method) {
+  const DPrime limits = method.d_prime_over_participants.value_or(DPrime{});
+  Json object{
+      {"estimate", figure_json(method.d_prime.estimate)},
+      {"low", figure_json(limits.low)},
+      {"high", figure_json(limits.high)},
+      {"of_trials",
+       {{"low", figure_json(method.d_prime.low)}, {"high", figure_json(method.d_prime.high)}}}};
   put_method(object,
              "nominal, of the pooled share, as if all classes were equally distant and no answer "
-             "preferred; low and high of the Clopper-Pearson interval",
-             {"green1966", "hacker1979"});
+             "preferred; low and high of the share's bootstrap interval over participants; "
+             "of_trials: of the Clopper-Pearson interval, which takes trials as independent",
+             {"green1966", "hacker1979", "davison1997"});
   return object;
 }
 
@@ -174,11 +196,14 @@ nlohmann::ordered_json method_object(const MethodReport& method,
               {"per_participant", participants_json(method, classes)},
               {"marginals", marginals_json(method.confusion)},
               {"chance", chance_json(method.chance)},
-              {"d_prime", d_prime_json(method.d_prime)}};
+              {"d_prime", d_prime_json(method)}};
   object["best_matching"] = matching_json(method.matching, classes);
   put_method(object["best_matching"],
-             "accuracy under the exchange of labels that suits the answers best; biased upward",
-             {"kuhn1955"});
+             "accuracy under the exchange of labels that suits the answers best; biased upward; "
+             "participants' swap_p: sign test of answers that agree with the exchange against "
+             "those with the own label, times the number of such exchanges; swap_p_adjusted: false "
+             "discovery rate over all participants and methods",
+             {"kuhn1955", "benjamini1995"});
   object["choice_model"] = method.choice ? choice_object(*method.choice) : Json(nullptr);
   object["reaction_time_s"] = reaction_array(method.reaction, classes);
   object["breakdowns"] = breakdowns_object(method.breakdowns);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <map>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -77,16 +76,46 @@ std::vector<DataCell> row_of(const Outcomes& outcomes, const TrialOutcome& trial
           flag(outcomes.simulated)};
 }
 
+/// From this many images on, the script takes them as a sample of others.
+constexpr std::size_t kFewestRandomImages = 10;
+
+std::size_t images_of(const Outcomes& outcomes) {
+  std::size_t images = 0;
+  for (const auto& of_class : outcomes.exemplars) images += of_class.size();
+  return images;
+}
+
+std::string what_of_images(const Outcomes& outcomes) {
+  const std::size_t images = images_of(outcomes);
+  if (images >= kFewestRandomImages) {
+    return "Images are random effects of the model, which speaks of images of which these are a "
+           "sample; the t does not.";
+  }
+  return fmt::format(
+      "With fewer than {} images, images are fixed effects: the results hold for the {} of this "
+      "study, and nothing can be said of others.",
+      kFewestRandomImages, images);
+}
+
 std::string notes(const Outcomes& outcomes) {
   return fmt::format(
-      "# Mixed model of {}\n\n{}`mixed_model.csv` has one row a trial that counts; `Rscript "
-      "mixed_model.R` fits\n\n    {}\n\nas a binomial model with a logit link (lme4). "
-      "Participants and images are random effects, so that the results hold for others like them; "
-      "with few images they hardly do. A trial without a response is wrong. `place` is the "
-      "trial's place among its participant's trials of the method; `previous_class` and "
-      "`previous_response` are those of the previous presentation in the same block.\n",
+      "# Mixed model of {}\n\n{}`mixed_model.csv` has one row a trial that counts. `Rscript "
+      "mixed_model.R` prints two analyses; with `--csv`, all their digits.\n\n1. Student's t over "
+      "participants' own accuracies: the result to quote. With methods in blocks of their own it "
+      "is adjusted for the period.\n2. A binomial model with a logit link (lme4, sum-coded):\n\n   "
+      " "
+      "{}\n\n   If it is singular or does not converge, the same with `||` in place of `|`; if "
+      "that "
+      "does not do either, none: a model in which people differ in their accuracy alone takes "
+      "chance for a difference between methods too often. Where all trials of some image or method "
+      "are right, or wrong (separation), the script leaves out what has no finite estimate, and "
+      "says so. Intervals and p have as many degrees of freedom as participants, less one.\n\n{} A "
+      "trial without a response is wrong. `period` is the place of a trial's block among its "
+      "participant's blocks; `place` the trial's place among its participant's trials of the "
+      "method; `previous_class` and `previous_response` are those of the previous presentation in "
+      "the same block.\n",
       outcomes.study, outcomes.simulated ? "SIMULATED: every participant is a program.\n\n" : "",
-      mixed_model_formula(outcomes));
+      mixed_model_formula(outcomes), what_of_images(outcomes));
 }
 
 }  // namespace
@@ -109,8 +138,16 @@ DataTable mixed_model_table(const Outcomes& outcomes) {
 }
 
 std::string mixed_model_formula(const Outcomes& outcomes) {
-  const char* fixed = outcomes.methods.size() > 1 ? "method" : "1";
-  return fmt::format("correct ~ {} + (1 | participant) + (1 | image)", fixed);
+  const bool several = outcomes.methods.size() > 1;
+  const std::size_t images = images_of(outcomes);
+  const std::string inner = several ? "1 + method" : "1";
+  const std::string random = fmt::format("({} | participant)", inner);
+  if (images >= kFewestRandomImages) {
+    return fmt::format("correct ~ {}{} + ({} | image)", several ? "method + period + " : "", random,
+                       inner);
+  }
+  const std::string image = images > 1 ? (several ? " * image" : "image + ") : "";
+  return "correct ~ " + (several ? "method" + image + " + period + " : image) + random;
 }
 
 std::vector<std::filesystem::path> export_mixed_model(const store::StudyStore& store,
@@ -124,106 +161,6 @@ std::vector<std::filesystem::path> export_mixed_model(const store::StudyStore& s
 }
 
 namespace {
-
-constexpr std::string_view kReading = R"R(
-arguments <- commandArgs(trailingOnly = FALSE)
-script <- sub("^--file=", "", grep("^--file=", arguments, value = TRUE))
-folder <- if (length(script) == 1) dirname(normalizePath(script)) else getwd()
-trials <- read.csv(file.path(folder, "mixed_model.csv"), na.strings = "", encoding = "UTF-8",
-                   colClasses = c(participant = "character", method = "character",
-                                  class = "character", image = "character",
-                                  response = "character", previous_class = "character",
-                                  previous_response = "character"))
-
-stop_with <- function(...) {
-  message(...)
-  quit(save = "no", status = 1)
-}
-
-simulated <- any(trials$simulated == 1)
-stamp <- function() {
-  if (simulated) cat("SIMULATED: every participant is a program.\n")
-}
-stamp()
-if (nrow(trials) == 0) stop_with("No trial counts yet: there is nothing to fit.")
-if (length(unique(trials$correct)) < 2) {
-  stop_with("Every trial is ", if (trials$correct[1] == 1) "correct" else "wrong",
-            ": a logit model has no finite estimate; report the interval of the report instead.")
-}
-if (!requireNamespace("lme4", quietly = TRUE)) {
-  stop_with("The package lme4 is missing. Install it with install.packages(\"lme4\"), or on ",
-            "Debian with: apt-get install r-cran-lme4")
-}
-
-trials$participant <- factor(trials$participant)
-trials$image <- factor(trials$image)
-trials$method <- factor(trials$method, levels = methods)
-several_methods <- nlevels(droplevels(trials$method)) > 1
-
-# A random term needs two levels or more.
-if (nlevels(trials$participant) < 2) model <- update(model, . ~ . - (1 | participant))
-if (nlevels(trials$image) < 2) model <- update(model, . ~ . - (1 | image))
-if (!several_methods) model <- update(model, . ~ . - method)
-is_mixed <- length(lme4::findbars(model)) > 0
-
-fit_of <- function(formula) {
-  tryCatch({
-    if (length(lme4::findbars(formula)) > 0) {
-      lme4::glmer(formula, data = trials, family = binomial,
-                  control = lme4::glmerControl(optimizer = "bobyqa"))
-    } else {
-      glm(formula, data = trials, family = binomial)
-    }
-  }, error = function(failure) {
-    stop_with("The model cannot be fitted: ", conditionMessage(failure))
-  })
-}
-
-cat("Model:", deparse(model, width.cutoff = 500), "\n")
-fit <- fit_of(model)
-print(summary(fit))
-if (is_mixed && lme4::isSingular(fit)) {
-  cat("The fit is singular: a variance is estimated as zero, because the data show no spread\n",
-      "between those participants or images beyond chance. The fixed effects still hold; say so\n",
-      "when you report them.\n", sep = "")
-}
-
-estimates <- if (is_mixed) lme4::fixef(fit) else coef(fit)
-errors <- sqrt(diag(as.matrix(vcov(fit))))
-low <- estimates - qnorm(0.975) * errors
-high <- estimates + qnorm(0.975) * errors
-as_p <- function(p) if (p < 1e-4) "p < 0.0001" else sprintf("p = %.3g", p)
-p_of <- function(z) as_p(2 * pnorm(-abs(z)))
-)R";
-
-constexpr std::string_view kOneMethod = R"R(
-chance <- trials$chance[1]
-cat(sprintf("\nTypical participant and image: %.1f %% correct, 95 %% Wald interval %.1f to %.1f %%\n",
-            100 * plogis(estimates[1]), 100 * plogis(low[1]), 100 * plogis(high[1])))
-cat(sprintf("Odds ratio against chance (%.3g): %.2f, interval %.2f to %.2f, %s\n", chance,
-            exp(estimates[1] - qlogis(chance)), exp(low[1] - qlogis(chance)),
-            exp(high[1] - qlogis(chance)), p_of((estimates[1] - qlogis(chance)) / errors[1])))
-stamp()
-)R";
-
-constexpr std::string_view kSeveralMethods = R"R(
-if (several_methods) {
-  cat(sprintf("\nOdds ratios against the method %s, with 95 %% Wald intervals:\n",
-              levels(droplevels(trials$method))[1]))
-  for (i in seq_along(estimates)[-1]) {
-    cat(sprintf("  %s: %.2f, %.2f to %.2f, %s\n", sub("^method", "", names(estimates)[i]),
-                exp(estimates[i]), exp(low[i]), exp(high[i]), p_of(estimates[i] / errors[i])))
-  }
-  without <- fit_of(update(model, . ~ . - method))
-  ratio <- 2 * (as.numeric(logLik(fit)) - as.numeric(logLik(without)))
-  degrees <- length(estimates) - 1
-  cat(sprintf("Likelihood ratio of all methods together: chi-squared(%d) = %.2f, %s\n",
-              degrees, ratio, as_p(pchisq(ratio, degrees, lower.tail = FALSE))))
-} else {
-  cat("\nTrials of one method alone count: there is nothing to compare.\n")
-}
-stamp()
-)R";
 
 /// The text as a quoted R string.
 std::string r_text(const std::string& text) {
@@ -245,11 +182,9 @@ std::string mixed_model_script(const Outcomes& outcomes) {
   const std::string head = fmt::format(
       "# Mixed model of the study {}{}. Run: Rscript mixed_model.R\n"
       "# Needs lme4; reads mixed_model.csv beside this file. What it means: mixed_model.md.\n"
-      "model <- {}\nmethods <- c({})\n",
-      outcomes.study, outcomes.simulated ? " (SIMULATED)" : "", mixed_model_formula(outcomes),
-      method_names(outcomes));
-  return head + std::string(kReading) +
-         std::string(outcomes.methods.size() > 1 ? kSeveralMethods : kOneMethod);
+      "methods <- c({})\n\n",
+      outcomes.study, outcomes.simulated ? " (SIMULATED)" : "", method_names(outcomes));
+  return head + std::string(mixed_model_functions());
 }
 
 }  // namespace touchtrial::analysis::identification

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchtrial::analysis::identification {
@@ -16,9 +17,12 @@ namespace touchtrial::analysis::identification {
 /// block and after a catch trial.
 [[nodiscard]] DataTable mixed_model_table(const Outcomes& outcomes);
 
-/// The model as an lme4 formula: participants and images are random effects; the method is a fixed
-/// effect if several methods are compared.
+/// The model that the script fits first, as an lme4 formula. Participants differ in everything that
+/// is compared; images are fixed effects if they are fewer than ten, and random ones otherwise.
 [[nodiscard]] std::string mixed_model_formula(const Outcomes& outcomes);
+
+/// The part of the script that is the same for every study: mixed_model_functions.R, built in.
+[[nodiscard]] std::string_view mixed_model_functions() noexcept;
 
 /// The text of mixed_model.R.
 [[nodiscard]] std::string mixed_model_script(const Outcomes& outcomes);

@@ -4,12 +4,30 @@
 #include "analysis/statistics/paired_tests.hpp"
 #include "protocols/identification/analysis/chance.hpp"
 #include "protocols/identification/analysis/counted_trials.hpp"
+#include "protocols/identification/analysis/primary.hpp"
 #include "protocols/identification/analysis/report_parts.hpp"
 
 #include <algorithm>
 #include <utility>
 
 namespace touchtrial::analysis::identification {
+
+namespace {
+
+/// Adjusts the p of label swaps over all participants and methods of the study.
+void adjust_swaps(std::vector<MethodReport>& methods) {
+  std::vector<double> p_values;
+  for (const MethodReport& method : methods) {
+    for (const ParticipantAccuracy& one : method.per_participant) p_values.push_back(one.swap_p);
+  }
+  const std::vector<double> adjusted = discovery_adjusted(p_values);
+  auto next = adjusted.begin();
+  for (MethodReport& method : methods) {
+    for (ParticipantAccuracy& one : method.per_participant) one.swap_adjusted = *next++;
+  }
+}
+
+}  // namespace
 
 StudyReport make_report(const Outcomes& outcomes) {
   const auto classes = static_cast<int>(outcomes.classes.size());
@@ -19,9 +37,12 @@ StudyReport make_report(const Outcomes& outcomes) {
   for (int i = 0; i < static_cast<int>(outcomes.methods.size()); ++i) {
     report.methods.push_back(method_report(outcomes, i, counted));
   }
+  adjust_swaps(report.methods);
   report.pairs = method_pairs(classes, counted);
   if (report.methods.size() == 2) report.comparison = report.pairs.front().overall;
   report.together = methods_together(classes, counted);
+  report.primary = primary_result(outcomes);
+  if (report.methods.size() == 1) report.prevalence = report.methods.front().prevalence;
   report.warnings = report_warnings(outcomes, report);
   return report;
 }
@@ -30,6 +51,8 @@ namespace {
 
 using Choices = std::vector<Choice>;
 
+/// With fewer, the ends of a bootstrap interval are the most extreme draws.
+constexpr std::size_t kFewestForBootstrap = 6;
 constexpr int kNullDeals = 500;
 constexpr int kFewestNullDeals = 50;
 constexpr int kMostNullTrials = 1'000'000;
@@ -46,18 +69,31 @@ int null_deals(int trials) {
   return std::clamp(kMostNullTrials / std::max(1, trials), kFewestNullDeals, kNullDeals);
 }
 
-void add_class_accuracies(MethodReport& report) {
+/// The participants' own accuracies with a class.
+std::vector<double> shares_of_class(const std::vector<OwnTrials>& by_participant, int class_index) {
+  std::vector<double> shares;
+  for (const OwnTrials& trials : by_participant) {
+    const auto share = accuracy_of(of_class(trials, class_index)).share();
+    if (share) shares.push_back(*share);
+  }
+  return shares;
+}
+
+void add_class_accuracies(const std::vector<OwnTrials>& by_participant, MethodReport& report) {
   for (int i = 0; i < report.confusion.classes(); ++i) {
     const Proportion accuracy = report.confusion.accuracy(i);
     report.accuracy.push_back({accuracy, wilson_interval(accuracy),
-                               clopper_pearson_interval(accuracy), jeffreys_interval(accuracy)});
+                               clopper_pearson_interval(accuracy), jeffreys_interval(accuracy),
+                               participant_mean(shares_of_class(by_participant, i))});
   }
 }
 
 ParticipantAccuracy participant_accuracy(int classes, const std::string& name,
                                          const OwnTrials& trials) {
   const ConfusionMatrix own(classes, choices_of(trials));
-  return {name, accuracy_of(trials), best_label_matching(own), raw_information_transfer(own)};
+  const LabelMatching matching = best_label_matching(own);
+  return {name, accuracy_of(trials), matching, raw_information_transfer(own),
+          label_swap_p(own, matching)};
 }
 
 void add_participants(int classes, const CountedTrials& counted, int method, MethodReport& report) {
@@ -72,7 +108,23 @@ void add_participants(int classes, const CountedTrials& counted, int method, Met
     shares.push_back(accuracies.back().share().value_or(0.0));
   }
   report.mean = participant_mean(shares);
-  report.bootstrap = cluster_bootstrap(accuracies, static_cast<std::uint64_t>(method));
+  report.bootstrap = bootstrap_mean(shares, static_cast<std::uint64_t>(method));
+  report.spread = spread_of(accuracies);
+  if (accuracies.size() < kFewestForBootstrap) return;
+  const auto pooled = cluster_bootstrap(accuracies, static_cast<std::uint64_t>(method));
+  if (pooled && pooled->low < pooled->high) {
+    report.d_prime_over_participants = d_prime(report.overall, classes, *pooled);
+  }
+}
+
+/// Adds the p of the fit by drawn tables: fewer of them where each has many trials.
+void judge(ChoiceModel& model, int trials, int method) {
+  constexpr int kMostDrawnTrials = 5'000'000;
+  constexpr int kFewestDraws = 199;
+  constexpr int kMostDraws = 999;
+  if (!model.converged) return;
+  model.draws = std::clamp(kMostDrawnTrials / std::max(1, trials), kFewestDraws, kMostDraws);
+  model.drawn_p = choice_model_p(model, model.draws, static_cast<std::uint64_t>(method));
 }
 
 void add_confusions(const Outcomes& outcomes, const CountedTrials& counted, int method,
@@ -85,6 +137,7 @@ void add_confusions(const Outcomes& outcomes, const CountedTrials& counted, int 
   report.information = information_transfer(classes, choices, static_cast<std::uint64_t>(method),
                                             null_deals(report.overall.n));
   report.choice = choice_model(report.confusion);
+  if (report.choice) judge(*report.choice, report.overall.n, method);
   report.matching = best_label_matching(report.confusion);
   report.d_prime = d_prime(report.overall, classes);
 }
@@ -96,9 +149,11 @@ MethodReport method_report(const Outcomes& outcomes, int method, const CountedTr
   MethodReport report;
   report.method = outcomes.methods[method];
   add_confusions(outcomes, counted, method, report);
-  add_class_accuracies(report);
+  add_class_accuracies(counted.trials[method], report);
   add_participants(classes, counted, method, report);
-  report.chance = chance_of(outcomes, method);
+  KnownMatches known;
+  report.chance = chance_of(outcomes, method, kMostChanceDeals, &known);
+  report.prevalence = own_prevalence(outcomes, method, &known);
   report.reaction = reaction_times(outcomes, method);
   report.breakdowns = breakdowns(outcomes, method);
   report.robustness = robustness(outcomes, method);
@@ -186,6 +241,9 @@ MethodPair method_pair(int classes, const CountedTrials& counted, int first, int
   pair.second = second;
   pair.overall = compared(proportions);
   pair.odds_ratio = mantel_haenszel(proportions);
+  if (pair.odds_ratio && proportions.size() >= kFewestForBootstrap) {
+    pair.odds_ratio->bootstrap = odds_ratio_bootstrap(proportions);
+  }
   pair.mcnemar_mid_p = mcnemar_of(proportions);
   for (int i = 0; i < classes; ++i) {
     pair.classes.push_back(class_comparison(counted, first, second, pairs, i));

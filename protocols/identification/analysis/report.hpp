@@ -9,7 +9,9 @@
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/information_transfer.hpp"
 #include "analysis/statistics/paired_tests.hpp"
+#include "analysis/statistics/prevalence.hpp"
 #include "analysis/statistics/proportion.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "analysis/study_head.hpp"
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 #include "protocols/identification/analysis/subsets.hpp"
@@ -20,12 +22,18 @@
 
 namespace touchtrial::analysis::identification {
 
-/// Accuracy with a class, pooled over all participants' trials.
+/// Accuracy with a class.
 struct ClassAccuracy {
-  Proportion accuracy;
-  Interval wilson;
+  Proportion accuracy;  ///< all participants' trials pooled
+  Interval wilson;      ///< this and the next two treat pooled trials as independent
   Interval clopper_pearson;
   Interval jeffreys{};
+  MeanEstimate mean{};  ///< mean of the participants' own accuracies with the class
+
+  /// Whether `mean` has an interval that says something: with two participants or more who differ.
+  [[nodiscard]] bool has_interval_over_participants() const noexcept {
+    return mean.participants > 1 && mean.interval.low < mean.interval.high;
+  }
 };
 
 struct ParticipantAccuracy {
@@ -33,6 +41,8 @@ struct ParticipantAccuracy {
   Proportion accuracy;
   LabelMatching matching{};             ///< accuracy under the best exchange of labels
   std::optional<double> consistency{};  ///< raw information transfer, bits; never a headline
+  double swap_p = 1.0;                  ///< label_swap_p of the matching
+  double swap_adjusted = 1.0;           ///< discovery_adjusted over all participants and methods
 };
 
 /// The numbers of one method. Trials without a response are wrong everywhere except in information
@@ -45,9 +55,13 @@ struct MethodReport {
   MeanEstimate mean;                    ///< mean of the participants' accuracies: the headline
   InformationTransfer information;
   std::vector<ParticipantAccuracy> per_participant;  ///< in the order of sessions
-  std::optional<Interval> bootstrap{};               ///< cluster_bootstrap of the headline
-  std::optional<ChanceTest> chance{};
-  DPrime d_prime{};  ///< nominal, from the pooled trials
+  std::optional<Interval> bootstrap{};               ///< bootstrap_mean of the same accuracies
+  std::optional<Spread> spread{};                    ///< of participants' own probabilities
+  std::optional<ChanceTest> chance{};                ///< that at least one participant can
+  std::optional<Prevalence> prevalence{};            ///< own_prevalence
+  DPrime d_prime{};  ///< nominal, from the pooled trials, with the limits of independent trials
+  /// The same, with limits by drawing participants; nothing unless six or more of them differ.
+  std::optional<DPrime> d_prime_over_participants{};
   std::optional<ChoiceModel> choice{};
   LabelMatching matching{};             ///< of the pooled trials
   std::vector<ReactionTimes> reaction;  ///< by class, then of all classes together

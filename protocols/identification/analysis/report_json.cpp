@@ -91,11 +91,13 @@ Json class_json(const ClassComparison& one, const std::string& label) {
 Json odds_ratio_json(const std::optional<OddsRatio>& ratio) {
   if (!ratio) return nullptr;
   Json object{{"estimate", figure_json(ratio->estimate)},
-              {"interval", interval_json(ratio->interval)}};
+              {"interval", interval_json(ratio->bootstrap)},
+              {"interval_of_trials", interval_json(ratio->interval)}};
   put_method(object,
-             "Mantel and Haenszel's common odds ratio, participants as strata; interval of Robins, "
-             "Breslow and Greenland",
-             {"mantel1959", "robins1986"});
+             "Mantel and Haenszel's common odds ratio, participants as strata; interval: expanded "
+             "percentiles of 9,999 draws of participants; interval_of_trials: of Robins, Breslow "
+             "and Greenland, which takes trials as independent",
+             {"mantel1959", "robins1986", "davison1997", "hesterberg2015"});
   return object;
 }
 
@@ -158,9 +160,10 @@ Json comparison_json(const MethodComparison& comparison) {
 Json intervals_json() {
   Json object;
   put_method(object,
-             "95 %, all participants' trials pooled as if independent; p is correct / n, with "
-             "trials without a response as wrong",
-             {"wilson1927", "clopper1934", "brown2001"});
+             "wilson, clopper_pearson and jeffreys: 95 %, all participants' trials pooled as if "
+             "independent; p is correct / n, with trials without a response as wrong; mean and "
+             "interval: of participants' own accuracies, by Student's t",
+             {"wilson1927", "clopper1934", "brown2001", "student1908"});
   return object;
 }
 
@@ -193,6 +196,7 @@ nlohmann::ordered_json report_object(const StudyReport& report) {
   object["collection"] = collection_object(report.collection);
   if (report.cues) object["cues"] = cues_object(*report.cues);
   object["references"] = references_object();
+  put_registered(object, report);
   return object;
 }
 

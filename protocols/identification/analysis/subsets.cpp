@@ -184,8 +184,8 @@ namespace {
 constexpr TrialSubset kSubsets[] = {TrialSubset::counted, TrialSubset::answered, TrialSubset::valid,
                                     TrialSubset::with_excluded_sessions};
 
-/// Completed sessions whose exclusion is the only reason why they do not count. A participant who
-/// was excluded and started again is left out, because the new session counts already.
+}  // namespace
+
 std::set<int> excluded_sessions(const Outcomes& outcomes) {
   std::set<int> excluded;
   for (const auto& [row, counted] : outcomes.sessions) {
@@ -196,6 +196,8 @@ std::set<int> excluded_sessions(const Outcomes& outcomes) {
   }
   return excluded;
 }
+
+namespace {
 
 bool belongs_to(TrialSubset subset, const TrialOutcome& trial, const std::set<int>& excluded) {
   switch (subset) {

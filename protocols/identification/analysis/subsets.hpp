@@ -6,6 +6,7 @@
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/proportion.hpp"
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,10 @@ struct SubsetAccuracy {
   Proportion pooled;
   MeanEstimate mean;
 };
+
+/// Completed sessions whose exclusion is the only reason why they do not count. A participant who
+/// was excluded and started again is left out, because the new session counts already.
+[[nodiscard]] std::set<int> excluded_sessions(const Outcomes& outcomes);
 
 /// "counted", "answered", "valid", "with_excluded_sessions"
 [[nodiscard]] std::string name_of(TrialSubset subset);

@@ -17,10 +17,7 @@ using Warnings = std::vector<std::string>;
 
 constexpr int kSmallCell = 5;
 constexpr std::size_t kMostNames = 5;
-/// With random answers to 5 classes, the best of the 5! exchanges of labels gains about 18
-/// percentage points over the accuracy.
-constexpr double kSuspectGain = 0.3;
-constexpr double kSuspectShare = 0.5;
+constexpr double kFalseSwaps = 0.05;  ///< rate of false ones among the swaps that are reported
 constexpr double kCeiling = 0.95;
 
 /// The first few names of many.
@@ -60,23 +57,18 @@ void warn_of_unanswered_classes(const MethodReport& method, const std::vector<st
                   method.method, few(never)));
 }
 
-bool suspect_swap(const ParticipantAccuracy& one) {
-  const double accuracy = one.accuracy.share().value_or(0.0);
-  const double matched = one.matching.accuracy.share().value_or(0.0);
-  return matched >= kSuspectShare && matched - accuracy >= kSuspectGain;
-}
-
 void warn_of_swapped_labels(const MethodReport& method, Warnings& warnings) {
   std::vector<std::string> suspects;
   for (const ParticipantAccuracy& one : method.per_participant) {
-    if (!suspect_swap(one)) continue;
+    if (one.swap_adjusted > kFalseSwaps) continue;
     suspects.push_back(fmt::format("{} ({}, but {} under the best exchange)", one.participant,
                                    percent_of(one.accuracy), percent_of(one.matching.accuracy)));
   }
   if (suspects.empty()) return;
   warnings.push_back(
       fmt::format("{}: labels may have been swapped by {}; accuracy says less than consistency "
-                  "there.",
+                  "there. A study in which nobody swaps labels raises this with a probability of "
+                  "0.05 at most (Benjamini, Hochberg 1995, over all participants).",
                   method.method, few(suspects)));
 }
 
@@ -247,6 +239,8 @@ void warn_of_sessions(const Outcomes& outcomes, const std::string& why, Which wh
 }
 
 void warn_of_state(const Outcomes& outcomes, Warnings& warnings) {
+  const std::string unadjusted = unadjusted_words(outcomes.looked.looks);
+  if (!unadjusted.empty()) warnings.push_back("Looks at outcomes before the end: " + unadjusted);
   if (outcomes.pilot) warnings.emplace_back("A pilot: not to be pooled with the study's data.");
   if (outcomes.visual) {
     warnings.emplace_back(
@@ -327,8 +321,9 @@ void warn_of_participants(const StudyReport& report, Warnings& warnings) {
         "next to nothing.");
   } else {
     warnings.emplace_back(
-        "Intervals of a class pool all participants' trials as if they were independent, so they "
-        "are too narrow; the interval to quote is that of the mean over participants.");
+        "Wilson, Clopper-Pearson and Jeffreys intervals pool all participants' trials as if they "
+        "were independent, so they are too narrow; the intervals to quote are those over "
+        "participants.");
   }
   for (const MethodReport& method : report.methods) {
     if (method.mean.participants > 1 && method.mean.interval.low == method.mean.interval.high) {

@@ -11,9 +11,13 @@
 #include "analysis/statistics/confusion.hpp"
 #include "analysis/statistics/d_prime.hpp"
 #include "analysis/statistics/descriptive.hpp"
+#include "analysis/statistics/group_sequential.hpp"
 #include "analysis/statistics/information_transfer.hpp"
+#include "analysis/statistics/mean_test.hpp"
 #include "analysis/statistics/paired_tests.hpp"
+#include "analysis/statistics/prevalence.hpp"
 #include "analysis/statistics/proportion.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <cmath>
 #include <exception>
@@ -75,6 +79,37 @@ Numbers t_interval(const json& c) {
 
 Numbers sign_flip(const json& c) {
   return {analysis::sign_flip_p(numbers(c.at("values")))};
+}
+
+analysis::Sides sides(const json& c) {
+  return c.at("sides") == "one" ? analysis::Sides::one : analysis::Sides::two;
+}
+
+Numbers t_test(const json& c) {
+  return {analysis::t_test_p(numbers(c.at("values")), c.at("null"), sides(c))};
+}
+
+Numbers sequential(const json& c) {
+  const auto spending = c.at("spending") == "pocock" ? analysis::AlphaSpending::pocock
+                                                     : analysis::AlphaSpending::obrien_fleming;
+  const std::vector<double> levels =
+      analysis::nominal_levels(c.at("alpha"), sides(c), spending, numbers(c.at("shares")));
+  return {levels.begin(), levels.end()};
+}
+
+Numbers spread(const json& c) {
+  std::vector<analysis::Proportion> participants;
+  for (const json& one : c.at("participants")) participants.push_back(proportion(one));
+  const std::optional<analysis::Spread> result = analysis::spread_of(participants, c.at("level"));
+  if (!result) return {std::nullopt, std::nullopt, std::nullopt};
+  return {result->estimate, result->interval.low, result->interval.high};
+}
+
+Numbers prevalence(const json& c) {
+  const std::optional<analysis::Prevalence> result =
+      analysis::prevalence_of(proportion(c.at("of")), c.at("chance"), c.at("level"));
+  if (!result) return {std::nullopt, std::nullopt, std::nullopt};
+  return {result->estimate, result->interval.low, result->interval.high};
 }
 
 Numbers mcnemar(const json& c) {
@@ -167,6 +202,41 @@ Numbers bootstrap(const json& c) {
   return both(analysis::cluster_bootstrap(participants, 0, c.at("draws"), c.at("level")));
 }
 
+Numbers ratio_bootstrap(const json& c) {
+  std::vector<analysis::Ratio> parts;
+  for (const json& one : c.at("parts")) parts.push_back({one.at(0), one.at(1)});
+  return both(analysis::bootstrap_ratio(parts, 0, c.at("draws"), c.at("level")));
+}
+
+/// Of the variance with divisor n, which the jackknife makes unbiased.
+Numbers jackknifed_variance(const json& c) {
+  const std::vector<double> values = numbers(c.at("values"));
+  const auto variance = [](const std::vector<double>& of) {
+    const double sd =
+        analysis::standard_deviation(of, analysis::mean_of(of), static_cast<double>(of.size()));
+    return sd * sd;
+  };
+  std::vector<double> without;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::vector<double> others = values;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    without.push_back(variance(others));
+  }
+  const analysis::JackknifeEstimate found =
+      analysis::jackknife(variance(values), without, {-1e9, 1e9}, c.at("level"));
+  return {found.value, found.interval.low, found.interval.high};
+}
+
+Numbers label_swap(const json& c) {
+  const analysis::ConfusionMatrix matrix = confusion(c.at("counts"));
+  return {analysis::label_swap_p(matrix, analysis::best_label_matching(matrix))};
+}
+
+Numbers discovery(const json& c) {
+  const std::vector<double> adjusted = analysis::discovery_adjusted(numbers(c.at("p")));
+  return {adjusted.begin(), adjusted.end()};
+}
+
 Numbers mean_bootstrap(const json& c) {
   return both(analysis::bootstrap_mean(numbers(c.at("values")), 0, c.at("draws"), c.at("level")));
 }
@@ -178,6 +248,10 @@ Numbers numbers_of(const json& one) {
       {"jeffreys", jeffreys},
       {"t_interval", t_interval},
       {"sign_flip", sign_flip},
+      {"t_test", t_test},
+      {"nominal_levels", sequential},
+      {"spread", spread},
+      {"prevalence", prevalence},
       {"mcnemar", mcnemar},
       {"cochran_q", cochran},
       {"holm", holm},
@@ -187,6 +261,10 @@ Numbers numbers_of(const json& one) {
       {"chance_test", chance},
       {"choice_model", choices},
       {"label_matching", matching},
+      {"label_swap", label_swap},
+      {"discovery", discovery},
+      {"jackknife", jackknifed_variance},
+      {"bootstrap_ratio", ratio_bootstrap},
       {"quartiles", three_quartiles},
       {"cluster_bootstrap", bootstrap},
       {"bootstrap_mean", mean_bootstrap}};

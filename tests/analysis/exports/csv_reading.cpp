@@ -5,7 +5,10 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <ctime>
+#include <iomanip>
 #include <optional>
+#include <sstream>
 
 namespace touchtrial {
 namespace {
@@ -72,6 +75,32 @@ void read_sessions(analysis::Outcomes& outcomes, const std::filesystem::path& fo
     const store::SessionRow session = session_row_of(row);
     if (outcomes.state.interim) outcomes.state.interim->insert(session.session);
     outcomes.sessions.push_back({session, is_set(row.at("counted"))});
+    const std::string& decided = row.at("after_look");
+    const auto note = [&](const char* word, std::set<int>& sessions) {
+      if (decided.find(word) != std::string::npos) sessions.insert(session.session);
+    };
+    note("excluded", outcomes.looked.excluded_afterwards);
+    note("replaced", outcomes.looked.replaced_afterwards);
+    note("erased", outcomes.looked.erased_afterwards);
+  }
+}
+
+void read_looks(analysis::Outcomes& outcomes, const std::filesystem::path& folder) {
+  for (const CsvRow& row : rows_of(folder / "looks.csv")) {
+    analysis::Look look;
+    std::istringstream at(row.at("at"));
+    std::tm civil{};
+    REQUIRE(at >> std::get_time(&civil, "%Y-%m-%dT%H:%M:%SZ"));
+    look.at = std::chrono::seconds(timegm(&civil));
+    look.participants = number_of<int>(row.at("participants"));
+    look.reason = row.at("reason");
+    look.participant = row.at("participant");
+    look.station = number_of<int>(row.at("station"));
+    for (const auto kind : {analysis::LookKind::final, analysis::LookKind::registered,
+                            analysis::LookKind::unregistered, analysis::LookKind::person}) {
+      if (analysis::name_of(kind) == row.at("kind")) look.kind = kind;
+    }
+    outcomes.looked.looks.push_back(look);
   }
 }
 
@@ -184,6 +213,7 @@ analysis::Outcomes outcomes_from_csv(const std::filesystem::path& folder) {
   analysis::Outcomes outcomes;
   read_study(outcomes, folder);
   read_sessions(outcomes, folder);
+  read_looks(outcomes, folder);
   outcomes.collection = collection_from_csv(folder, outcomes.state);
   read_trials(outcomes, folder / "trials.csv");
   read_trials(outcomes, folder / "unscored_trials.csv");

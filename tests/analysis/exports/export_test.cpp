@@ -41,7 +41,7 @@ TEST_CASE("Exported trials count up to the report") {
       analysis::identification::make_report(outcomes);
   const std::filesystem::path out = study.folder() / "new" / "out";
   const auto files = analysis::export_csv(study.store(), outcomes, out);
-  REQUIRE(files.size() == 10);
+  REQUIRE(files.size() == 11);
 
   std::map<std::string, std::map<std::string, std::map<std::string, int>>> counts;
   int correct = 0;

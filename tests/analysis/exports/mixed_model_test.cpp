@@ -48,20 +48,40 @@ TEST_CASE("The table for a mixed model has the trials of the report and what cam
   CHECK(correct == report.methods[0].overall.correct + report.methods[1].overall.correct);
 }
 
-TEST_CASE("The mixed model compares methods, or asks for the level of one") {
+TEST_CASE("In the mixed model people differ in what is compared, and few images are fixed") {
   FakeStudy pair(design::identification::comparison());
   fill(pair);
-  const analysis::Outcomes two = analysis::load_outcomes(pair.store(), pair.key());
+  analysis::Outcomes two = analysis::load_outcomes(pair.store(), pair.key());
   CHECK(analysis::identification::mixed_model_formula(two) ==
-        "correct ~ method + (1 | participant) + (1 | image)");
+        "correct ~ method * image + period + (1 + method | participant)");
   CHECK(contains(analysis::identification::mixed_model_script(two),
                  "methods <- c(\"adaptive\", \"tv-gabor\")"));
+  two.exemplars = {{"1", "2", "3", "4", "5"}, {"6", "7", "8", "9", "10"}};
+  CHECK(analysis::identification::mixed_model_formula(two) ==
+        "correct ~ method + period + (1 + method | participant) + (1 + method | image)");
   FakeStudy single(design::identification::classification());
   fill(single);
   const analysis::Outcomes one = analysis::load_outcomes(single.store(), single.key());
   CHECK(analysis::identification::mixed_model_formula(one) ==
-        "correct ~ 1 + (1 | participant) + (1 | image)");
+        "correct ~ image + (1 | participant)");
   CHECK(contains(analysis::identification::mixed_model_script(one), "SIMULATED"));
+}
+
+TEST_CASE("The script of the mixed model holds all of its functions, and says what it leaves out") {
+  FakeStudy study(design::identification::comparison());
+  fill(study);
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  const std::string script = analysis::identification::mixed_model_script(outcomes);
+  CHECK(script.ends_with(std::string(analysis::identification::mixed_model_functions())));
+  CHECK(script.ends_with("if (sys.nframe() == 0L) main(methods)\n"));
+  CHECK(contains(script, "nothing here can speak of other images"));
+  CHECK(contains(script, "Separation: "));
+  // No fallback leaves people differing in their accuracy alone.
+  CHECK_FALSE(contains(script, "(1 | participant)"));
+  analysis::identification::export_mixed_model(study.store(), outcomes, study.folder() / "r");
+  const std::string notes = text_of_file(study.folder() / "r" / "mixed_model.md");
+  CHECK(contains(notes, "(1 + method | participant)"));
+  CHECK(contains(notes, "nothing can be said of others"));
 }
 
 }  // namespace touchtrial

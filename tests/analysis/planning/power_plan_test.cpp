@@ -120,7 +120,7 @@ TEST_CASE("stopping early is seldom wrong about its targets, even for powers nea
       for (planning::PowerRun& run : runs) run.p = random.uniform() < power ? 0.01 : 1.0;
       const int made = planning::certain_after(plan, runs).value_or(plan.runs);
       int significant = 0;
-      for (int i = 0; i < made; ++i) significant += planning::is_significant(runs[i]) ? 1 : 0;
+      for (int i = 0; i < made; ++i) significant += planning::is_significant(runs[i], 0.05) ? 1 : 0;
       const analysis::Interval interval = planning::power_interval(plan, {made, significant});
       if (power < interval.low || power > interval.high) ++wrong;
     }

@@ -91,6 +91,36 @@ TEST_CASE("intervals of the profile and of simulated studies have similar widths
   CHECK(fit.subject.position_bias == 0.0);
 }
 
+TEST_CASE("people who differ are fitted as such, and --fix spread says that they are not") {
+  simulation::SubjectModel truth = planned_subject();
+  truth.weber = 0.6;
+  truth.weber_spread = 1.2;
+  const planning::FitCounts counts = simulated_counts(planned_study(), truth, 30, 6, 11);
+  const planning::SubjectFit fit = fitted(counts);
+  REQUIRE(fit.people.has_value());
+  CHECK(fit.people->alike_p < 0.001);
+  CHECK(fit.spread_taken);
+  CHECK(holds(fit.people->interval, truth.weber_spread));
+  CHECK(fit.subject.weber_spread == fit.people->spread);
+  CHECK(warns_of(fit, "participants differ more than the subject says (spread of noise 0.00"));
+  CHECK(fit.p.value() > 0.01);
+  const planning::SubjectFit alike = fitted(counts, {.free = {.spread = false}, .bootstraps = 20});
+  CHECK_FALSE(alike.spread_taken);
+  CHECK(alike.subject.weber_spread == 0.0);
+  CHECK(warns_of(alike, "the fit describes people who are not these"));
+}
+
+TEST_CASE("people who do not differ keep the spread that the subject has") {
+  simulation::SubjectModel truth = planned_subject();
+  truth.weber = 0.6;
+  const planning::FitCounts counts = simulated_counts(planned_study(), truth, 20, 5, 12);
+  const planning::SubjectFit fit = fitted(counts, {.bootstraps = 0});
+  REQUIRE(fit.people.has_value());
+  CHECK_FALSE(fit.spread_taken);
+  CHECK(fit.people->interval.lower == 0.0);
+  CHECK_FALSE(warns_of(fit, "participants differ"));
+}
+
 TEST_CASE("a fit is a function of its arguments, for any number of jobs") {
   simulation::SubjectModel truth = planned_subject();
   truth.weber = 0.7;

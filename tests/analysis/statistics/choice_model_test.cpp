@@ -209,4 +209,32 @@ TEST_CASE("choice_model is nothing where a class was never presented or never an
   CHECK_FALSE(analysis::choice_model(silent).has_value());
 }
 
+TEST_CASE("a table that follows the choice model fits as well as any drawn one") {
+  // Symmetric counts are quasi-symmetric: G squared is 0.
+  const analysis::ChoiceModel model =
+      *analysis::choice_model(confusion_of_counts({{9, 2, 3}, {2, 9, 1}, {3, 1, 9}}));
+  CHECK(analysis::choice_model_p(model, 99) == 1.0);
+}
+
+TEST_CASE(
+    "a table that no choice model gives fits worse than the drawn ones, always by the same p") {
+  const analysis::ChoiceModel model =
+      *analysis::choice_model(confusion_of_counts({{80, 40, 1}, {1, 80, 40}, {40, 1, 80}}));
+  CHECK(analysis::choice_model_p(model, 99) == 0.01);
+  const analysis::ChoiceModel five = *analysis::choice_model(confusion_of_counts(kFive));
+  const double p = analysis::choice_model_p(five, 399).value();
+  CHECK(p == analysis::choice_model_p(five, 399).value());
+  // With 125 trials the two differ, but by little.
+  CHECK(p == Approx(five.p.value()).margin(0.1));
+  CHECK_FALSE(p == analysis::choice_model_p(five, 399, 1).value());
+}
+
+TEST_CASE("without degrees of freedom nothing is drawn") {
+  const analysis::ChoiceModel model =
+      *analysis::choice_model(confusion_of_counts({{8, 2}, {4, 6}}));
+  CHECK_FALSE(analysis::choice_model_p(model, 99).has_value());
+  const analysis::ChoiceModel five = *analysis::choice_model(confusion_of_counts(kFive));
+  CHECK_THROWS_AS(analysis::choice_model_p(five, 0), std::invalid_argument);
+}
+
 }  // namespace touchtrial

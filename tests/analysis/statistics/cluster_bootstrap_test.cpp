@@ -1,5 +1,6 @@
 #include "analysis/statistics/cluster_bootstrap.hpp"
 
+#include "analysis/statistics/descriptive.hpp"
 #include "core/random.hpp"
 #include "support/catch.hpp"
 
@@ -131,6 +132,73 @@ TEST_CASE("A bootstrap refuses impossible arguments") {
   CHECK_THROWS_AS(analysis::cluster_bootstrap(two, 0, 99, 1.0), std::invalid_argument);
   const std::vector<double> infinite{1.0, std::numeric_limits<double>::infinity()};
   CHECK_THROWS_AS(analysis::bootstrap_mean(infinite), std::invalid_argument);
+}
+
+TEST_CASE("the bootstrap of a ratio draws whole participants, and has no infinite end") {
+  const std::vector<analysis::Ratio> alike(6, {3.0, 2.0});
+  CHECK(analysis::bootstrap_ratio(alike).value().low == Approx(1.5));
+  CHECK(analysis::bootstrap_ratio(alike).value().high == Approx(1.5));
+  CHECK_FALSE(analysis::bootstrap_ratio(std::vector<analysis::Ratio>{{1.0, 2.0}}).has_value());
+  const std::vector<analysis::Ratio> often_infinite{{1.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}};
+  CHECK_FALSE(analysis::bootstrap_ratio(often_infinite).has_value());
+  const std::vector<analysis::Ratio> negative{{1.0, -1.0}, {1.0, 1.0}};
+  CHECK_THROWS_AS(analysis::bootstrap_ratio(negative), std::invalid_argument);
+}
+
+TEST_CASE("the bootstrap of a ratio with equal denominators is that of a mean") {
+  std::vector<analysis::Ratio> ratios;
+  std::vector<double> values;
+  RandomStream random(1, "bootstrap of a ratio");
+  for (int i = 0; i < 20; ++i) {
+    values.push_back(1.0 + random.uniform());
+    ratios.push_back({values.back(), 1.0});
+  }
+  const analysis::Interval ratio = analysis::bootstrap_ratio(ratios, 0, 49'999).value();
+  const analysis::Interval mean = analysis::bootstrap_mean(values, 0, 49'999).value();
+  CHECK(ratio.low == Approx(mean.low).margin(0.005));
+  CHECK(ratio.high == Approx(mean.high).margin(0.005));
+}
+
+/// The statistic of all values but each.
+template <typename Statistic>
+std::vector<double> without_each(const std::vector<double>& values, Statistic statistic) {
+  std::vector<double> results;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::vector<double> others = values;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    results.push_back(statistic(others));
+  }
+  return results;
+}
+
+TEST_CASE("the jackknife of a mean is the mean with Student's t interval") {
+  const std::vector<double> values{0.2, 0.4, 0.45, 0.7, 0.5};
+  const auto mean = [](const std::vector<double>& of) { return analysis::mean_of(of); };
+  const analysis::JackknifeEstimate found =
+      analysis::jackknife(mean(values), without_each(values, mean), {0.0, 1.0});
+  const analysis::MeanEstimate expected = analysis::participant_mean(values);
+  CHECK(found.value == Approx(*expected.mean).epsilon(1e-12));
+  CHECK(found.interval.low == Approx(expected.interval.low).epsilon(1e-12));
+  CHECK(found.interval.high == Approx(expected.interval.high).epsilon(1e-12));
+}
+
+TEST_CASE("the jackknife takes the bias from a variance, and stays within the range") {
+  const std::vector<double> values{0.2, 0.4, 0.45, 0.7, 0.5};
+  const auto variance = [](const std::vector<double>& of) {
+    const double sd =
+        analysis::standard_deviation(of, analysis::mean_of(of), static_cast<double>(of.size()));
+    return sd * sd;
+  };
+  const std::vector<double> without = without_each(values, variance);
+  const analysis::JackknifeEstimate found =
+      analysis::jackknife(variance(values), without, {0.0, 1.0});
+  CHECK(found.value == Approx(variance(values) * 5.0 / 4.0).epsilon(1e-12));
+  const analysis::JackknifeEstimate cut =
+      analysis::jackknife(variance(values), without, {0.03, 0.031});
+  CHECK(cut.value == 0.031);
+  CHECK(cut.interval == analysis::Interval{0.03, 0.031});
+  CHECK_THROWS_AS(analysis::jackknife(1.0, std::vector<double>{1.0}, {}), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::jackknife(std::nan(""), without, {}), std::invalid_argument);
 }
 
 }  // namespace touchtrial

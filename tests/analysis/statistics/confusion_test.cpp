@@ -141,4 +141,22 @@ TEST_CASE("best_label_matching of twelve classes undoes any exchange") {
   CHECK(best.accuracy == analysis::Proportion{36, 36});
 }
 
+TEST_CASE("The p of swapped labels is that of fair coins, times the exchanges of as many labels") {
+  const auto p_of = [](const std::vector<std::vector<int>>& counts) {
+    const analysis::ConfusionMatrix confusion = confusion_of_counts(counts);
+    return analysis::label_swap_p(confusion, analysis::best_label_matching(confusion));
+  };
+  CHECK(p_of({{0, 5, 0}, {5, 0, 0}, {0, 0, 5}}) == Approx(1.0 / 1024.0).epsilon(1e-12));
+  // Nine of ten that agree with either: (10 + 1) / 1024. Answers to the third class do not count.
+  CHECK(p_of({{1, 4, 0}, {5, 0, 0}, {2, 2, 1}}) == Approx(11.0 / 1024.0).epsilon(1e-12));
+  // Two orders of three labels leave none in its place.
+  CHECK(p_of({{0, 5, 0}, {0, 0, 5}, {5, 0, 0}}) == Approx(2.0 / 32768.0).epsilon(1e-12));
+  // Nine orders of four.
+  CHECK(p_of({{0, 3, 0, 0}, {3, 0, 0, 0}, {0, 0, 0, 3}, {0, 0, 3, 0}}) ==
+        Approx(9.0 / 4096.0).epsilon(1e-12));
+  CHECK(p_of({{0, 1}, {1, 0}}) == 0.25);
+  CHECK(p_of({{5, 0}, {0, 5}}) == 1.0);
+  CHECK(p_of({{0, 0}, {0, 0}}) == 1.0);
+}
+
 }  // namespace touchtrial

@@ -80,4 +80,18 @@ TEST_CASE("d_prime refuses impossible arguments") {
                   std::invalid_argument);
 }
 
+TEST_CASE("d' has the limits of any interval of its share, and no limit where that has none") {
+  const analysis::Interval limits{0.494, 0.945};
+  const analysis::DPrime found = analysis::d_prime({25, 20}, 5, limits);
+  CHECK(analysis::proportion_correct_of(found.low.value(), 5) == Approx(limits.low).margin(1e-9));
+  CHECK(analysis::proportion_correct_of(found.high.value(), 5) == Approx(limits.high).margin(1e-9));
+  CHECK(found.estimate == analysis::d_prime({25, 20}, 5).estimate);
+  const analysis::DPrime open = analysis::d_prime({25, 20}, 5, {0.0, 1.0});
+  CHECK(open.estimate.has_value());
+  CHECK_FALSE(open.low.has_value());
+  CHECK_FALSE(open.high.has_value());
+  CHECK_THROWS_AS(analysis::d_prime({25, 20}, 5, {0.9, 0.1}), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::d_prime({25, 20}, 5, {-0.1, 0.1}), std::invalid_argument);
+}
+
 }  // namespace touchtrial

@@ -337,4 +337,59 @@ TEST_CASE("holm_adjusted refuses numbers that are not probabilities") {
                   std::invalid_argument);
 }
 
+// Expected values: statsmodels 0.13, multipletests with "fdr_bh".
+TEST_CASE("discovery_adjusted gives Benjamini and Hochberg's values, in the order given") {
+  const std::vector<double> adjusted =
+      analysis::discovery_adjusted(std::vector<double>{0.01, 0.04, 0.03, 0.5});
+  CHECK(adjusted[0] == Approx(0.04));
+  CHECK(adjusted[1] == Approx(0.16 / 3.0));
+  CHECK(adjusted[2] == Approx(0.16 / 3.0));
+  CHECK(adjusted[3] == Approx(0.5));
+  CHECK(analysis::discovery_adjusted({}).empty());
+  CHECK_THROWS_AS(analysis::discovery_adjusted(std::vector<double>{1.1}), std::invalid_argument);
+}
+
+TEST_CASE("discovery_adjusted is never above Holm's adjustment, and never below p") {
+  RandomStream random(1, "discovery");
+  for (int round = 0; round < 50; ++round) {
+    std::vector<double> p(1 + random.below(12));
+    for (double& one : p) one = random.uniform() * random.uniform();
+    const std::vector<double> discovery = analysis::discovery_adjusted(p);
+    const std::vector<double> holm = analysis::holm_adjusted(p);
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      CHECK(discovery[i] >= p[i]);
+      CHECK(discovery[i] <= holm[i] + 1e-15);
+    }
+  }
+}
+
+TEST_CASE("the odds ratio's interval over participants inverts with the methods") {
+  std::vector<std::pair<analysis::Proportion, analysis::Proportion>> there;
+  std::vector<std::pair<analysis::Proportion, analysis::Proportion>> back;
+  for (int i = 0; i < 12; ++i) {
+    there.emplace_back(analysis::Proportion{25, 15 + i % 7}, analysis::Proportion{25, 12 + i % 5});
+    back.emplace_back(there.back().second, there.back().first);
+  }
+  const analysis::Interval one = analysis::odds_ratio_bootstrap(there).value();
+  const analysis::Interval other = analysis::odds_ratio_bootstrap(back).value();
+  CHECK(other.low == Approx(1.0 / one.high));
+  CHECK(other.high == Approx(1.0 / one.low));
+  const double estimate = analysis::mantel_haenszel(there)->estimate;
+  CHECK(one.low < estimate);
+  CHECK(one.high > estimate);
+}
+
+TEST_CASE("people who differ in their odds ratio widen its interval over participants alone") {
+  // Half are better with the first method, half with the second, by as much.
+  std::vector<std::pair<analysis::Proportion, analysis::Proportion>> people;
+  for (int i = 0; i < 20; ++i) {
+    const analysis::Proportion good{25, 22};
+    const analysis::Proportion bad{25, 10};
+    people.emplace_back(i % 2 == 0 ? good : bad, i % 2 == 0 ? bad : good);
+  }
+  const analysis::Interval trials = analysis::mantel_haenszel(people)->interval;
+  const analysis::Interval over = analysis::odds_ratio_bootstrap(people).value();
+  CHECK(std::log(over.high / over.low) > 2.0 * std::log(trials.high / trials.low));
+}
+
 }  // namespace touchtrial

@@ -155,6 +155,10 @@ ObserverFigures observer_figures(std::size_t observer, const std::vector<Partici
   return result;
 }
 
+const ObserverFigures& observer_of(const MethodCues& cues, Cue cue) {
+  return *std::ranges::find(cues.observers, cue, &ObserverFigures::cue);
+}
+
 MethodCues method_cues(const FeltStudy& study, int method, const std::string& label) {
   MethodCues cues;
   cues.method = label;
@@ -168,8 +172,13 @@ MethodCues method_cues(const FeltStudy& study, int method, const std::string& la
   for (std::size_t observer = 0; observer < kCues.size(); ++observer) {
     cues.observers.push_back(observer_figures(observer, all, statistics));
     cues.observers.back().matched_noise = answers[observer].matched_noise;
+    cues.observers.back().matched_accuracy = answers[observer].matched_accuracy;
+    cues.observers.back().wanted_accuracy = answers[observer].wanted_accuracy;
   }
   cues.match = statistics.match;
+  if (cues.match && !observer_of(cues, cues.match->best).is_as_uncertain()) {
+    cues.match->told_apart = false;
+  }
   cues.fewest_of_a_class = fewest_of_a_class(all);
   return cues;
 }
@@ -238,6 +247,16 @@ void warn_of_figures(const MethodCues& cues, double chance, Warnings& warnings) 
           fmt::format("{}: {} tells the classes apart no better than chance, so nothing can be "
                       "said about how well it was used.",
                       cues.method, title));
+    } else if (one.wanted_accuracy > 0.0 && !one.is_as_uncertain()) {
+      const bool less = one.matched_accuracy < one.wanted_accuracy;
+      warnings.push_back(fmt::format(
+          "{}: {} cannot be as uncertain as participants: {} it is right in {} of trials, and they "
+          "in {}. {}",
+          cues.method, title, less ? "even without noise" : "even with the most noise",
+          percent_of_share(one.matched_accuracy), percent_of_share(one.wanted_accuracy),
+          less ? "They used something else as well, or the observer has too few trials to learn "
+                 "from."
+               : "Something other than noise makes them err."));
     } else if (one.efficiency.value.value_or(0.0) > 1.0) {
       warnings.push_back(
           fmt::format("{}: participants did better than {} alone allows: they used something else "

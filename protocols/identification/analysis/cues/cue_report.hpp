@@ -8,6 +8,7 @@
 #include "analysis/statistics/proportion.hpp"
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -27,7 +28,7 @@ inline constexpr std::array<Cue, 3> kCues{Cue::rms, Cue::spectrum, Cue::everythi
 /// The name in tables and legends: "force strength (rms)", "spectrum's shape" or "everything felt".
 [[nodiscard]] std::string_view title_of(Cue cue) noexcept;
 
-/// A number with its interval from a bootstrap over participants.
+/// A number with its interval over participants.
 struct CueFigure {
   std::optional<double> value;
   std::optional<Interval> interval;  ///< none with fewer than two participants
@@ -46,26 +47,36 @@ struct ObserverFigures {
   CueFigure efficiency;            ///< participants' mean accuracy divided by this observer's
   CueFigure corrected_efficiency;  ///< the same ratio of the accuracies above chance
   /// Mean over presented classes of the Jensen-Shannon divergence between participants' and
-  /// observer's answers, bits: 0 if they confuse alike, at most 1.
+  /// observer's answers, bits: 0 if they confuse alike, at most 1. By the jackknife.
   CueFigure divergence;
   /// Noise of the sense (a Weber fraction) at which the observer is right as often as the
   /// participants; 0 if the observer is not right more often even without noise.
   double matched_noise = 0.0;
+  double matched_accuracy = 0.0;   ///< share right with that noise, of trials with a response
+  double wanted_accuracy = 0.0;    ///< participants' share right in the same trials
   AnswerCounts matched_confusion;  ///< confusion with that noise
   CueFigure matched_divergence;    ///< divergence with that noise
+
+  /// Whether noise made the observer as uncertain as the participants: right as often, to within
+  /// one percentage point.
+  [[nodiscard]] bool is_as_uncertain() const noexcept {
+    return std::abs(matched_accuracy - wanted_accuracy) <= 0.01;
+  }
 };
 
 /// With fewer participants there is no verdict on which observer confuses classes as they do,
 /// because a bootstrap over so few participants gives intervals that are too narrow.
 inline constexpr int kFewestForVerdict = 6;
 
-/// The observer that confuses classes as participants do. Each observer is made as uncertain as the
-/// participants, because an observer that is never wrong has no confusions to compare.
+/// The observer whose confusions are nearest to the participants'. Each observer is made as
+/// uncertain as the participants if noise can do that, because an observer that is never wrong has
+/// no confusions to compare.
 struct CueMatch {
   Cue best = Cue::rms;    ///< with the least matched divergence
   Cue second = Cue::rms;  ///< with the second least matched divergence
   CueFigure difference;   ///< matched divergence of second minus that of best, bits
-  /// The difference's interval excludes 0, with kFewestForVerdict participants or more.
+  /// The difference's interval excludes 0, with kFewestForVerdict participants or more, and the
+  /// best observer can be as uncertain as the participants.
   bool told_apart = false;
 };
 

@@ -95,45 +95,32 @@ class Sums {
   std::vector<double> values_;
 };
 
-/// Indices into the numbers of one draw: kObservers of each kind, then the difference of two
-/// matched divergences.
+/// Indices into the numbers of a study: kObservers of each kind.
 enum : std::size_t {
   kEfficiencyAt = 0,
   kCorrectedAt = kObservers,
   kDivergenceAt = 2 * kObservers,
   kMatchedAt = 3 * kObservers,
-  kDifferenceAt = 4 * kObservers,
-  kNumbers
+  kNumbers = 4 * kObservers
 };
 using Numbers = std::array<double, kNumbers>;
 
-/// The two observers whose matched answers are nearest to the participants' answers.
-struct Ranking {
-  std::size_t best = 0;
-  std::size_t second = 1;
-};
-
-Ranking ranking_of(const Numbers& numbers) {
-  std::array<std::size_t, kObservers> order{};
-  for (std::size_t i = 0; i < kObservers; ++i) order[i] = i;
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return numbers[kMatchedAt + i]; });
-  return {order[0], order[1]};
-}
-
-Numbers numbers_of(const Sums& sums) {
+Numbers efficiencies_of(const Sums& sums) {
   Numbers numbers{};
   for (std::size_t i = 0; i < kObservers; ++i) {
     numbers[kEfficiencyAt + i] = sums.efficiency(i);
     numbers[kCorrectedAt + i] = sums.corrected(i);
-    numbers[kDivergenceAt + i] = sums.divergence(i);
-    numbers[kMatchedAt + i] = sums.matched_divergence(i);
   }
   return numbers;
 }
 
-void put_difference(Numbers& numbers, const Ranking& ranking) {
-  numbers[kDifferenceAt] =
-      numbers[kMatchedAt + ranking.second] - numbers[kMatchedAt + ranking.best];
+Numbers divergences_of(const Sums& sums) {
+  Numbers numbers = efficiencies_of(sums);
+  for (std::size_t i = 0; i < kObservers; ++i) {
+    numbers[kDivergenceAt + i] = sums.divergence(i);
+    numbers[kMatchedAt + i] = sums.matched_divergence(i);
+  }
+  return numbers;
 }
 
 /// The numbers of resampled studies. A resampled study draws as many participants as there are,
@@ -143,8 +130,8 @@ struct Draws {
   std::vector<Numbers> numbers{};  ///< empty with fewer than two participants
 };
 
-Draws drawn(const std::vector<Sums>& participants, int classes, const Ranking& ranking,
-            std::uint64_t index, int jobs) {
+/// Draws efficiencies alone: divergences of drawn participants are too large.
+Draws drawn(const std::vector<Sums>& participants, int classes, std::uint64_t index, int jobs) {
   if (participants.size() < 2) return {participants.size()};
   std::vector<Numbers> draws(kBootstrapDraws);
   const auto draw = [&](std::size_t i) {
@@ -154,8 +141,7 @@ Draws drawn(const std::vector<Sums>& participants, int classes, const Ranking& r
     for (std::size_t p = 0; p < participants.size(); ++p) {
       sums.add(participants[random.below(participants.size())]);
     }
-    draws[i] = numbers_of(sums);
-    put_difference(draws[i], ranking);
+    draws[i] = efficiencies_of(sums);
   };
   in_parallel(jobs, draws.size(), draw);
   return {participants.size(), std::move(draws)};
@@ -177,14 +163,62 @@ CueFigure number_at(std::size_t at, const Numbers& observed, const Draws& draws)
   return {observed[at], interval_of(draws, at)};
 }
 
-std::optional<CueMatch> match_of(const Ranking& ranking, const Numbers& observed,
-                                 const Draws& draws) {
-  if (std::isnan(observed[kDifferenceAt])) return std::nullopt;
+/// The numbers without each participant, by sums from both ends of the list.
+std::vector<Numbers> without_each(const std::vector<Sums>& participants, int classes) {
+  std::vector<Sums> after(participants.size(), Sums(classes));
+  for (std::size_t i = participants.size() - 1; i > 0; --i) {
+    after[i - 1] = after[i];
+    after[i - 1].add(participants[i]);
+  }
+  std::vector<Numbers> numbers;
+  Sums before(classes);
+  for (std::size_t i = 0; i < participants.size(); ++i) {
+    after[i].add(before);
+    numbers.push_back(divergences_of(after[i]));
+    before.add(participants[i]);
+  }
+  return numbers;
+}
+
+constexpr Interval kBits{0.0, 1.0};
+/// Of differences, and of what is to be ranked, which is not cut at 0.
+constexpr Interval kAnySign{-2.0, 2.0};
+
+/// The jackknife's estimate of a number, or of one number less another.
+/// \param without  of the same numbers, without each participant
+CueFigure jackknifed(const Numbers& observed, const std::vector<Numbers>& without,
+                     const Interval& range, std::size_t at, std::optional<std::size_t> less = {}) {
+  const auto number_of = [&](const Numbers& numbers) {
+    return less ? numbers[at] - numbers[*less] : numbers[at];
+  };
+  const double all = number_of(observed);
+  if (std::isnan(all)) return {};
+  std::vector<double> values;
+  for (const Numbers& one : without) values.push_back(number_of(one));
+  if (values.size() < 2 || std::ranges::any_of(values, [](double v) { return std::isnan(v); })) {
+    return {all, std::nullopt};
+  }
+  const JackknifeEstimate found = jackknife(all, values, range);
+  return {found.value, found.interval};
+}
+
+/// The two matched observers with the least divergences.
+std::optional<CueMatch> match_of(const Numbers& observed, const std::vector<Numbers>& without) {
+  std::array<std::size_t, kObservers> order{};
+  std::array<double, kObservers> divergence{};
+  for (std::size_t i = 0; i < kObservers; ++i) {
+    const CueFigure found = jackknifed(observed, without, kAnySign, kMatchedAt + i);
+    if (!found.value) return std::nullopt;
+    divergence[i] = *found.value;
+    order[i] = i;
+  }
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return divergence[i]; });
   CueMatch match;
-  match.best = kCues[ranking.best];
-  match.second = kCues[ranking.second];
-  match.difference = number_at(kDifferenceAt, observed, draws);
-  match.told_apart = draws.participants >= kFewestForVerdict && match.difference.interval &&
+  match.best = kCues[order[0]];
+  match.second = kCues[order[1]];
+  match.difference =
+      jackknifed(observed, without, kAnySign, kMatchedAt + order[1], kMatchedAt + order[0]);
+  match.told_apart = without.size() >= kFewestForVerdict && match.difference.interval &&
                      match.difference.interval->low > 0.0;
   return match;
 }
@@ -228,18 +262,17 @@ CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants, s
   std::vector<Sums> each;
   Sums together(classes);
   for (const ParticipantAnswers& one : participants) together.add(each.emplace_back(one));
-  Numbers observed = numbers_of(together);
-  const Ranking ranking = ranking_of(observed);
-  put_difference(observed, ranking);
-  const Draws draws = drawn(each, classes, ranking, index, jobs);
+  const Numbers observed = divergences_of(together);
+  const Draws draws = drawn(each, classes, index, jobs);
+  const std::vector<Numbers> without = without_each(each, classes);
   CueStatistics statistics;
   for (std::size_t i = 0; i < kObservers; ++i) {
     statistics.efficiency[i] = number_at(kEfficiencyAt + i, observed, draws);
     statistics.corrected[i] = number_at(kCorrectedAt + i, observed, draws);
-    statistics.divergence[i] = number_at(kDivergenceAt + i, observed, draws);
-    statistics.matched_divergence[i] = number_at(kMatchedAt + i, observed, draws);
+    statistics.divergence[i] = jackknifed(observed, without, kBits, kDivergenceAt + i);
+    statistics.matched_divergence[i] = jackknifed(observed, without, kBits, kMatchedAt + i);
   }
-  statistics.match = match_of(ranking, observed, draws);
+  statistics.match = match_of(observed, without);
   return statistics;
 }
 

@@ -109,10 +109,13 @@ struct CueStatistics {
   std::optional<CueMatch> match;
 };
 
-/// Computes the numbers and their intervals. Every interval is expanded_percentiles (95 %) of 9,999
-/// draws of whole participants with replacement; all numbers use the same draws. A number that is
-/// undefined in a draw has no interval (for example, a corrected efficiency when the observer is at
-/// chance or below).
+/// Computes the numbers and their 95 % intervals over participants. Efficiencies have
+/// expanded_percentiles of 9,999 draws of whole participants with replacement, the same draws for
+/// all. Divergences, and the difference of two, are those of the jackknife: confusions of few
+/// answers lie farther from any observer's than those of many, and drawn ones farther still. A
+/// number that is undefined in a draw, or without a participant, has no interval (for example, a
+/// corrected efficiency when the observer is at chance or below). With one participant, divergences
+/// are those of the answers as they are.
 /// \param participants  of the same number of classes, each with at least one trial
 /// \param index  chooses the stream of random numbers
 /// \param jobs  threads; 0: one for each core. The result does not depend on it.

@@ -42,7 +42,9 @@ Json observers_json(const MethodCues& cues) {
                    {"matched",
                     {{"noise", one.matched_noise},
                      {"divergence_bits", cue_figure_json(one.matched_divergence)},
-                     {"confusion", one.matched_confusion}}}});
+                     {"confusion", one.matched_confusion},
+                     {"accuracy", one.matched_accuracy},
+                     {"as_uncertain_as_participants", one.is_as_uncertain()}}}});
   }
   return all;
 }
@@ -82,13 +84,15 @@ Json by_json() {
       {"efficiency_above_chance", "the same with chance taken from both"},
       {"divergence_bits",
        "Jensen-Shannon divergence (Lin 1991) of answers to a class, mean over classes, trials "
-       "without a response left out; the same bootstrap"},
+       "without a response left out; estimate and interval of the jackknife over participants "
+       "(Miller 1974)"},
       {"matched",
        "the observer with the noise of the sense (a Weber fraction, by bisection) that makes it "
-       "right as often as the participants"},
+       "right as often as the participants, if there is one"},
       {"difference_bits",
-       "second least divergence of matched observers less the least; the same bootstrap; "
-       "told_apart only from 6 participants on"}};
+       "second least divergence of matched observers less the least; the same jackknife; "
+       "told_apart only from 6 participants on, and if the nearest observer can be as uncertain as "
+       "they"}};
 }
 
 }  // namespace

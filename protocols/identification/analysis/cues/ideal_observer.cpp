@@ -96,24 +96,32 @@ std::vector<AnswerShares> answers_at(const Observer& observer,
   return answers;
 }
 
-double matching_noise(const Observer& observer, std::span<const ObservedTrial> trials,
-                      std::span<const std::optional<int>> responses,
-                      const std::vector<std::size_t>& places, int jobs) {
-  if (places.empty()) return 0.0;
+/// The noise, and the shares of right answers of the observer with it and of the participants.
+struct MatchingNoise {
+  double noise = 0.0;
+  double reached = 0.0;
+  double wanted = 0.0;
+};
+
+MatchingNoise matching_noise(const Observer& observer, std::span<const ObservedTrial> trials,
+                             std::span<const std::optional<int>> responses,
+                             const std::vector<std::size_t>& places, int jobs) {
+  if (places.empty()) return {};
   const auto right = std::ranges::count_if(
       places, [&](std::size_t i) { return responses[i] == trials[i].class_index; });
   const double wanted = static_cast<double>(right) / static_cast<double>(places.size());
   const auto share_with = [&](double noise) {
     return share_of_right(answers_at(observer, places, noise, jobs), trials, places);
   };
-  if (share_with(0.0) <= wanted) return 0.0;
+  const double without_noise = share_with(0.0);
+  if (without_noise <= wanted) return {0.0, without_noise, wanted};
   double low = 0.0;
   double high = kMostNoise;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (low + high);
     (share_with(middle) > wanted ? low : high) = middle;
   }
-  return high;
+  return {high, share_with(high), wanted};
 }
 
 }  // namespace
@@ -219,8 +227,11 @@ ObserverAnswers observer_answers(Cue cue, std::span<const ObservedTrial> trials,
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   ObserverAnswers answers;
   answers.ideal = answers_at(observer, all, 0.0, jobs);
-  answers.matched_noise =
+  const MatchingNoise found =
       matching_noise(observer, trials, responses, places_for_noise(answers.ideal, responses), jobs);
+  answers.matched_noise = found.noise;
+  answers.matched_accuracy = found.reached;
+  answers.wanted_accuracy = found.wanted;
   answers.matched = answers.matched_noise > 0.0
                         ? answers_at(observer, all, answers.matched_noise, jobs)
                         : answers.ideal;

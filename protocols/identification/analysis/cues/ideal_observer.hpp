@@ -67,6 +67,8 @@ struct ObserverAnswers {
   std::vector<AnswerShares> ideal;
   double matched_noise = 0.0;  ///< 0: ideal answers are right no more often than participants'
   std::vector<AnswerShares> matched;  ///< answers with that noise
+  double matched_accuracy = 0.0;      ///< share right with that noise, of the trials that set it
+  double wanted_accuracy = 0.0;       ///< participants' share right in these trials
 };
 
 /// The answers of an ideal observer, and of one whose noise makes it right as often as the

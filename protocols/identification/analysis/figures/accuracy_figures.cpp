@@ -30,15 +30,41 @@ double aside(std::size_t number, std::size_t count) {
   return kSpread * (static_cast<double>(number) / static_cast<double>(count - 1) - 0.5);
 }
 
+/// What is drawn of a class: over participants, or as if trials were independent.
+struct DrawnAccuracy {
+  double share = 0.0;
+  Interval interval;
+};
+
+std::optional<DrawnAccuracy> drawn_accuracy(const ClassAccuracy& accuracy) {
+  const std::optional<double> share = accuracy.accuracy.share();
+  if (!share) return std::nullopt;
+  if (!accuracy.has_interval_over_participants()) return DrawnAccuracy{*share, accuracy.wilson};
+  return DrawnAccuracy{*accuracy.mean.mean, accuracy.mean.interval};
+}
+
+/// What the intervals are, for captions and legends.
+std::string interval_name(const StudyReport& report) {
+  bool over_participants = false;
+  bool of_trials = false;
+  for (const MethodReport& method : report.methods) {
+    for (const ClassAccuracy& one : method.accuracy) {
+      (one.has_interval_over_participants() ? over_participants : of_trials) = true;
+    }
+  }
+  if (!over_participants) return "Wilson interval (trials as if independent)";
+  return of_trials ? "t interval over participants (Wilson, of trials, where they do not differ)"
+                   : "t interval over participants";
+}
+
 std::vector<std::vector<double>> class_rows(const StudyReport& report, std::size_t number) {
   std::vector<std::vector<double>> rows;
   const std::vector<ClassAccuracy>& accuracy = report.methods[number].accuracy;
   for (std::size_t i = 0; i < accuracy.size(); ++i) {
-    const std::optional<double> share = accuracy[i].accuracy.share();
-    if (!share) continue;
+    const std::optional<DrawnAccuracy> one = drawn_accuracy(accuracy[i]);
+    if (!one) continue;
     rows.push_back({static_cast<double>(i + 1) + aside(number, report.methods.size()),
-                    100.0 * *share, 100.0 * accuracy[i].wilson.low,
-                    100.0 * accuracy[i].wilson.high});
+                    100.0 * one->share, 100.0 * one->interval.low, 100.0 * one->interval.high});
   }
   return rows;
 }
@@ -139,15 +165,14 @@ std::string differences_panel(const StudyReport& report, const NamesBelow& below
 }
 
 std::string alt_of_methods(const StudyReport& report) {
-  std::string alt = "Accuracy by class and method, with 95 % Wilson intervals.";
+  std::string alt = "Accuracy by class and method, with 95 % " + interval_name(report) + ".";
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     const MethodReport& method = report.methods[i];
     alt += fmt::format(" {}:", method.method);
     for (std::size_t k = 0; k < method.accuracy.size() && k < report.classes.size(); ++k) {
-      const ClassAccuracy& at = method.accuracy[k];
-      if (!at.accuracy.share()) continue;
-      alt +=
-          fmt::format(" {} {};", report.classes[k], with_interval(*at.accuracy.share(), at.wilson));
+      const auto at = drawn_accuracy(method.accuracy[k]);
+      if (!at) continue;
+      alt += fmt::format(" {} {};", report.classes[k], with_interval(at->share, at->interval));
     }
   }
   for (const MethodPair& pair : report.pairs) {
@@ -207,13 +232,14 @@ bool has_column(std::span<const std::vector<double>> paper, std::size_t classes)
 }
 
 std::string alt_of_accuracy(const StudyReport& report) {
-  std::string alt = "Accuracy by class, with 95 % Wilson intervals:";
+  std::string alt = "Accuracy by class, with 95 % " + interval_name(report) + ":";
   const MethodReport& method = report.methods.front();
   for (std::size_t i = 0; i < method.accuracy.size(); ++i) {
     const ClassAccuracy& at = method.accuracy[i];
-    if (!at.accuracy.share()) continue;
+    const auto drawn = drawn_accuracy(at);
+    if (!drawn) continue;
     alt += fmt::format(" {} {}, {} of {};", report.classes[i],
-                       with_interval(*at.accuracy.share(), at.wilson), at.accuracy.correct,
+                       with_interval(drawn->share, drawn->interval), at.accuracy.correct,
                        at.accuracy.n);
   }
   return alt + fmt::format(" chance {:.1f} %.", 100.0 / static_cast<double>(report.classes.size()));
@@ -221,7 +247,7 @@ std::string alt_of_accuracy(const StudyReport& report) {
 
 std::vector<LegendEntry> legend_of_accuracy(bool paper, int classes) {
   std::vector<LegendEntry> legend = {
-      mark_entry(series_mark(0), series_colour(0), "correct, with 95 % Wilson interval"),
+      mark_entry(series_mark(0), series_colour(0), "correct, with 95 % interval"),
       chance_entry(classes)};
   if (paper) {
     legend.push_back(mark_entry(6, series_colour(1), "paper (other images, other device)"));
@@ -279,8 +305,8 @@ std::optional<Figure> methods_figure(const StudyReport& report) {
   figure.script += "unset multiplot\n";
   figure.caption = stamped(
       report.simulated,
-      "methods side by side. Left: accuracy by presented class, all participants' trials pooled, "
-      "with 95 % Wilson intervals." +
+      "methods side by side. Left: accuracy by presented class with its 95 % " +
+          interval_name(report) + "." +
           std::string(paired ? " Right: each participant's difference (dots), and the mean with "
                                "its 95 % t interval over participants."
                              : ""));
@@ -304,10 +330,9 @@ std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_valu
   margins.top_cm = legend.room_cm() + 0.2;
 
   Figure figure = figure_on(sheet, "accuracy-by-class", alt_of_accuracy(report));
-  figure.caption = stamped(
-      report.simulated,
-      "accuracy by presented class. Bars are 95 % Wilson intervals of all participants' trials "
-      "pooled: they leave out how much participants differ. Trials without a response are wrong.");
+  figure.caption = stamped(report.simulated, "accuracy by presented class with its 95 % " +
+                                                 interval_name(report) +
+                                                 ". Trials without a response are wrong.");
   if (paper_values) {
     figure.caption +=
         " Open marks: accuracies published for five images, which are other images felt on another "

@@ -250,7 +250,7 @@ std::optional<Figure> trials_figure(const StudyReport& report) {
       report.simulated,
       "accuracy by place among a participant's trials of the method, all participants pooled" +
           (most > 1 ? fmt::format(", up to {} places together", most) : std::string()) +
-          ". Bands are 95 % Wilson intervals.");
+          ". Bands are 95 % Wilson intervals, as if all trials were independent.");
   return figure;
 }
 

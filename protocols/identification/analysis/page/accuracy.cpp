@@ -3,6 +3,7 @@
 #include "core/text.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@ std::vector<Cell> accuracy_row(const std::string& name, const ClassAccuracy& one
           std::to_string(one.accuracy.n),
           std::to_string(one.accuracy.correct),
           share_figure(one.accuracy.share()),
+          one.has_interval_over_participants() ? share_range(one.mean.interval) : kNoFigure,
           share_range(one.wilson),
           share_range(one.clopper_pearson),
           share_range(one.jeffreys)};
@@ -25,23 +27,27 @@ Table class_table(const StudyReport& report, std::size_t index) {
   const MethodReport& method = report.methods[index];
   Table table{"accuracy-by-class-" + method_slug(report, index),
               method_prefix(report, index) +
-                  "right answers by the texture presented, all participants' trials pooled",
+                  "right answers by the texture presented; t over participants, the other "
+                  "intervals as if all trials were independent",
               {{"texture", Align::left},
                {"n"},
                {"right"},
                {"accuracy"},
+               {"t 95% (%)"},
                {"Wilson 95% (%)"},
                {"Clopper-Pearson 95% (%)"},
                {"Jeffreys 95% (%)"}}};
   for (std::size_t i = 0; i < method.accuracy.size(); ++i) {
     table.rows.push_back(accuracy_row(report.classes[i], method.accuracy[i]));
   }
-  table.notes = {{"Wilson: score interval.", {Source::wilson}},
+  table.notes = {{"t: Student's interval of the mean of participants' own accuracies with the "
+                  "texture, to quote; – with one participant, or if all have the same.",
+                  {Source::student}},
+                 {"Wilson: score interval.", {Source::wilson}},
                  {"Clopper-Pearson: exact, never below its level.", {Source::clopper_pearson}},
                  {"Jeffreys: quantiles of a beta distribution, by convention from 0 where no "
-                  "answer is right and to 1 where all are. All three treat trials as independent, "
-                  "but those of one participant are not, so these intervals are too narrow; quote "
-                  "the headline's interval instead.",
+                  "answer is right and to 1 where all are. The last three treat trials as "
+                  "independent, but those of one participant are not, so they are too narrow.",
                   {Source::brown_cai_dasgupta}}};
   return table;
 }
@@ -68,22 +74,30 @@ Table participant_table(const StudyReport& report, std::size_t index) {
                {"accuracy"},
                {"with the best exchange of labels"},
                {"exchange", Align::left},
+               {"p of the exchange"},
+               {"adjusted"},
                {"consistency (bit)"}}};
   for (const ParticipantAccuracy& one : method.per_participant) {
-    table.rows.push_back(
-        {one.participant, std::to_string(one.accuracy.n), std::to_string(one.accuracy.correct),
-         share_figure(one.accuracy.share()), share_figure(one.matching.accuracy.share()),
-         exchange_of(one.matching, report.classes), plain_figure(one.consistency, 2)});
+    table.rows.push_back({one.participant, std::to_string(one.accuracy.n),
+                          std::to_string(one.accuracy.correct), share_figure(one.accuracy.share()),
+                          share_figure(one.matching.accuracy.share()),
+                          exchange_of(one.matching, report.classes), p_figure(one.swap_p),
+                          p_figure(one.swap_adjusted), plain_figure(one.consistency, 2)});
   }
   table.rows.push_back(
       {"all, pooled", std::to_string(method.overall.n), std::to_string(method.overall.correct),
        share_figure(method.overall.share()), share_figure(method.matching.accuracy.share()),
-       exchange_of(method.matching, report.classes), kNoFigure});
+       exchange_of(method.matching, report.classes), kNoFigure, kNoFigure, kNoFigure});
   table.notes = {
       {"The best exchange of labels is the one-to-one matching of textures and answers with the "
        "most trials: somebody who swaps two labels tells them apart all the same. It is chosen "
        "after the fact, and so biased upward.",
        {Source::kuhn}},
+      {"p of the exchange: sign test of the answers that agree with it against those with the own "
+       "label, times the number of exchanges of as many labels. Adjusted over all participants and "
+       "methods of the study: of the exchanges with 0.05 or less, 5% at most are false on average, "
+       "and if nobody exchanges labels, 5% of studies have one.",
+       {Source::benjamini_hochberg}},
       {"Consistency is the raw information transfer of one participant's trials, biased upward "
        "and not to be quoted.",
        {Source::tan_reed_durlach}}};
@@ -94,6 +108,7 @@ Table participant_table(const StudyReport& report, std::size_t index) {
 
 Section accuracy_section(const StudyReport& report) {
   Section section{"accuracy", "Accuracy", {}};
+  add_headline(report, section);
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     add_method_heading(report, i, section);
     section.blocks.emplace_back(class_table(report, i));
@@ -172,9 +187,12 @@ std::string fit_of(const ChoiceModel& model) {
   if (model.degrees_of_freedom > 0) {
     fit = fmt::format("Fit: G² = {} on {}", plain_figure(model.g_squared, 2),
                       counted(model.degrees_of_freedom, "degree") + " of freedom");
-    if (model.p) fit += ", " + p_phrase(*model.p) + " under chi-square for independent trials";
+    if (model.drawn_p) {
+      fit += fmt::format(", {} by {} tables drawn from the model", p_phrase(*model.drawn_p),
+                         model.draws);
+    }
     fit += ".";
-    if (model.p && *model.p <= kUsualLevel) {
+    if (model.drawn_p && *model.drawn_p <= kUsualLevel) {
       fit +=
           " The model does not fit: its similarities and biases describe the answers, but do "
           "not explain them.";
@@ -228,6 +246,12 @@ std::string bound_of(const DPrime& sensitivity) {
   return plain_range(Interval{*sensitivity.low, *sensitivity.high}, 2);
 }
 
+/// The limits of d' over participants, or else those of independent trials, with a mark.
+std::string bound_of(const MethodReport& method) {
+  if (method.d_prime_over_participants) return bound_of(*method.d_prime_over_participants);
+  return bound_of(method.d_prime) + " *";
+}
+
 Table information_table(const StudyReport& report) {
   Table table{"information",
               "Information transfer and nominal sensitivity, all participants' trials pooled",
@@ -246,7 +270,7 @@ Table information_table(const StudyReport& report) {
     table.rows.push_back({method.method, std::to_string(method.confusion.answered()),
                           plain_figure(information.raw, 2), plain_figure(information.corrected, 2),
                           plain_figure(information.null_mean, 2), plain_figure(categories, 1),
-                          plain_figure(method.d_prime.estimate, 2), bound_of(method.d_prime)});
+                          plain_figure(method.d_prime.estimate, 2), bound_of(method)});
   }
   table.notes = {
       {"Information transfer over trials with a response: raw (biased upward), minus Miller and "
@@ -254,9 +278,16 @@ Table information_table(const StudyReport& report) {
        "random; categories are two to the power of the corrected value.",
        {Source::tan_reed_durlach, Source::miller}},
       {"d′ is what an unbiased observer of as many equally distant textures would need for this "
-       "accuracy: nominal; a bound in place of infinity. Its interval follows from Clopper and "
-       "Pearson's.",
-       {Source::green_swets, Source::hacker_ratcliff}}};
+       "accuracy: nominal; a bound in place of infinity. Its interval follows from the share's "
+       "bootstrap interval over participants.",
+       {Source::green_swets, Source::hacker_ratcliff, Source::davison_hinkley}}};
+  const auto of_trials = [](const MethodReport& one) { return !one.d_prime_over_participants; };
+  if (std::ranges::any_of(report.methods, of_trials)) {
+    table.notes.push_back(
+        {"* From Clopper and Pearson's interval, which treats trials as "
+         "independent: there are fewer than six participants, or they do "
+                           "not differ."});
+  }
   return table;
 }
 

@@ -11,15 +11,19 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-constexpr const char* kNoWidth = " *";  ///< refers to a note below the table
+constexpr const char* kNoWidth = " *";   ///< refers to a note below the table
+constexpr const char* kOfTrials = " †";  ///< refers to a note below the table
 
 std::string pair_name(const StudyReport& report, const MethodPair& pair) {
   return report.methods[pair.first].method + " less " + report.methods[pair.second].method;
 }
 
+/// The ratio with its interval over participants, or else that of independent trials, with a mark.
 std::string odds_figure(const std::optional<OddsRatio>& odds) {
   if (!odds) return kNoFigure;
-  return plain_figure(odds->estimate, 2) + " " + plain_range(odds->interval, 2);
+  return plain_figure(odds->estimate, 2) + " " +
+         (odds->bootstrap ? plain_range(odds->bootstrap, 2)
+                          : plain_range(odds->interval, 2) + kOfTrials);
 }
 
 /// The t interval, which needs at least two participants.
@@ -86,9 +90,19 @@ Table pair_table(const StudyReport& report) {
       {"Bootstrap: expanded percentiles over draws of whole participants.",
        {Source::davison_hinkley, Source::hesterberg}},
       {"Sign-flip permutation over participants, two-sided.", {Source::phipson_smyth}},
-      {"Odds ratio: common to participants, each a stratum, with its interval.",
-       {Source::mantel_haenszel, Source::robins_breslow_greenland}},
+      {"Odds ratio: common to participants, each a stratum; interval by the same bootstrap.",
+       {Source::mantel_haenszel}},
       {"dB: 10 log10 of the ratio of the two means; 20 log10 would be twice that."}};
+  const auto of_trials = [](const MethodPair& pair) {
+    return pair.odds_ratio && !pair.odds_ratio->bootstrap;
+  };
+  if (std::any_of(report.pairs.begin(), report.pairs.end(), of_trials)) {
+    table.notes.push_back(
+        {"† Robins, Breslow and Greenland's interval, which treats trials as independent and is "
+         "too narrow: there are fewer than six participants, or too few who err, for the "
+         "bootstrap.",
+         {Source::robins_breslow_greenland}});
+  }
   if (holm) {
     table.notes.push_back({"Holm: adjusted over all pairs of methods.", {Source::holm}});
   }

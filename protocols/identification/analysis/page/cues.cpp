@@ -2,6 +2,8 @@
 #include "analysis/text_figures.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace touchtrial::analysis::identification {
@@ -57,7 +59,7 @@ std::vector<Cell> confusing_row(const ObserverFigures& observer, bool best) {
   return {std::string(title_of(observer.cue)),
           plain_figure(observer.divergence.value, 3),
           plain_range(observer.divergence.interval, 3),
-          plain_figure(observer.matched_noise, 2),
+          plain_figure(observer.matched_noise, 2) + (observer.is_as_uncertain() ? "" : " *"),
           Cell(plain_figure(observer.matched_divergence.value, 3), best),
           plain_range(observer.matched_divergence.interval, 3)};
 }
@@ -77,16 +79,28 @@ Table confusing_table(const StudyReport& report, const MethodCues& method, std::
   }
   table.notes = {
       {"Divergence: Jensen-Shannon, between participants' and the observer's answers, mean over "
-       "textures; 0 if they confuse alike, 1 at most. Intervals: bootstrap over participants.",
-       {Source::lin, Source::davison_hinkley}},
+       "textures; 0 if they confuse alike, 1 at most. Estimates and intervals: jackknife over "
+       "participants, because confusions of few answers lie too far from any observer's.",
+       {Source::lin, Source::miller_jackknife}},
       {"Matched: an observer that is hardly ever wrong has no confusions to be compared, so its "
        "sense is given noise (a Weber fraction) until it is right as often as participants; 0 if "
        "it is not right more often without. The least is emphasised."}};
+  const auto lacks = [](const ObserverFigures& one) { return !one.is_as_uncertain(); };
+  if (std::ranges::any_of(method.observers, lacks)) {
+    table.notes.push_back(
+        {"* No noise makes this observer right as often as participants, so that its divergence "
+         "also shows that it is right more or less often."});
+  }
   return table;
 }
 
-/// With fewer participants, a bootstrap over participants does not support a verdict.
+/// With fewer participants, an interval over participants does not support a verdict.
 constexpr std::size_t kFewestToTell = 6;
+
+bool reaches(const MethodCues& method, Cue cue) {
+  const auto found = std::ranges::find(method.observers, cue, &ObserverFigures::cue);
+  return found == method.observers.end() || found->is_as_uncertain();
+}
 
 std::string verdict_of(const MethodCues& method, const CueMatch& match) {
   const std::size_t participants = method.participants.size();
@@ -97,9 +111,11 @@ std::string verdict_of(const MethodCues& method, const CueMatch& match) {
   if (!match.difference.interval) {
     return "without an interval it cannot be decided whether the two differ";
   }
-  return "95% interval " + plain_range(match.difference.interval, 3) +
-         (match.told_apart ? ", so the two are told apart"
-                           : ", which contains 0, so the two are not told apart");
+  const std::string interval = "95% interval " + plain_range(match.difference.interval, 3);
+  if (match.difference.interval->low <= 0.0) {
+    return interval + ", which contains 0, so the two are not told apart";
+  }
+  return interval + (match.told_apart ? ", so the two are told apart" : "");
 }
 
 Cited match_of(const MethodCues& method) {
@@ -108,12 +124,21 @@ Cited match_of(const MethodCues& method) {
             ": no trial shows which observer's confusions are "
             "most like the participants'."};
   const CueMatch& match = *method.match;
-  return {fmt::format("{}: once all are as uncertain as participants, their confusions are most "
-                      "like those of the observer of {} ({} bit less matched divergence than {}; "
-                      "{}).",
-                      method.method, title_of(match.best), plain_figure(match.difference.value, 3),
-                      title_of(match.second), verdict_of(method, match)),
-          {Source::lin}};
+  const std::string beginning =
+      std::ranges::all_of(kCues, [&](Cue cue) { return reaches(method, cue); })
+          ? "once all observers are as uncertain as participants, their confusions are most like"
+          : "with the noise that brings observers nearest to participants' accuracy, and not all "
+            "can reach it, participants' confusions are most like";
+  std::string text = fmt::format(
+      "{}: {} those of the observer of {} ({} bit less matched divergence than {}; {}).",
+      method.method, beginning, title_of(match.best), plain_figure(match.difference.value, 3),
+      title_of(match.second), verdict_of(method, match));
+  if (!reaches(method, match.best)) {
+    text +=
+        " No noise makes this observer right as often as participants: it is no verdict that they "
+        "used this alone.";
+  }
+  return {text, {Source::lin}};
 }
 
 std::string left_out_of(const MethodCues& method) {

@@ -136,7 +136,7 @@ Document study_document(const StudyReport& report, const Provenance& provenance,
                         const Pictures& pictures) {
   const bool missing = std::ranges::any_of(pictures, &std::string::empty, &Picture::svg);
   Document document =
-      framed_document(report, headline_section(report),
+      framed_document(report, {"result", "Result", {}},
                       {accuracy_section(report), confusions_section(report),
                        comparison_section(report), order_section(report), times_section(report),
                        cues_section(report), robustness_section(report), methods_section(report)},

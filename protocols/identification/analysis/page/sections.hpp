@@ -13,7 +13,8 @@ namespace touchtrial::analysis::identification {
 /// The usual level of significance. Only the wording depends on it.
 inline constexpr double kUsualLevel = 0.05;
 
-[[nodiscard]] Section headline_section(const StudyReport& report);
+/// Adds each method's mean over participants and what chance would give.
+void add_headline(const StudyReport& report, Section& section);
 [[nodiscard]] Section accuracy_section(const StudyReport& report);
 [[nodiscard]] Section confusions_section(const StudyReport& report);
 /// The comparison of two or more methods.

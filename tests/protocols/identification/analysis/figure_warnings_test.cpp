@@ -88,4 +88,25 @@ TEST_CASE("A Monte Carlo p that cannot be smaller is reported") {
   CHECK(warnings_with(report, "the chance test's p = 0.0001 is the smallest") == 1);
 }
 
+TEST_CASE("One who swaps labels among many is suspected, and guessers are not") {
+  FakeStudy study(design::identification::classification(), {.trials = R"({"repeats": 8})"});
+  study.add({.participant = "P01", .enrolment = 1, .answers = swapping});
+  for (int i = 2; i <= 12; ++i) {
+    // Answers that have nothing to do with what is presented.
+    study.add({.participant = "P" + std::to_string(i),
+               .enrolment = i,
+               .answers = [i](const design::Presentation& shown) {
+                 return std::optional((shown.trial * 7 + i) % 3);
+               }});
+  }
+  const analysis::identification::StudyReport report = report_of(study);
+  CHECK(warnings_with(report,
+                      "labels may have been swapped by P01 (33.3%, but 100.0% under the "
+                      "best exchange); accuracy") == 1);
+  CHECK(warnings_with(report, "with a probability of 0.05 at most") == 1);
+  const auto& people = report.methods[0].per_participant;
+  CHECK(people[0].swap_p == Approx(1.0 / 65536.0).epsilon(1e-9));
+  CHECK(people[0].swap_adjusted == Approx(12.0 / 65536.0).epsilon(1e-9));
+}
+
 }  // namespace touchtrial

@@ -137,6 +137,10 @@ TEST_CASE("figures hold the report's counts and intervals") {
   ClassAccuracy& bark = report.methods[0].accuracy[0];
   bark.accuracy = {25, 20};
   bark.wilson = wilson_interval(bark.accuracy);
+  bark.mean = {4, 0.81, {0.7, 0.92}, 0.07};
+  CHECK(contains(figure_of(report_figures(report), "accuracy-by-class").script, "\n1 81 70 92\n"));
+  // Participants who do not differ have no interval that says something.
+  bark.mean = {4, 0.8, {0.8, 0.8}, 0.0};
   const std::vector<Figure> figures = report_figures(report);
   CHECK(contains(figure_of(figures, "accuracy-by-class").script, "\n1 80 60.869 91.1394\n"));
   CHECK(contains(figure_of(figures, "accuracy-by-class").alt,
@@ -172,6 +176,7 @@ TEST_CASE(
 
 TEST_CASE("figures leave out values that are not finite") {
   StudyReport report = fake_report();
+  report.methods[0].accuracy[1].mean = {};
   report.methods[0].accuracy[1].wilson.low = std::numeric_limits<double>::quiet_NaN();
   const Figure figure = figure_of(report_figures(report), "accuracy-by-class");
   CHECK(contains(figure.script, " NaN "));

@@ -30,6 +30,8 @@ void add_participants(analysis::identification::MethodReport& method) {
   }
   method.mean = {6, 0.79, {0.63, 0.95}, 0.155};
   method.bootstrap = analysis::Interval{0.68, 0.9};
+  method.spread = analysis::Spread{0.121, {0.05, 0.3}};
+  method.prevalence = analysis::Prevalence{6, 5, 0.04, 0.826, {0.5, 0.97}};
 }
 
 analysis::ChoiceModel choice_of() {
@@ -41,6 +43,8 @@ analysis::ChoiceModel choice_of() {
   model.g_squared = 1.75;
   model.degrees_of_freedom = 1;
   model.p = 0.1859;
+  model.draws = 999;
+  model.drawn_p = 0.21;
   model.converged = true;
   return model;
 }
@@ -53,13 +57,16 @@ analysis::identification::MethodReport method_of(const std::string& name,
   method.overall = method.confusion.accuracy();
   for (int i = 0; i < 3; ++i) {
     const analysis::Proportion accuracy = method.confusion.accuracy(i);
-    method.accuracy.push_back({accuracy, analysis::wilson_interval(accuracy),
+    method.accuracy.push_back({accuracy,
+                               analysis::wilson_interval(accuracy),
                                analysis::clopper_pearson_interval(accuracy),
-                               analysis::Interval{0.6, 0.9}});
+                               analysis::Interval{0.6, 0.9},
+                               {6, 0.76, {0.55, 0.97}, 0.2}});
   }
   method.information = {0.91, 0.83, 0.05};
   method.chance = analysis::ChanceTest{57, 75, 25.0, 0.00002, true, 0};
   method.d_prime = {1.7, 1.4, 2.1};
+  method.d_prime_over_participants = analysis::DPrime{1.7, 1.2, 2.3};
   method.choice = choice_of();
   add_participants(method);
   for (const double median : {4.0, 5.5, 6.25, 5.0}) method.reaction.push_back(times_of(median));
@@ -75,7 +82,7 @@ analysis::identification::MethodReport method_of(const std::string& name,
 analysis::identification::MethodPair pair_of() {
   analysis::identification::MethodPair pair;
   pair.overall = {6, -0.083, {-0.2, 0.034}, 0.125, -0.42, analysis::Interval{-0.16, -0.01}};
-  pair.odds_ratio = analysis::OddsRatio{0.66, {0.31, 1.4}};
+  pair.odds_ratio = analysis::OddsRatio{0.66, {0.31, 1.4}, analysis::Interval{0.25, 1.7}};
   for (int i = 0; i < 3; ++i) {
     pair.classes.push_back({{25, 18}, {25, 20}, {6, -0.08, {-0.3, 0.14}, 0.5, -0.46}, {}});
   }
@@ -108,6 +115,21 @@ analysis::identification::CueReport cues_of(const std::vector<std::string>& clas
                                                     false};
   cues.methods.push_back(method);
   return cues;
+}
+
+analysis::PrimaryResult primary_of() {
+  analysis::PrimaryResult primary;
+  primary.estimand = design::Estimand::difference;
+  primary.words = "mean over participants of the accuracy with adaptive less that with tv-gabor";
+  primary.test = "sign flips over participants, two-sided";
+  primary.sides = analysis::Sides::two;
+  primary.p = 0.125;
+  primary.choices = {
+      {"registered", "as registered", 6, 150, -0.083, analysis::Interval{-0.2, 0.034}},
+      {"all", "all excluded sessions put back", 7, 175, -0.06, analysis::Interval{-0.17, 0.05}}};
+  primary.verdict = analysis::Verdict::undecided;
+  primary.because = "Collecting ended with 7 of 20 planned participants.";
+  return primary;
 }
 
 analysis::Collection collection_of() {
@@ -159,6 +181,11 @@ analysis::identification::StudyReport hand_made_report(const std::string& label)
   report.comparison = report.pairs[0].overall;
   report.collection = collection_of();
   report.registration.primary_test = "sign-flip permutation of adaptive less tv-gabor";
+  report.primary = primary_of();
+  report.course.planned = 20;
+  report.course.completed = 7;
+  report.departures = {"7 of 20 participants.", kHostile};
+  report.looks = {{std::chrono::seconds(1'769'860'800), 6, kHostile}};
   report.cues = cues_of(report.classes);
   report.warnings = {"Intervals of a class pool all trials.", kHostile};
   return report;

@@ -134,15 +134,16 @@ TEST_CASE("report_json has the published keys in their order") {
         "study protocol simulated stamp state interim pilot participants trials classes methods "
         "comparison warnings "
         "pairs "
-        "accuracy_intervals reaction_times registration collection references ");
+        "accuracy_intervals reaction_times registration collection references registered primary "
+        "prevalence looks departures ");
   CHECK(keys_of(json["methods"][1]) ==
         "method confusion no_response accuracy overall information_transfer per_participant "
         "marginals chance d_prime best_matching choice_model reaction_time_s breakdowns "
         "robustness ");
   CHECK(keys_of(json["methods"][1]["accuracy"][0]) ==
-        "class n correct p wilson clopper_pearson jeffreys ");
+        "class n correct p wilson clopper_pearson jeffreys mean interval ");
   CHECK(keys_of(json["methods"][1]["overall"]) ==
-        "n correct p mean interval sd bootstrap method references ");
+        "n correct p mean interval sd bootstrap method references spread ");
   CHECK(keys_of(json["comparison"]) == "difference interval p db ");
   CHECK(json["methods"][1]["confusion"] ==
         nlohmann::ordered_json({{4, 0, 4}, {0, 8, 0}, {0, 0, 8}}));
@@ -217,30 +218,36 @@ Report of the study pair [SIMULATED]
 
 Result [SIMULATED]
 ------------------
-  adaptive: participants were right in 95.8% of their trials on average (2 participants, 24 trials;
-  95% t interval [42.9, 100.0], cluster bootstrap interval [91.7, 100.0]; standard deviation between
-  participants 5.9 points). Chance is 33.3%. Answers that have nothing to do with what was presented
-  would give 7.7 right of 24 on average; 23 were right (exact permutation over the design, one-sided
-  p < 0.001).
-  tv-gabor: participants were right in 83.3% of their trials on average (2 participants, 24 trials;
-  95% t interval [0.0, 100.0], cluster bootstrap interval [66.7, 100.0]; standard deviation between
-  participants 23.6 points). Chance is 33.3%. Answers that have nothing to do with what was
-  presented would give 8.0 right of 24 on average; 20 were right (exact permutation over the design,
-  one-sided p < 0.001).
+  Not registered. The study file registers no estimand and no test, so nothing is decided here.
+  Mean over participants of the accuracy with adaptive less that with tv-gabor: +12.5 points, 95% t
+  interval [−100.0, 100.0] (2 participants analysed; no number planned, 2 completed). Sign flips
+  over participants, two-sided: p = 1.000, alpha 0.05.
 
-[SIMULATED] Proportion of right answers, mean over participants
-                                                                                       p,
-                                                         bootstrap 95%        SD    above
-  method    participants  trials    mean      t 95% (%)            (%)  (points)   chance
-  adaptive             2      24  *95.8%  [42.9, 100.0]  [91.7, 100.0]       5.9  < 0.001
-  tv-gabor             2      24  *83.3%   [0.0, 100.0]  [66.7, 100.0]      23.6  < 0.001
-  A trial without a response counts as wrong. Chance is 33.3%.
+[SIMULATED] The deciding question under every choice of sessions and trials
+                                                  difference
+  choice                    participants  trials    (points)   t 95% (points)      p
+  no exclusion that was                2      48      *+12.5  [−100.0, 100.0]  1.000
+  made after outcomes were
+  seen
+  all exclusions as made               2      48       +12.5  [−100.0, 100.0]      –
+  exclusions made after                2      48       +12.5  [−100.0, 100.0]      –
+  outcomes were seen put
+  back
+  all excluded sessions                2      48       +12.5  [−100.0, 100.0]      –
+  put back
+  exclusions as made,                  2      48       +12.5  [−100.0, 100.0]      –
+  valid trials alone
+  exclusions as made,                  2      47       +16.7  [−100.0, 100.0]      –
+  trials with a response
+  alone
+  p belongs to the first row alone; the others show what a choice changes. Each participant weighs
+  the same, however many trials it has.
 
 What to bear in mind [SIMULATED]
 --------------------------------
   - adaptive: 1 trial without a response, counted as wrong; with them excluded 23 of 23 are correct.
-  - Intervals of a class pool all participants' trials as if they were independent, so they are too
-    narrow; the interval to quote is that of the mean over participants.
+  - Wilson, Clopper-Pearson and Jeffreys intervals pool all participants' trials as if they were
+    independent, so they are too narrow; the intervals to quote are those over participants.
   - adaptive: information transfer from 23 trials is biased upward; 45 are the usual minimum for 3
     classes.
   - tv-gabor: information transfer from 24 trials is biased upward; 45 are the usual minimum for 3
@@ -266,38 +273,75 @@ Participants [SIMULATED]
   device: simulated (2 sessions)
   No deviation from the protocol was recorded.
 
+[SIMULATED] When outcomes were looked at
+  date                  participants  look   why
+  1970-01-01 00:00 UTC             2  final  planned
+
 Accuracy [SIMULATED]
 --------------------
+  adaptive: participants were right in 95.8% of their trials on average (2 participants, 24 trials;
+  95% t interval [42.9, 100.0], bootstrap interval [91.7, 100.0]; standard deviation between
+  participants 1.3 [0.0, 20.0] points, without what a limited number of trials adds by chance).
+  Chance is 33.3%. Whether at least one participant can: answers that have nothing to do with what
+  was presented would give 7.7 right of 24 on average; 23 were right (exact permutation over the
+  design, one-sided p < 0.001). 2 of 2 participants passed this test on their own trials, which
+  chance alone would let 3.5% of them pass: 100.0% of people [34.5, 100.0] would pass in as many
+  trials, a lower bound of those who can.
+  tv-gabor: participants were right in 83.3% of their trials on average (2 participants, 24 trials;
+  95% t interval [0.0, 100.0], bootstrap interval [66.7, 100.0]; standard deviation between
+  participants 21.9 [0.0, 37.3] points, without what a limited number of trials adds by chance).
+  Chance is 33.3%. Whether at least one participant can: answers that have nothing to do with what
+  was presented would give 8.0 right of 24 on average; 20 were right (exact permutation over the
+  design, one-sided p < 0.001). 2 of 2 participants passed this test on their own trials, which
+  chance alone would let 3.0% of them pass: 100.0% of people [34.9, 100.0] would pass in as many
+  trials, a lower bound of those who can.
 
-[SIMULATED] adaptive: right answers by the texture presented, all participants' trials pooled
-                                  Wilson 95%  Clopper-Pearson   Jeffreys 95%
-  texture  n  right  accuracy            (%)          95% (%)            (%)
-  bark     8      8    100.0%  [67.6, 100.0]    [63.1, 100.0]  [73.8, 100.0]
-  cloth    8      7     87.5%   [52.9, 97.8]     [47.3, 99.7]   [54.6, 98.6]
-  straw    8      8    100.0%  [67.6, 100.0]    [63.1, 100.0]  [73.8, 100.0]
+[SIMULATED] Proportion of right answers, mean over participants
+                                                         bootstrap 95%        SD between
+  method    participants  trials    mean      t 95% (%)            (%)          (points)
+  adaptive             2      24  *95.8%  [42.9, 100.0]  [91.7, 100.0]   1.3 [0.0, 20.0]
+  tv-gabor             2      24  *83.3%   [0.0, 100.0]  [66.7, 100.0]  21.9 [0.0, 37.3]
+  Each participant weighs the same, however many trials it has. A trial without a response counts as
+  wrong. Chance is 33.3%.
+
+[SIMULATED] Whether at least one participant can, and how many would show it
+                             p, at              by
+                       by    least  passed  chance   would
+  method    right  chance      one   alone   alone    pass        95% (%)
+  adaptive  23/24     7.7  < 0.001     2/2    3.5%  100.0%  [34.5, 100.0]
+  tv-gabor  20/24     8.0  < 0.001     2/2    3.0%  100.0%  [34.9, 100.0]
+
+[SIMULATED] adaptive: right answers by the texture presented; t over participants, the other
+            intervals as if all trials were independent
+                                                Wilson 95%  Clopper-Pearson   Jeffreys 95%
+  texture  n  right  accuracy     t 95% (%)            (%)          95% (%)            (%)
+  bark     8      8    100.0%             –  [67.6, 100.0]    [63.1, 100.0]  [73.8, 100.0]
+  cloth    8      7     87.5%  [0.0, 100.0]   [52.9, 97.8]     [47.3, 99.7]   [54.6, 98.6]
+  straw    8      8    100.0%             –  [67.6, 100.0]    [63.1, 100.0]  [73.8, 100.0]
 
 [SIMULATED] adaptive: right answers by participant
                                     with the best
-                                      exchange of            consistency
-  participant   n  right  accuracy         labels  exchange        (bit)
-  P01          12     12    100.0%         100.0%  none             1.58
-  Ann+1        12     11     91.7%          91.7%  none             1.57
-  all, pooled  24     23     95.8%          95.8%  none                –
+                                      exchange of            p of the            consistency
+  participant   n  right  accuracy         labels  exchange  exchange  adjusted        (bit)
+  P01          12     12    100.0%         100.0%  none         1.000     1.000         1.58
+  Ann+1        12     11     91.7%          91.7%  none         1.000     1.000         1.57
+  all, pooled  24     23     95.8%          95.8%  none             –         –            –
 
-[SIMULATED] tv-gabor: right answers by the texture presented, all participants' trials pooled
-                                  Wilson 95%  Clopper-Pearson   Jeffreys 95%
-  texture  n  right  accuracy            (%)          95% (%)            (%)
-  bark     8      4     50.0%   [21.5, 78.5]     [15.7, 84.3]   [19.9, 80.1]
-  cloth    8      8    100.0%  [67.6, 100.0]    [63.1, 100.0]  [73.8, 100.0]
-  straw    8      8    100.0%  [67.6, 100.0]    [63.1, 100.0]  [73.8, 100.0]
+[SIMULATED] tv-gabor: right answers by the texture presented; t over participants, the other
+            intervals as if all trials were independent
+                                                Wilson 95%  Clopper-Pearson   Jeffreys 95%
+  texture  n  right  accuracy     t 95% (%)            (%)          95% (%)            (%)
+  bark     8      4     50.0%  [0.0, 100.0]   [21.5, 78.5]     [15.7, 84.3]   [19.9, 80.1]
+  cloth    8      8    100.0%             –  [67.6, 100.0]    [63.1, 100.0]  [73.8, 100.0]
+  straw    8      8    100.0%             –  [67.6, 100.0]    [63.1, 100.0]  [73.8, 100.0]
 
 [SIMULATED] tv-gabor: right answers by participant
                                     with the best
-                                      exchange of            consistency
-  participant   n  right  accuracy         labels  exchange        (bit)
-  P01          12      8     66.7%          66.7%  none             0.92
-  Ann+1        12     12    100.0%         100.0%  none             1.58
-  all, pooled  24     20     83.3%          83.3%  none                –
+                                      exchange of            p of the            consistency
+  participant   n  right  accuracy         labels  exchange  exchange  adjusted        (bit)
+  P01          12      8     66.7%          66.7%  none         1.000     1.000         0.92
+  Ann+1        12     12    100.0%         100.0%  none         1.000     1.000         1.58
+  all, pooled  24     20     83.3%          83.3%  none             –         –            –
 
 Confusions [SIMULATED]
 ----------------------
@@ -345,23 +389,25 @@ Confusions [SIMULATED]
 [SIMULATED] Information transfer and nominal sensitivity, all participants' trials pooled
                                       at
                   raw  corrected  random
-  method     n  (bit)      (bit)   (bit)  categories    d′        d′ 95%
-  adaptive  23   1.58       1.46    0.16         2.7  2.83  [1.60, 4.62]
-  tv-gabor  24   1.13       1.01    0.14         2.0  1.82  [0.97, 2.74]
+  method     n  (bit)      (bit)   (bit)  categories    d′          d′ 95%
+  adaptive  23   1.58       1.46    0.16         2.7  2.83  [1.60, 4.62] *
+  tv-gabor  24   1.13       1.01    0.14         2.0  1.82  [0.97, 2.74] *
+  * From Clopper and Pearson's interval, which treats trials as independent: there are fewer than
+  six participants, or they do not differ.
 
 Comparison of methods [SIMULATED]
 ---------------------------------
   adaptive less tv-gabor: +12.5 percentage points (mean of 2 participants; 95% t interval [−100.0,
   100.0]; sign-flip p = 1.000). As a ratio of the two means that is +0.61 dB (10 log10, the decibel
-  of power); odds ratio 4.00 [0.49, 32.91].
+  of power); odds ratio 4.00 [0.49, 32.91] †.
 
 [SIMULATED] Methods compared within participants
                                                                     bootstrap  sign-flip
   difference              participants  points            t 95%           95%          p
   adaptive less tv-gabor             2  *+12.5  [−100.0, 100.0]  [−8.3, 33.3]      1.000
-                                              dB (10
-  difference                 odds ratio, 95%  log10)
-  adaptive less tv-gabor  4.00 [0.49, 32.91]   +0.61
+                                                dB (10
+  difference                   odds ratio, 95%  log10)
+  adaptive less tv-gabor  4.00 [0.49, 32.91] †   +0.61
   dB: 10 log10 of the ratio of the two means; 20 log10 would be twice that.
 
 [SIMULATED] adaptive beside tv-gabor, by texture

@@ -67,18 +67,62 @@ TEST_CASE("document: confusions hold counts, row percentages, marginals and miss
   CHECK_FALSE(table.rows[1][1].strong);
 }
 
-TEST_CASE("document: the headline is the mean over participants, with both intervals and chance") {
+TEST_CASE(
+    "document: the headline is the mean over participants, with both intervals and the spread") {
   const Table table = table_named(hand_made(), "headline");
   CHECK(texts_of(table.rows.front()) == std::vector<std::string>{"adaptive", "6", "75", "79.0%",
                                                                  "[63.0, 95.0]", "[68.0, 90.0]",
-                                                                 "15.5", "< 0.001"});
+                                                                 "12.1 [5.0, 30.0]"});
+  const Table ability = table_named(hand_made(), "ability");
+  CHECK(texts_of(ability.rows.front()) == std::vector<std::string>{"adaptive", "57/75", "25.0",
+                                                                   "< 0.001", "5/6", "4.0%",
+                                                                   "82.6%", "[50.0, 97.0]"});
+  CHECK_THAT(tables_markdown(hand_made()), holds_text("a lower bound"));
+}
+
+TEST_CASE("document: the result is the verdict, the departures and one table of all choices") {
+  const Document document = hand_made();
+  const Section& result = document.sections.front();
+  CHECK(result.id == "result");
+  CHECK(std::get<Cited>(result.blocks.at(0)).text ==
+        "Undecided. Collecting ended with 7 of 20 planned participants.");
+  CHECK_THAT(
+      std::get<Cited>(result.blocks.at(1)).text,
+      holds_text("−8.3 points, 95% t interval [−20.0, 3.4] (6 participants analysed; 20 "
+                 "planned, 7 completed). Sign flips over participants, two-sided: p = 0.125, "
+                 "alpha 0.05."));
+  CHECK(std::get<Warnings>(result.blocks.at(3)).sentences.front() == "7 of 20 participants.");
+  const Table table = table_named(document, "primary");
+  CHECK(texts_of(table.rows[0]) ==
+        std::vector<std::string>{"as registered", "6", "150", "−8.3", "[−20.0, 3.4]", "0.125"});
+  CHECK(table.rows[1].back().text == "–");
+  CHECK(table_named(document, "looks").rows[0][0].text == "2026-01-31 12:00 UTC");
+}
+
+TEST_CASE("document: after an unregistered look no p stands without saying so") {
+  StudyReport report = hand_made_report();
+  report.looks.push_back({std::chrono::seconds(0), 3, "curious", LookKind::unregistered});
+  const Document document = study_document(report, hand_made_provenance());
+  const char* const words = "p is not adjusted for 1 unregistered look at outcomes.";
+  for (const char* id : {"primary", "ability", "methods", "methods-by-class-1"}) {
+    INFO(id);
+    CHECK(table_named(document, id).notes.back().text == words);
+  }
+  CHECK(table_named(document, "headline").notes.back().text != words);
+  for (const Section& section : document.sections) {
+    for (const Block& block : section.blocks) {
+      const auto* sentence = std::get_if<Cited>(&block);
+      if (sentence == nullptr || sentence->text.find("p = ") == std::string::npos) continue;
+      CHECK_THAT(sentence->text, holds_text(words));
+    }
+  }
 }
 
 TEST_CASE("document: methods are compared with differences, odds and the decibel's name") {
   const Table table = table_named(hand_made(), "methods");
   CHECK(texts_of(table.rows.front()) ==
         std::vector<std::string>{"adaptive less tv-gabor", "6", "−8.3", "[−20.0, 3.4]",
-                                 "[−16.0, −1.0]", "0.125", "0.66 [0.31, 1.40]", "−0.42"});
+                                 "[−16.0, −1.0]", "0.125", "0.66 [0.25, 1.70]", "−0.42"});
   CHECK(table.columns.back().title == "dB (10 log10)");
   const std::string text = tables_markdown(hand_made());
   CHECK_THAT(text, holds_text("20 log10 would be twice that"));
@@ -125,6 +169,40 @@ TEST_CASE("document: few participants give no verdict on which observer confuses
   CHECK_THAT(page(), holds_text("without an interval it cannot be decided"));
 }
 
+TEST_CASE("document: an observer that cannot reach participants is never as uncertain as they") {
+  StudyReport report = hand_made_report();
+  MethodCues& cues = report.cues->methods[0];
+  const auto page = [&] { return page_html(study_document(report, hand_made_provenance())); };
+  CHECK_THAT(page(), holds_text("once all observers are as uncertain as participants"));
+  // Strength, which is not the nearest, is right less often.
+  cues.observers[0].matched_accuracy = 0.58;
+  cues.observers[0].wanted_accuracy = 0.77;
+  CHECK_THAT(page(), !holds_text("as uncertain as participants"));
+  CHECK_THAT(page(), holds_text("not all can reach it"));
+  CHECK_THAT(page(), !holds_text("it is no verdict"));
+  cues.match->best = Cue::rms;
+  CHECK_THAT(page(), holds_text("it is no verdict that they used this alone"));
+}
+
+TEST_CASE("document: intervals over participants come first, those of trials are marked") {
+  StudyReport report = hand_made_report();
+  const auto markdown = [&](const std::string& id) {
+    return table_markdown(table_named(study_document(report, hand_made_provenance()), id), "");
+  };
+  CHECK_THAT(markdown("accuracy-by-class-adaptive"), holds_text("55.0, 97.0"));
+  CHECK_THAT(markdown("methods"), holds_text("0.66 \\[0.25, 1.70\\]"));
+  CHECK_THAT(markdown("information"), holds_text("1.20, 2.30"));
+  report.pairs[0].odds_ratio->bootstrap.reset();
+  for (MethodReport& method : report.methods) {
+    method.d_prime_over_participants.reset();
+    for (ClassAccuracy& one : method.accuracy) one.mean.interval = {0.76, 0.76};
+  }
+  CHECK_THAT(markdown("methods"), holds_text("0.66 \\[0.31, 1.40\\] †"));
+  CHECK_THAT(markdown("methods"), holds_text("treats trials as independent"));
+  CHECK_THAT(markdown("information"), holds_text("treats trials as independent"));
+  CHECK_THAT(markdown("accuracy-by-class-adaptive"), !holds_text("76.0, 76.0"));
+}
+
 TEST_CASE("document: every table of an interim look or a pilot is marked") {
   StudyReport report = hand_made_report();
   Provenance provenance = hand_made_provenance();
@@ -163,10 +241,14 @@ TEST_CASE("document: a choice model that does not fit, or cannot be tested, says
     return text;
   };
   CHECK_THAT(notes(), !holds_text("does not fit"));
-  model.p = 0.05;
+  model.p = 0.04;  // chi-square alone says nothing
+  CHECK_THAT(notes(), !holds_text("does not fit"));
+  CHECK_THAT(notes(), holds_text("p = 0.210 by 999 tables drawn from the model"));
+  model.drawn_p = 0.05;
   CHECK_THAT(notes(), holds_text("does not fit"));
   model.degrees_of_freedom = 0;
   model.p.reset();
+  model.drawn_p.reset();
   CHECK_THAT(notes(), !holds_text("G²"));
 }
 

@@ -1,0 +1,56 @@
+/// \file Who looked at outcomes, and when: every unblinding that the file's chain holds.
+#pragma once
+
+#include "protocols/design/session_plan.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <chrono>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+enum class LookKind {
+  final,         ///< after the study was closed
+  registered,    ///< an interim look at a number of participants that was registered
+  unregistered,  ///< any other interim look
+  person,        ///< at the outcomes of one participant
+};
+
+/// "final", "registered", "unregistered", "one participant"
+[[nodiscard]] std::string name_of(LookKind kind);
+
+struct Look {
+  std::chrono::nanoseconds at{};  ///< UTC since 1970
+  int participants = 0;           ///< whose sessions were complete and counted at that time
+  std::string reason;
+  LookKind kind = LookKind::final;
+  std::string participant{};  ///< of LookKind::person
+  int station = 0;            ///< of a collected study: whose look it was, from 1; 0: at the whole
+
+  /// Whether it could have decided when collecting ends, without having been registered. A look at
+  /// one participant tells too little of the study for that.
+  [[nodiscard]] bool is_unregistered() const noexcept { return kind == LookKind::unregistered; }
+};
+
+/// How a study's outcomes were looked at, and which sessions were left out with knowledge of them.
+struct LookRecord {
+  std::vector<Look> looks;             ///< in the order of the chain, those at stations first
+  std::set<int> excluded_afterwards;   ///< sessions excluded after a look at their outcomes
+  std::set<int> replaced_afterwards;   ///< likewise replaced
+  std::set<int> erased_afterwards;    ///< likewise erased at the participant's wish
+};
+
+/// Reads the looks from the file's chain and from those of collected stations.
+/// \param registration  the looks that were registered
+/// \throws StoreError if a body cannot be read
+[[nodiscard]] LookRecord look_record(const store::StudyStore& store,
+                                     const design::Registration& registration);
+
+/// \return "2026-01-31 14:05 UTC"
+[[nodiscard]] std::string date_text(std::chrono::nanoseconds at);
+/// \return "2026-01-31T14:05:09Z"
+[[nodiscard]] std::string iso_date(std::chrono::nanoseconds at);
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,259 @@
+#include "analysis/planning/people_spread.hpp"
+
+#include "analysis/planning/fit_problem.hpp"
+#include "analysis/planning/noise_lines.hpp"
+#include "analysis/planning/optimiser.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/interpolators/makima.hpp>
+
+namespace touchtrial::planning {
+namespace {
+
+/// Equally likely groups of people.
+constexpr int kGroupsOfPeople = 32;
+/// The spreads at which the profile is computed.
+constexpr std::array<double, 16> kSpreads{0.0,  0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5,
+                                          0.65, 0.8,  1.0, 1.25, 1.5, 2.0, 2.5, 3.0};
+/// Half the 95 % point of chi-square with one degree of freedom.
+constexpr double kHalfChiSquare = 1.920729;
+
+using Curve = boost::math::interpolators::makima<std::vector<double>>;
+
+/// One participant's answers that were given at all.
+struct GivenAnswer {
+  std::size_t cell = 0;
+  double count = 0.0;
+};
+struct Person {
+  int layout = 0;
+  std::vector<GivenAnswer> answers;
+};
+
+std::vector<Person> chosen(std::span<const CountedPerson> people) {
+  const std::size_t count = std::min(people.size(), kMostPeopleOfSpread);
+  std::vector<Person> persons;
+  for (std::size_t i = 0; i < count; ++i) {
+    const CountedPerson& one = people[i * people.size() / count];
+    Person& person = persons.emplace_back(Person{one.layout, {}});
+    for (std::size_t cell = 0; cell < one.counts.size(); ++cell) {
+      if (one.counts[cell] > 0.0) person.answers.push_back({cell, one.counts[cell]});
+    }
+  }
+  return persons;
+}
+
+/// A point of the search, and the log likelihood there.
+struct Point {
+  double log_noise = 0.0;
+  double lapse = 0.0;
+  double spread = 0.0;
+  double value = -std::numeric_limits<double>::infinity();
+};
+
+class SpreadLikelihood {
+ public:
+  SpreadLikelihood(const NoiseAnswers& answers, std::span<const CountedPerson> people)
+      : answers_(answers), people_(chosen(people)), groups_(normal_groups(kGroupsOfPeople)) {
+    for (std::size_t i = 0; i < answers.answers.size(); ++i) {
+      places_.push_back(answers.least_log_noise + static_cast<double>(i) * answers.step);
+    }
+  }
+
+  [[nodiscard]] double least() const { return places_.front(); }
+  [[nodiscard]] double most() const { return places_.back(); }
+
+  /// Every person's log likelihood by ln noise.
+  [[nodiscard]] std::vector<Curve> curves(double lapse) const {
+    std::vector<Curve> all;
+    for (const Person& person : people_) {
+      std::vector<double> values;
+      for (const Cells& at_noise : answers_.answers) {
+        values.push_back(log_likelihood(person, at_noise[person.layout], lapse));
+      }
+      all.emplace_back(std::vector<double>(places_), std::move(values));
+    }
+    return all;
+  }
+
+  [[nodiscard]] double value(const std::vector<Curve>& curves, double log_noise,
+                             double spread) const {
+    double sum = 0.0;
+    for (const Curve& curve : curves) sum += of_person(curve, log_noise, spread);
+    return sum;
+  }
+
+ private:
+  [[nodiscard]] double log_likelihood(const Person& person, const std::vector<double>& felt,
+                                      double lapse) const {
+    const double guessed = lapse / static_cast<double>(answers_.classes);
+    double sum = 0.0;
+    for (const GivenAnswer& one : person.answers) {
+      sum += one.count * std::log(believed((1.0 - lapse) * felt[one.cell] + guessed));
+    }
+    return sum;
+  }
+
+  /// The logarithm of the mean likelihood over the groups of people.
+  [[nodiscard]] double of_person(const Curve& curve, double log_noise, double spread) const {
+    if (spread == 0.0) return curve(log_noise);
+    std::array<double, kGroupsOfPeople> logs{};
+    double largest = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+      logs[i] = curve(std::clamp(log_noise + spread * groups_[i], least(), most()));
+      largest = std::max(largest, logs[i]);
+    }
+    double sum = 0.0;
+    for (const double one : logs) sum += std::exp(one - largest);
+    return largest + std::log(sum / kGroupsOfPeople);
+  }
+
+  const NoiseAnswers& answers_;
+  std::vector<Person> people_;
+  std::vector<double> groups_;
+  std::vector<double> places_;
+};
+
+/// Which of noise, lapse and spread may change.
+struct Free {
+  bool noise = true;
+  bool lapse = true;
+  bool spread = false;
+};
+
+/// Half the difference quotient's step.
+constexpr double kSlopeStep = 1e-4;
+
+/// The derivative by one number, from differences within its bounds.
+double slope(const std::function<double(double)>& value, double at, double lower, double upper) {
+  if (lower == upper) return 0.0;
+  const double low = std::max(lower, at - kSlopeStep);
+  const double high = std::min(upper, at + kSlopeStep);
+  return (value(high) - value(low)) / (high - low);
+}
+
+Point maximised(const SpreadLikelihood& likelihood, const Point& start, const Free& free) {
+  const auto bound = [](bool is_free, double fixed, double end) { return is_free ? end : fixed; };
+  const Bounds bounds{{bound(free.noise, start.log_noise, likelihood.least()),
+                       bound(free.lapse, start.lapse, 0.0), bound(free.spread, start.spread, 0.0)},
+                      {bound(free.noise, start.log_noise, likelihood.most()),
+                       bound(free.lapse, start.lapse, kMostLapse),
+                       bound(free.spread, start.spread, kSpreads.back())}};
+  const SmoothFunction function = [&](std::span<const double> at, std::span<double> slopes) {
+    const std::vector<Curve> curves = likelihood.curves(at[1]);
+    if (!slopes.empty()) {
+      const auto with = [&](std::size_t i, auto value) {
+        slopes[i] = slope(value, at[i], bounds.lower[i], bounds.upper[i]);
+      };
+      with(0, [&](double noise) { return likelihood.value(curves, noise, at[2]); });
+      with(1,
+           [&](double lapse) { return likelihood.value(likelihood.curves(lapse), at[0], at[2]); });
+      with(2, [&](double spread) { return likelihood.value(curves, at[0], spread); });
+    }
+    return likelihood.value(curves, at[0], at[2]);
+  };
+  const Optimum best =
+      maximise(function, {start.log_noise, start.lapse, start.spread}, bounds,
+               {.tolerance = 1e-7, .most_evaluations = 40, .scales = {0.2, 0.05, 0.2}});
+  return {best.at[0], best.at[1], best.at[2], best.value};
+}
+
+/// The best points with the spread held, for each of some spreads. Each also starts from its
+/// neighbours' points: with more spread, fewer lapses explain the same errors.
+std::vector<Point> profile(const SpreadLikelihood& likelihood, const SpreadStart& start,
+                           const Free& free) {
+  std::vector<Point> points;
+  const auto improve = [&](std::size_t i, Point from) {
+    from.spread = kSpreads[i];
+    const Point found = maximised(likelihood, from, free);
+    if (found.value > points[i].value) points[i] = found;
+  };
+  Point from{std::clamp(start.log_noise, likelihood.least(), likelihood.most()), start.lapse};
+  for (std::size_t i = 0; i < kSpreads.size(); ++i) {
+    points.emplace_back();
+    improve(i, i == 0 ? from : points[i - 1]);
+  }
+  for (std::size_t i = kSpreads.size() - 1; i > 0; --i) improve(i - 1, points[i]);
+  return points;
+}
+
+/// The place between two points of the profile at which it has this value.
+double crossing(const Point& below, const Point& above, double value) {
+  const double share = (value - below.value) / (above.value - below.value);
+  return below.spread + share * (above.spread - below.spread);
+}
+
+/// The spreads at which the profile lies less than 1.92 below its maximum.
+OpenInterval interval_of(const std::vector<Point>& points, const Point& best) {
+  const double enough = best.value - kHalfChiSquare;
+  OpenInterval interval{0.0, std::nullopt};
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Point& here = points[i];
+    const Point& next = points[i + 1];
+    // The best point lies between two of the profile.
+    if (here.value < enough && here.spread < best.spread) {
+      interval.lower = crossing(here, next.value < enough ? best : next, enough);
+    }
+    if (next.value < enough && next.spread > best.spread && !interval.upper) {
+      interval.upper = crossing(here.value < enough ? best : here, next, enough);
+    }
+  }
+  return interval;
+}
+
+/// The p of a spread by the likelihood ratio. A spread of 0 is the end of the possible ones, where
+/// the ratio is 0 half of the time.
+double p_of(double lost, bool at_the_end) {
+  if (lost <= 0.0) return 1.0;
+  const boost::math::chi_squared_distribution<> chi_squared(1.0);
+  const double p = boost::math::cdf(boost::math::complement(chi_squared, 2.0 * lost));
+  return at_the_end ? 0.5 * p : p;
+}
+
+void check(const NoiseAnswers& answers, const SpreadStart& start) {
+  if (answers.answers.size() < 4 || !(answers.step > 0.0) || answers.classes < 1) {
+    throw std::invalid_argument("people_spread: four amounts of noise or more, and classes");
+  }
+  if (!(start.spread >= 0.0) || !(start.lapse >= 0.0 && start.lapse <= kMostLapse)) {
+    throw std::invalid_argument("people_spread: a spread and a lapse are 0 or more");
+  }
+}
+
+}  // namespace
+
+std::optional<PeopleSpread> people_spread(const NoiseAnswers& answers,
+                                          std::span<const CountedPerson> people,
+                                          const SpreadStart& start) {
+  check(answers, start);
+  if (people.size() < 2) return std::nullopt;
+  const SpreadLikelihood likelihood(answers, people);
+  Free free{start.noise_is_free, start.lapse_is_free, false};
+  const std::vector<Point> points = profile(likelihood, start, free);
+  Point given = points.front();
+  if (start.spread > 0.0) {
+    const auto nearest = std::ranges::min_element(
+        points, {}, [&](const Point& one) { return std::abs(one.spread - start.spread); });
+    given = *nearest;
+    given.spread = start.spread;
+    given = maximised(likelihood, given, free);
+  }
+  free.spread = true;
+  Point best = maximised(likelihood, *std::ranges::max_element(points, {}, &Point::value), free);
+  if (best.value < points.front().value) best = points.front();
+  if (best.value < given.value) best = given;
+  return PeopleSpread{best.spread,
+                      interval_of(points, best),
+                      best.log_noise,
+                      best.lapse,
+                      p_of(best.value - points.front().value, true),
+                      p_of(best.value - given.value, start.spread == 0.0)};
+}
+
+}  // namespace touchtrial::planning

@@ -1,0 +1,356 @@
+#include "analysis/registered.hpp"
+
+#include "analysis/statistics/group_sequential.hpp"
+#include "analysis/text_figures.hpp"
+#include "core/text.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+int unregistered_of(const std::vector<Look>& looks) {
+  return static_cast<int>(std::ranges::count_if(looks, &Look::is_unregistered));
+}
+
+/// Whether a session is one that the plan is about, whoever left it out later.
+bool is_completed(const Outcomes& outcomes, const store::SessionRow& row) {
+  return row.state == store::SessionState::completed && row.replaced_by.empty() &&
+         row.pilot == outcomes.pilot && row.simulated == outcomes.simulated;
+}
+
+int completed_participants(const Outcomes& outcomes) {
+  return static_cast<int>(std::ranges::count_if(
+      outcomes.sessions,
+      [&](const SessionOutcome& session) { return is_completed(outcomes, session.row); }));
+}
+
+}  // namespace
+
+std::string name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::supported:
+      return "supported";
+    case Verdict::not_supported:
+      return "not supported";
+    case Verdict::undecided:
+      return "undecided";
+    case Verdict::not_registered:
+      break;
+  }
+  return "not registered";
+}
+
+StudyCourse course_of(const Outcomes& outcomes, int analysed) {
+  const std::vector<Look>& looks = outcomes.looked.looks;
+  StudyCourse course{
+      .planned = outcomes.design.registration.participants,
+      .completed = completed_participants(outcomes),
+      .analysed = analysed,
+      .closed = outcomes.state.closed,
+      .pilot = outcomes.pilot,
+      .has_registration = outcomes.design.registration.analysis.has_value(),
+      .unregistered_looks = unregistered_of(looks),
+      .excluded_afterwards = static_cast<int>(outcomes.looked.excluded_afterwards.size())};
+  std::set<int> made;
+  for (const Look& look : looks) {
+    if (look.kind == LookKind::registered) made.insert(look.participants);
+  }
+  course.registered_looks = {made.begin(), made.end()};
+  // Collecting may end at a registered look.
+  const auto is_last_look = [&](int participants) {
+    return !made.empty() && participants == *made.rbegin();
+  };
+  course.at_registered_look = is_last_look(course.completed) || is_last_look(analysed);
+  return course;
+}
+
+double level_of(const PrimaryResult& result, const StudyCourse& course, design::Spending spending) {
+  if (course.registered_looks.empty() || course.planned <= 0) return result.alpha;
+  std::vector<double> shares;
+  for (const int look : course.registered_looks) {
+    shares.push_back(std::min(1.0, static_cast<double>(look) / course.planned));
+  }
+  if (!course.at_registered_look && shares.back() < 1.0) shares.push_back(1.0);
+  const AlphaSpending kind =
+      spending == design::Spending::pocock ? AlphaSpending::pocock : AlphaSpending::obrien_fleming;
+  return nominal_levels(result.alpha, result.sides, kind, shares).back();
+}
+
+namespace {
+
+std::string share_text(double share, bool is_difference) {
+  return fmt::format("{:.1f}{}", 100.0 * share, is_difference ? " points" : "%");
+}
+
+/// What the interval says of the smallest effect that was registered.
+std::string words_on_worth(const PrimaryResult& result) {
+  const std::optional<Interval>& interval = result.registered().interval;
+  if (!result.smallest_effect || !interval) return "";
+  const double worth = *result.smallest_effect;
+  const std::string least = share_text(worth, result.estimand == design::Estimand::difference);
+  if (interval->low >= worth) {
+    return " The interval lies above " + least + ", the smallest registered as worth having.";
+  }
+  if (interval->high < worth) {
+    return " The interval lies below " + least +
+           ", the smallest registered as worth having: an effect of that size is excluded.";
+  }
+  return " The interval contains " + least +
+         ", the smallest registered as worth having: whether it is reached is undecided.";
+}
+
+/// Why the registered test cannot decide yet; empty if it can.
+std::string obstacle(const PrimaryResult& result, const StudyCourse& course) {
+  if (!result.p) return "There are too few participants for the test.";
+  const bool reached = course.planned == 0 || course.completed >= course.planned;
+  const bool may_stop = course.at_registered_look && *result.p <= result.level;
+  if (!course.closed && !may_stop) return "Collecting is not over.";
+  if (!reached && !may_stop) {
+    return fmt::format("Collecting ended with {} of {} planned participants.", course.completed,
+                       course.planned);
+  }
+  if (course.unregistered_looks > 0 && *result.p <= result.level) {
+    return fmt::format("After {} the error rate of the test is not known.",
+                       counted(course.unregistered_looks, "unregistered look"));
+  }
+  return "";
+}
+
+bool is_against(const PrimaryResult& result) {
+  return result.registered().estimate.value_or(result.null) <= result.null;
+}
+
+}  // namespace
+
+void judge(PrimaryResult& result, const StudyCourse& course) {
+  const auto decide = [&](Verdict verdict, const std::string& because) {
+    result.verdict = verdict;
+    result.because = because;
+  };
+  if (course.pilot) return decide(Verdict::not_registered, "A pilot decides nothing.");
+  if (!course.has_registration) {
+    return decide(Verdict::not_registered,
+                  "The study file registers no estimand and no test, so nothing is decided here.");
+  }
+  const std::string worth = words_on_worth(result);
+  const std::string hindered = obstacle(result, course);
+  if (!hindered.empty()) return decide(Verdict::undecided, hindered + worth);
+  const std::string level = fmt::format("{:.3g}", result.level);
+  if (*result.p > result.level) {
+    const std::string above = "p is above " + level + ".";
+    const std::optional<Interval>& interval = result.registered().interval;
+    const bool open =
+        result.smallest_effect && interval && interval->high >= *result.smallest_effect;
+    return decide(open ? Verdict::undecided : Verdict::not_supported, above + worth);
+  }
+  if (is_against(result)) {
+    return decide(Verdict::not_supported,
+                  "The test rejects, but in the direction opposite to the hypothesis." + worth);
+  }
+  decide(Verdict::supported, "p is at most " + level + "." + worth);
+}
+
+namespace {
+
+/// The sessions with more than this share of scored trials that break the validity rule.
+std::set<int> with_invalid_trials(const Outcomes& outcomes, double share) {
+  std::map<int, Proportion> invalid;
+  for (const TrialOutcome& trial : outcomes.trials) {
+    const bool ended = trial.row.state == store::TrialState::answered ||
+                       trial.row.state == store::TrialState::timed_out;
+    if (!trial.scored || !ended) continue;
+    Proportion& own = invalid[trial.row.session];
+    ++own.n;
+    if (!trial.valid()) ++own.correct;
+  }
+  std::set<int> sessions;
+  for (const auto& [session, own] : invalid) {
+    if (own.share().value_or(0.0) > share) sessions.insert(session);
+  }
+  return sessions;
+}
+
+}  // namespace
+
+std::map<int, std::string> rules_met(const Outcomes& outcomes) {
+  std::map<int, std::string> met;
+  const auto& registered = outcomes.design.registration.analysis;
+  if (!registered || !registered->exclusion_rules) return met;
+  const design::ExclusionRules& rules = *registered->exclusion_rules;
+  for (const SessionRecord& record : outcomes.collection.sessions) {
+    for (const std::string& code : rules.deviations) {
+      if (std::ranges::count(record.deviations, code, &Deviation::code) > 0) {
+        met.emplace(record.row.session, code);
+      }
+    }
+  }
+  if (!rules.invalid_trials) return met;
+  for (const int session : with_invalid_trials(outcomes, *rules.invalid_trials)) {
+    met.emplace(session, fmt::format("more than {:.4g}% of trials not valid",
+                                     100.0 * *rules.invalid_trials));
+  }
+  return met;
+}
+
+namespace {
+
+using Departures = std::vector<std::string>;
+
+std::string named_with(const SessionOutcome& session, const std::string& why) {
+  return session.row.participant + (why.empty() ? "" : " (" + why + ")");
+}
+
+/// The sessions for which `why` returns a text, with it: "P01 (asleep), P02 (left)".
+template <typename Why>
+std::pair<int, std::string> sessions_with(const Outcomes& outcomes, Why why) {
+  std::vector<std::string> names;
+  for (const SessionOutcome& session : outcomes.sessions) {
+    const std::optional<std::string> reason = why(session);
+    if (reason) names.push_back(named_with(session, *reason));
+  }
+  return {static_cast<int>(names.size()), listed(names)};
+}
+
+/// The reasons of exclusions by session.
+std::map<int, std::string> exclusion_reasons(const Outcomes& outcomes) {
+  std::map<int, std::string> reasons;
+  for (const SessionRecord& record : outcomes.collection.sessions) {
+    // The record may begin with what the sentence about it says.
+    constexpr std::string_view kSeen = "after outcomes were seen: ";
+    std::string reason = record.exclusion_reason;
+    if (reason.starts_with(kSeen)) reason.erase(0, kSeen.size());
+    reasons[record.row.session] = std::move(reason);
+  }
+  return reasons;
+}
+
+void add_looks(const Outcomes& outcomes, Departures& departures) {
+  const int planned = outcomes.design.registration.participants;
+  for (const Look& look : outcomes.looked.looks) {
+    if (!look.is_unregistered() && look.kind != LookKind::person) continue;
+    const std::string station = look.station > 0 ? fmt::format(" at station {}", look.station) : "";
+    if (look.kind == LookKind::person) {
+      departures.push_back(
+          fmt::format("The outcomes of participant {} alone were looked at{} on {}: {}.",
+                      look.participant, station, date_text(look.at), look.reason));
+      continue;
+    }
+    const std::string of = planned > 0 ? fmt::format(" of {} planned", planned) : "";
+    departures.push_back(fmt::format(
+        "Outcomes were looked at{} on {}, with {}{} {} complete and before collecting ended: {}. "
+        "This look was not registered.",
+        station, date_text(look.at), look.participants, of,
+        look.participants == 1 && of.empty() ? "participant" : "participants", look.reason));
+  }
+}
+
+void add_numbers(const Outcomes& outcomes, Departures& departures) {
+  const int planned = outcomes.design.registration.participants;
+  const int completed = completed_participants(outcomes);
+  const auto analysed = std::ranges::count_if(outcomes.sessions, &SessionOutcome::counted);
+  if (planned == 0 || !outcomes.state.closed || completed == planned) return;
+  departures.push_back(
+      fmt::format("{} planned; collecting ended with {} complete, of whom {} {} analysed.",
+                  counted(planned, "participant") + (planned == 1 ? " was" : " were"), completed,
+                  analysed, analysed == 1 ? "is" : "are"));
+}
+
+void add_late_decisions(const Outcomes& outcomes, Departures& departures) {
+  const auto late = [&](const std::set<int>& sessions, auto reason) {
+    return sessions_with(outcomes, [&](const SessionOutcome& one) -> std::optional<std::string> {
+      if (!sessions.contains(one.row.session)) return std::nullopt;
+      return reason(one);
+    });
+  };
+  const LookRecord& looked = outcomes.looked;
+  std::map<int, std::string> reasons = exclusion_reasons(outcomes);
+  const auto [excluded, who] = late(looked.excluded_afterwards, [&](const SessionOutcome& one) {
+    return reasons[one.row.session];
+  });
+  if (excluded > 0) {
+    departures.push_back(fmt::format("{} excluded after outcomes were seen: {}.",
+                                     counted(excluded, "session"), who));
+  }
+  const auto [replaced, whom] = late(looked.replaced_afterwards, [](const SessionOutcome& one) {
+    return "by " + one.row.replaced_by;
+  });
+  if (replaced > 0) {
+    departures.push_back(fmt::format("{} replaced after outcomes were seen: {}.",
+                                     counted(replaced, "session"), whom));
+  }
+  if (!looked.erased_afterwards.empty()) {
+    departures.push_back(counted(static_cast<int>(looked.erased_afterwards.size()), "session") +
+                         " erased at the participant's wish after outcomes were seen.");
+  }
+}
+
+void add_rules(const Outcomes& outcomes, Departures& departures) {
+  const auto& registered = outcomes.design.registration.analysis;
+  if (!registered || !registered->exclusion_rules) return;
+  const std::map<int, std::string> met = rules_met(outcomes);
+  std::map<int, std::string> reasons = exclusion_reasons(outcomes);
+  const auto [without, who] =
+      sessions_with(outcomes, [&](const SessionOutcome& one) -> std::optional<std::string> {
+        const bool excluded = one.row.excluded && !one.row.erased;
+        if (!excluded || met.contains(one.row.session)) return {};
+        return reasons[one.row.session];
+      });
+  if (without > 0) {
+    departures.push_back(fmt::format("{} excluded for a reason that no registered rule states: {}.",
+                                     counted(without, "session"), who));
+  }
+  const auto [kept, whose] =
+      sessions_with(outcomes, [&](const SessionOutcome& one) -> std::optional<std::string> {
+        const auto rule = met.find(one.row.session);
+        if (!one.counted || rule == met.end()) return {};
+        return rule->second;
+      });
+  if (kept > 0) {
+    departures.push_back(fmt::format("{} not excluded although a registered rule says so: {}.",
+                                     counted(kept, "session"), whose));
+  }
+}
+
+void add_deviations(const Outcomes& outcomes, Departures& departures) {
+  std::map<std::string, std::set<int>> sessions;
+  std::set<int> all;
+  for (const SessionRecord& record : outcomes.collection.sessions) {
+    if (!outcomes.state.reports(record.row.session)) continue;
+    for (const Deviation& one : record.deviations) {
+      sessions[one.code].insert(record.row.session);
+      all.insert(record.row.session);
+    }
+  }
+  if (all.empty()) return;
+  std::vector<std::string> codes;
+  for (const auto& [code, of] : sessions) codes.push_back(fmt::format("{} ({})", code, of.size()));
+  departures.push_back(fmt::format("Deviations from the protocol were recorded in {}: {}.",
+                                   counted(static_cast<int>(all.size()), "session"),
+                                   listed(codes)));
+}
+
+}  // namespace
+
+std::vector<std::string> departures_of(const Outcomes& outcomes) {
+  Departures departures;
+  add_looks(outcomes, departures);
+  add_late_decisions(outcomes, departures);
+  add_numbers(outcomes, departures);
+  add_rules(outcomes, departures);
+  add_deviations(outcomes, departures);
+  return departures;
+}
+
+std::string unadjusted_words(const std::vector<Look>& looks) {
+  const int unregistered = unregistered_of(looks);
+  if (unregistered == 0) return "";
+  return "p is not adjusted for " + counted(unregistered, "unregistered look") + " at outcomes.";
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,93 @@
+/// \file The registered question, its answer, and every departure from what was registered. Docs:
+/// docs/statistics.md, "The registered question".
+#pragma once
+
+#include "analysis/outcomes.hpp"
+#include "analysis/statistics/mean_test.hpp"
+#include "analysis/statistics/proportion.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+enum class Verdict {
+  supported,       ///< the registered test rejects, in the registered direction
+  not_supported,   ///< it does not, and what would be worth having is excluded, or was not stated
+  undecided,       ///< the study cannot tell, or not by the registered test
+  not_registered,  ///< nothing was registered that could be decided
+};
+
+/// "supported", "not supported", "undecided", "not registered"
+[[nodiscard]] std::string name_of(Verdict verdict);
+
+/// The estimate under one choice of sessions and trials.
+struct PrimaryChoice {
+  std::string name;   ///< "registered", "taken", "put_back", "all", "valid", "answered"
+  std::string words;  ///< what it leaves out
+  int participants = 0;
+  int trials = 0;
+  std::optional<double> estimate{};
+  std::optional<Interval> interval{};  ///< t, at the level 1 - alpha
+};
+
+/// The question that decides a study, and its answer.
+struct PrimaryResult {
+  design::Estimand estimand = design::Estimand::mean_accuracy;
+  std::string words;  ///< the estimand with the study's labels
+  std::string test;   ///< in words
+  double null = 0.0;  ///< the estimand under the null hypothesis
+  Sides sides = Sides::one;
+  double alpha = 0.05;
+  double level = 0.05;  ///< that p must not exceed; less than alpha at an interim look or after one
+  std::optional<double> smallest_effect{};
+  std::optional<double> p{};             ///< of the registered choice
+  std::optional<double> bound{};         ///< one-sided: the lower limit that goes with the test
+  std::vector<PrimaryChoice> choices{};  ///< the registered one first
+  Verdict verdict = Verdict::not_registered;
+  std::string because{};  ///< why, in one sentence or more
+
+  [[nodiscard]] const PrimaryChoice& registered() const { return choices.front(); }
+};
+
+/// The numbers of people and looks on which a verdict depends, besides the estimate.
+struct StudyCourse {
+  int planned = 0;    ///< participants; 0: not stated
+  int completed = 0;  ///< participants with a completed session, left out later or not
+  int analysed = 0;   ///< participants of the registered choice
+  bool closed = false;
+  bool pilot = false;
+  bool has_registration = false;
+  int unregistered_looks = 0;
+  int excluded_afterwards = 0;          ///< sessions excluded after outcomes were seen
+  bool at_registered_look = false;      ///< the report is of an interim look that was registered
+  std::vector<int> registered_looks{};  ///< participants at those that were made, ascending
+};
+
+[[nodiscard]] StudyCourse course_of(const Outcomes& outcomes, int analysed);
+
+/// The level that p must not exceed: alpha, or the nominal level by Lan and DeMets if registered
+/// looks were made.
+[[nodiscard]] double level_of(const PrimaryResult& result, const StudyCourse& course,
+                              design::Spending spending);
+
+/// Decides on the registered question: sets `verdict` and `because`.
+///
+/// It is undecided if the study is open, ended before its planned number of participants, or has a
+/// p that is within its level after an unregistered look; and if p is above its level while the
+/// interval contains the smallest effect worth having.
+/// \pre result has at least one choice
+void judge(PrimaryResult& result, const StudyCourse& course);
+
+/// The sessions that a registered rule leaves out, each with the first rule that does, in words.
+[[nodiscard]] std::map<int, std::string> rules_met(const Outcomes& outcomes);
+
+/// Every departure from the plan, one sentence or two each, the gravest first.
+[[nodiscard]] std::vector<std::string> departures_of(const Outcomes& outcomes);
+
+/// \return "p is not adjusted for 2 unregistered looks at outcomes."; empty without such looks
+[[nodiscard]] std::string unadjusted_words(const std::vector<Look>& looks);
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,111 @@
+#include "analysis/json_figures.hpp"
+#include "analysis/study_head.hpp"
+
+namespace touchtrial::analysis {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json rules_object(const std::optional<design::ExclusionRules>& rules) {
+  if (!rules) return nullptr;
+  return {{"deviations", rules->deviations},
+          {"invalid_trials", figure_json(rules->invalid_trials)}};
+}
+
+Json registered_object(const design::Registration& registration) {
+  if (!registration.analysis) return nullptr;
+  const design::RegisteredAnalysis& analysis = *registration.analysis;
+  return {{"estimand", design::name_of(analysis.estimand)},
+          {"methods", analysis.methods},
+          {"test", design::name_of(analysis.test)},
+          {"sides", analysis.one_sided ? "one" : "two"},
+          {"alpha", analysis.alpha},
+          {"smallest_effect", figure_json(analysis.smallest_effect)},
+          {"participants", registration.participants},
+          {"looks", analysis.looks},
+          {"spending", design::name_of(analysis.spending)},
+          {"exclusion_rules", rules_object(analysis.exclusion_rules)}};
+}
+
+Json choice_object(const PrimaryChoice& choice) {
+  return {{"choice", choice.name},
+          {"words", choice.words},
+          {"participants", choice.participants},
+          {"trials", choice.trials},
+          {"estimate", figure_json(choice.estimate)},
+          {"interval", interval_json(choice.interval)}};
+}
+
+Json primary_object(const StudyHead& head) {
+  if (!head.primary) return nullptr;
+  const PrimaryResult& primary = *head.primary;
+  const std::string unadjusted = unadjusted_words(head.looks);
+  Json object{{"estimand", design::name_of(primary.estimand)},
+              {"words", primary.words},
+              {"estimate", figure_json(primary.registered().estimate)},
+              {"interval", interval_json(primary.registered().interval)},
+              {"bound", figure_json(primary.bound)},
+              {"test", primary.test},
+              {"null", figure_json(primary.null)},
+              {"p", figure_json(primary.p)},
+              {"p_note", unadjusted.empty() ? Json(nullptr) : Json(unadjusted)},
+              {"alpha", primary.alpha},
+              {"level", primary.level},
+              {"smallest_effect", figure_json(primary.smallest_effect)},
+              {"verdict", name_of(primary.verdict)},
+              {"because", primary.because},
+              {"planned", head.course.planned},
+              {"completed", head.course.completed},
+              {"excluded_after_outcomes", head.course.excluded_afterwards},
+              {"choices", Json::array()}};
+  for (const PrimaryChoice& choice : primary.choices) {
+    object["choices"].push_back(choice_object(choice));
+  }
+  put_method(object,
+             "estimate: mean over participants, each of whom weighs the same; interval: Student's "
+             "t, two-sided, at 1 - alpha; bound: the one-sided test's lower limit; p of the "
+             "registered choice alone",
+             {"student1908", "phipson2010"});
+  return object;
+}
+
+Json prevalence_object(const std::optional<Prevalence>& prevalence) {
+  if (!prevalence) return nullptr;
+  Json object{{"estimate", figure_json(prevalence->estimate)},
+              {"interval", interval_json(prevalence->interval)},
+              {"passed", prevalence->passed},
+              {"participants", prevalence->participants},
+              {"level", figure_json(prevalence->level)}};
+  put_method(object,
+             "a lower bound of the share of people who can: those who would pass their own test "
+             "against chance in as many trials; posterior mode and 95 % highest posterior density "
+             "under a uniform prior; level: the mean probability of passing by chance",
+             {"ince2021"});
+  return object;
+}
+
+Json looks_array(const std::vector<Look>& looks) {
+  Json all = Json::array();
+  for (const Look& look : looks) {
+    Json one{{"at", iso_date(look.at)},
+             {"participants", look.participants},
+             {"reason", look.reason},
+             {"kind", name_of(look.kind)}};
+    if (!look.participant.empty()) one["participant"] = look.participant;
+    if (look.station > 0) one["station"] = look.station;
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+}  // namespace
+
+void put_registered(nlohmann::ordered_json& object, const StudyHead& head) {
+  object["registered"] = registered_object(head.registration);
+  object["primary"] = primary_object(head);
+  object["prevalence"] = prevalence_object(head.prevalence);
+  object["looks"] = looks_array(head.looks);
+  object["departures"] = head.departures;
+}
+
+}  // namespace touchtrial::analysis

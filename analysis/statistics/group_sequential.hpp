@@ -1,0 +1,30 @@
+/// \file The levels of a test at several looks, which together keep the error rate. Sources:
+/// docs/statistics.md, "Registered looks"; Lan, DeMets 1983; Armitage, McPherson, Rowe 1969.
+#pragma once
+
+#include "analysis/statistics/mean_test.hpp"
+
+#include <span>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// How much of alpha may be spent up to a share of the information.
+enum class AlphaSpending {
+  obrien_fleming,  ///< little at first: 2 (1 - Phi(z / sqrt(share))), z the quantile of 1 - alpha /
+                   ///< 2
+  pocock,          ///< about as much at every look: alpha log(1 + (e - 1) share)
+};
+
+/// The nominal level at each look: p of the data so far must not exceed it. Statistics of all looks
+/// are taken as multivariate normal with independent increments, which holds for tests of means of
+/// many participants. Two-sided tests spend half of alpha on each side.
+/// \param alpha  of all looks together, in (0, 0.5]
+/// \param shares  of the information at the looks, ascending, in (0, 1]
+/// \return one level for each look, on the scale of the test's own p; below 1e-6 inexact by up to
+///   1e-9
+/// \throws std::invalid_argument if an argument is out of range
+[[nodiscard]] std::vector<double> nominal_levels(double alpha, Sides sides, AlphaSpending spending,
+                                                 std::span<const double> shares);
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,31 @@
+/// \file How many people would pass a test like the one that each participant took. Sources:
+/// docs/statistics.md, "Prevalence"; Ince, Paton, Kay, Schyns 2021.
+#pragma once
+
+#include "analysis/statistics/proportion.hpp"
+
+#include <optional>
+
+namespace touchtrial::analysis {
+
+/// The share of the population that passes its test for another reason than chance. It is a lower
+/// bound of the share that can do the task, because a test of few trials misses some who can.
+struct Prevalence {
+  int participants = 0;
+  int passed = 0;         ///< participants whose own p is within the level
+  double level = 0.0;     ///< the mean of the levels that the participants' tests attain
+  double estimate = 0.0;  ///< posterior mode under a uniform prior
+  Interval interval;      ///< highest posterior density
+};
+
+/// The posterior of the prevalence g if a participant passes with probability a + (1 - a) g. The
+/// probability of passing is then Beta(passed + 1, failed + 1), cut to [a, 1].
+/// \param tests  passed of taken
+/// \param level  a: the mean probability of passing by chance, in [0, 1)
+/// \param share  of the posterior in the interval, in (0, 1)
+/// \return nothing without participants
+/// \throws std::invalid_argument if an argument is out of range
+[[nodiscard]] std::optional<Prevalence> prevalence_of(Proportion tests, double level,
+                                                      double share = kConfidenceLevel);
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,83 @@
+#include "analysis/statistics/spread.hpp"
+
+#include "analysis/statistics/common.hpp"
+#include "analysis/statistics/descriptive.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/tools/roots.hpp>
+
+namespace touchtrial::analysis {
+namespace {
+
+/// The participants' shares, and how much they deviate if their probabilities have some variance.
+class Deviation {
+ public:
+  explicit Deviation(std::span<const Proportion> participants) {
+    for (const Proportion& one : participants) {
+      require_possible(one);
+      if (one.n < 1) throw std::invalid_argument("a spread needs participants with n >= 1");
+      if (one.n < 2) continue;
+      trials_.push_back(one.n);
+      shares_.push_back(*one.share());
+    }
+    if (shares_.empty()) return;
+    const double mean = mean_of(shares_);
+    largest_ = mean * (1.0 - mean);
+  }
+
+  [[nodiscard]] std::size_t participants() const { return shares_.size(); }
+  /// The variance of probabilities that are 0 or 1 alone.
+  [[nodiscard]] double largest() const { return largest_; }
+
+  /// Squared distances from the weighted mean, divided by the variances; falls as `variance` grows.
+  [[nodiscard]] double at(double variance) const {
+    double weights = 0.0;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < shares_.size(); ++i) {
+      const double weight = 1.0 / (largest_ / trials_[i] + variance * (1.0 - 1.0 / trials_[i]));
+      weights += weight;
+      sum += weight * shares_[i];
+      squares += weight * shares_[i] * shares_[i];
+    }
+    return squares - sum * sum / weights;
+  }
+
+  /// The variance at which the deviation is `wanted`, within [0, largest].
+  [[nodiscard]] double variance_at(double wanted) const {
+    if (at(0.0) <= wanted) return 0.0;
+    if (at(largest_) >= wanted) return largest_;
+    std::uintmax_t steps = 200;
+    const auto [a, b] = boost::math::tools::toms748_solve(
+        [&](double variance) { return at(variance) - wanted; }, 0.0, largest_,
+        boost::math::tools::eps_tolerance<double>(50), steps);
+    return 0.5 * (a + b);
+  }
+
+ private:
+  std::vector<double> trials_;
+  std::vector<double> shares_;
+  double largest_ = 0.0;
+};
+
+}  // namespace
+
+std::optional<Spread> spread_of(std::span<const Proportion> participants, double level) {
+  require_level(level);
+  const Deviation deviation(participants);
+  if (deviation.participants() < 2 || deviation.largest() <= 0.0) return std::nullopt;
+  const auto freedom = static_cast<double>(deviation.participants() - 1);
+  const boost::math::chi_squared_distribution<> chi_squared(freedom);
+  const auto spread = [&](double wanted) { return std::sqrt(deviation.variance_at(wanted)); };
+  const double tail = 0.5 * (1.0 - level);
+  return Spread{
+      spread(freedom),
+      {spread(quantile(complement(chi_squared, tail))), spread(quantile(chi_squared, tail))}};
+}
+
+}  // namespace touchtrial::analysis

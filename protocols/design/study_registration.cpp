@@ -1,0 +1,290 @@
+/// \file The study file's "registration".
+#include "core/text.hpp"
+#include "protocols/design/protocol.hpp"
+#include "protocols/design/study_sections.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace touchtrial::design {
+namespace {
+
+constexpr std::size_t kLongestStatement = 4000;  // bytes
+constexpr int kMostParticipants = 100'000;
+constexpr std::size_t kMostLooks = 20;
+constexpr std::size_t kMostCodes = 64;
+constexpr std::size_t kLongestCode = 64;  // bytes
+
+void read_statement(const JsonObject& object, std::string_view key, std::string& statement) {
+  if (const auto member = object.find(key)) statement = read_paragraphs(*member, kLongestStatement);
+}
+
+ExclusionRules read_exclusion_rules(const JsonValue& place) {
+  const JsonObject object = place.object({"deviations", "invalid_trials"});
+  ExclusionRules rules;
+  if (const auto member = object.find("deviations")) {
+    for (const JsonValue& code : member->items(0, kMostCodes)) {
+      rules.deviations.push_back(read_line(code, kLongestCode));
+    }
+  }
+  if (const auto member = object.find("invalid_trials")) {
+    rules.invalid_trials = member->number({.low = 0.0, .high = 1.0});
+  }
+  return rules;
+}
+
+std::vector<std::string> read_pair(const JsonValue& place) {
+  std::vector<std::string> methods;
+  for (const JsonValue& label : place.items(0, 2)) methods.push_back(read_plain_name(label));
+  return methods;
+}
+
+std::vector<int> read_looks(const JsonValue& place) {
+  std::vector<int> looks;
+  for (const JsonValue& look : place.items(0, kMostLooks)) {
+    const int participants = static_cast<int>(look.integer(2, kMostParticipants));
+    if (!looks.empty() && participants <= looks.back()) {
+      look.refuse("is not more than the look before; list looks in ascending order");
+    }
+    looks.push_back(participants);
+  }
+  return looks;
+}
+
+/// The usual test of an estimand.
+RegisteredAnalysis usual_analysis(Estimand estimand) {
+  RegisteredAnalysis analysis;
+  analysis.estimand = estimand;
+  if (estimand == Estimand::difference) {
+    analysis.test = RegisteredTest::sign_flip;
+    analysis.one_sided = false;
+  }
+  return analysis;
+}
+
+constexpr std::string_view kAnalysisKeys[] = {
+    "methods", "test", "sides", "alpha", "smallest_effect", "looks", "spending", "exclusion_rules"};
+
+std::optional<RegisteredAnalysis> read_analysis(const JsonObject& object) {
+  const auto estimand = object.find("estimand");
+  if (!estimand) {
+    for (const std::string_view key : kAnalysisKeys) {
+      if (const auto member = object.find(key)) {
+        member->refuse("is given without \"estimand\"; say what is estimated, or remove it");
+      }
+    }
+    return std::nullopt;
+  }
+  RegisteredAnalysis analysis = usual_analysis(estimand->choice(kEstimandNames));
+  if (const auto member = object.find("methods")) analysis.methods = read_pair(*member);
+  if (const auto member = object.find("test")) analysis.test = member->choice(kRegisteredTestNames);
+  if (const auto member = object.find("sides")) analysis.one_sided = member->choice(kSidesNames);
+  if (const auto member = object.find("alpha")) {
+    analysis.alpha = member->number({.low = 0.0, .high = 0.5, .open_low = true});
+  }
+  if (const auto member = object.find("smallest_effect")) {
+    analysis.smallest_effect = member->number({.low = 0.0, .high = 1.0, .open_low = true});
+  }
+  if (const auto member = object.find("looks")) analysis.looks = read_looks(*member);
+  if (const auto member = object.find("spending")) {
+    analysis.spending = member->choice(kSpendingNames);
+  }
+  if (const auto member = object.find("exclusion_rules")) {
+    analysis.exclusion_rules = read_exclusion_rules(*member);
+  }
+  return analysis;
+}
+
+nlohmann::json to_json(const ExclusionRules& rules) {
+  nlohmann::json text = {{"deviations", rules.deviations}};
+  if (rules.invalid_trials) text["invalid_trials"] = *rules.invalid_trials;
+  return text;
+}
+
+void check_methods(const JsonValue& file, const Study& study) {
+  const std::vector<std::string>& methods = study.registration.analysis->methods;
+  const auto place = [](std::size_t i) {
+    return "/registration/methods" + (i < 2 ? "/" + std::to_string(i) : std::string());
+  };
+  if (methods.size() == 1) file.refuse_below(place(2), "has one method; name two, or none");
+  const auto presented =
+      std::span(study.methods).first(static_cast<std::size_t>(study.presented_methods()));
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    if (std::ranges::count(presented, methods[i], &StudyMethod::label) == 0) {
+      file.refuse_below(
+          place(i), in_quotes(methods[i]) + " is no method that the study presents; use its label");
+    }
+  }
+  if (methods.size() == 2 && methods[0] == methods[1]) {
+    file.refuse_below(place(1), "is the same method twice; name two");
+  }
+  if (methods.empty() && presented.size() > 2) {
+    file.refuse_below("/registration/estimand", "is a difference, but the study presents " +
+                                                    std::to_string(presented.size()) +
+                                                    " methods; name the two in \"methods\"");
+  }
+}
+
+void check_estimand(const JsonValue& file, const Study& study) {
+  const RegisteredAnalysis& analysis = *study.registration.analysis;
+  const char* const place = "/registration/estimand";
+  const bool several = study.presented_methods() > 1;
+  if (analysis.estimand == Estimand::difference) {
+    if (!several) {
+      file.refuse_below(place,
+                        "is a difference of methods, but the study presents one; use "
+                        "\"mean-accuracy\"");
+    }
+    check_methods(file, study);
+    return;
+  }
+  if (several) {
+    file.refuse_below(place,
+                      "is the accuracy with one method, but the study compares several; use "
+                      "\"difference\"");
+  }
+  if (!analysis.methods.empty()) {
+    file.refuse_below("/registration/methods", "belongs to a difference; remove it");
+  }
+  if (analysis.test == RegisteredTest::sign_flip) {
+    file.refuse_below("/registration/test",
+                      "flips the signs of differences, but the study compares no methods; use "
+                      "\"t\"");
+  }
+  const double chance = 1.0 / static_cast<double>(study.protocol->choices(study).size());
+  if (analysis.smallest_effect && *analysis.smallest_effect <= chance) {
+    file.refuse_below("/registration/smallest_effect",
+                      "is " + number_text(*analysis.smallest_effect) +
+                          ", not above chance, which is " + number_text(chance) +
+                          "; give the smallest accuracy worth having");
+  }
+}
+
+}  // namespace
+
+std::string_view name_of(Estimand estimand) {
+  return word_for(kEstimandNames, estimand);
+}
+
+std::string_view name_of(RegisteredTest test) {
+  return word_for(kRegisteredTestNames, test);
+}
+
+std::string_view name_of(Spending spending) {
+  return word_for(kSpendingNames, spending);
+}
+
+Registration read_registration(const JsonValue& place) {
+  const JsonObject object =
+      place.object({"hypothesis", "participants", "stopping_rule", "exclusions", "primary_test",
+                    "estimand", "methods", "test", "sides", "alpha", "smallest_effect", "looks",
+                    "spending", "exclusion_rules", "safety_record_years"});
+  Registration registration;
+  read_statement(object, "hypothesis", registration.hypothesis);
+  if (const auto member = object.find("participants")) {
+    registration.participants = static_cast<int>(member->integer(0, kMostParticipants));
+  }
+  read_statement(object, "stopping_rule", registration.stopping_rule);
+  read_statement(object, "exclusions", registration.exclusions);
+  read_statement(object, "primary_test", registration.primary_test);
+  if (const auto member = object.find("safety_record_years")) {
+    registration.safety_record_years = static_cast<int>(member->integer(0, 100));
+  }
+  registration.analysis = read_analysis(object);
+  return registration;
+}
+
+nlohmann::json to_json(const Registration& registration) {
+  nlohmann::json text = {{"hypothesis", registration.hypothesis},
+                         {"participants", registration.participants},
+                         {"stopping_rule", registration.stopping_rule},
+                         {"exclusions", registration.exclusions},
+                         {"primary_test", registration.primary_test},
+                         {"safety_record_years", registration.safety_record_years}};
+  if (!registration.analysis) return text;
+  const RegisteredAnalysis& analysis = *registration.analysis;
+  text["estimand"] = word_for(kEstimandNames, analysis.estimand);
+  text["methods"] = analysis.methods;
+  text["test"] = word_for(kRegisteredTestNames, analysis.test);
+  text["sides"] = word_for(kSidesNames, analysis.one_sided);
+  text["alpha"] = analysis.alpha;
+  if (analysis.smallest_effect) text["smallest_effect"] = *analysis.smallest_effect;
+  text["looks"] = analysis.looks;
+  text["spending"] = word_for(kSpendingNames, analysis.spending);
+  if (analysis.exclusion_rules) text["exclusion_rules"] = to_json(*analysis.exclusion_rules);
+  return text;
+}
+
+void check_registration(const JsonValue& file, const Study& study) {
+  const Registration& registration = study.registration;
+  if (!registration.analysis) return;
+  check_estimand(file, study);
+  const std::vector<int>& looks = registration.analysis->looks;
+  if (!looks.empty() && looks.back() >= registration.participants) {
+    file.refuse_below("/registration/looks",
+                      "has a look at " + std::to_string(looks.back()) + " participants, but " +
+                          std::to_string(registration.participants) +
+                          " are planned; look earlier, or state more \"participants\"");
+  }
+}
+
+namespace {
+
+std::string estimand_words(const RegisteredAnalysis& analysis) {
+  if (analysis.estimand == Estimand::mean_accuracy) {
+    return "mean over participants of the share of right answers, against chance";
+  }
+  const std::string of =
+      analysis.methods.empty()
+          ? " with the first method less that with the second"
+          : " with " + analysis.methods[0] + " less that with " + analysis.methods[1];
+  return "mean over participants of the accuracy" + of;
+}
+
+std::string test_words(const RegisteredAnalysis& analysis) {
+  const std::string test = analysis.test == RegisteredTest::t
+                               ? "Student's t test over participants"
+                               : "exact sign flips over participants";
+  return test + (analysis.one_sided ? ", one-sided" : ", two-sided");
+}
+
+std::string looks_words(const RegisteredAnalysis& analysis) {
+  if (analysis.looks.empty()) return "none";
+  std::vector<std::string> looks;
+  for (const int look : analysis.looks) looks.push_back(std::to_string(look));
+  return "at " + listed(looks, " and ") + " participants; levels by Lan and DeMets, spending of " +
+         (analysis.spending == Spending::pocock ? "Pocock's" : "O'Brien and Fleming's") + " kind";
+}
+
+std::string rules_words(const ExclusionRules& rules) {
+  std::vector<std::string> words = rules.deviations;
+  for (std::string& code : words) code = "a deviation " + in_quotes(code);
+  if (rules.invalid_trials) {
+    words.push_back("more than " + number_text(100.0 * *rules.invalid_trials) +
+                    " % of trials not valid");
+  }
+  if (words.empty()) return "none, besides sessions stopped early and participants who withdrew";
+  return "a session with " + listed(words, " or ") +
+         "; besides sessions stopped early and participants who withdrew";
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> fields_of(const Registration& registration) {
+  if (!registration.analysis) return {};
+  const RegisteredAnalysis& analysis = *registration.analysis;
+  const bool accuracy = analysis.estimand == Estimand::mean_accuracy;
+  const std::string worth =
+      analysis.smallest_effect
+          ? number_text(100.0 * *analysis.smallest_effect) + (accuracy ? " % right" : " points")
+          : "not stated";
+  return {{"estimand", estimand_words(analysis)},
+          {"test", test_words(analysis)},
+          {"alpha", number_text(analysis.alpha)},
+          {"smallest worth having", worth},
+          {"interim looks", looks_words(analysis)},
+          {"exclusion rules",
+           analysis.exclusion_rules ? rules_words(*analysis.exclusion_rules) : "not stated"}};
+}
+
+}  // namespace touchtrial::design

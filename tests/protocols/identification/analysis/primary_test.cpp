@@ -1,0 +1,260 @@
+#include "protocols/identification/analysis/primary.hpp"
+
+#include "analysis/fake_study.hpp"
+#include "analysis/page/document.hpp"
+#include "analysis/text_matching.hpp"
+#include "protocols/identification/analysis/page/sections.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using analysis::Verdict;
+using analysis::identification::StudyReport;
+using std::chrono::seconds;
+
+constexpr const char* kRegistered =
+    R"({"hypothesis": "They can.", "participants": 20, "estimand": "mean-accuracy",
+        "smallest_effect": 0.5, "exclusion_rules": {"deviations": ["asleep"]}})";
+
+/// The first `right` of the 12 trials are right, the others wrong.
+FakeAnswers right_in(int right) {
+  return [right](const design::Presentation& shown) {
+    const int shift = shown.trial <= right ? 0 : 1;
+    return std::optional((shown.stimulus.class_index + shift) % 3);
+  };
+}
+
+void add_people(FakeStudy& study, int first, const std::vector<int>& right) {
+  for (const int of_twelve : right) {
+    study.add({.participant = "P" + std::to_string(first),
+               .enrolment = first,
+               .answers = right_in(of_twelve)});
+    ++first;
+  }
+}
+
+StudyReport report_of(FakeStudy& study) {
+  return analysis::identification::make_report(analysis::load_outcomes(study.store(), study.key()));
+}
+
+nlohmann::json json_of(const StudyReport& report) {
+  return nlohmann::json::parse(analysis::identification::report_json(report));
+}
+
+const analysis::PrimaryChoice& choice_of(const StudyReport& report, const std::string& name) {
+  const auto& choices = report.primary.value().choices;
+  return *std::ranges::find(choices, name, &analysis::PrimaryChoice::name);
+}
+
+std::string terminal_text(const StudyReport& report) {
+  return analysis::document_text(analysis::identification::study_document(report, {}));
+}
+
+std::string on_one_line(const std::string& text) {
+  std::istringstream words(text);
+  std::string line;
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
+/// Two looks, three exclusions after them, and 14 of 20 participants.
+StudyReport looked_at(FakeStudy& study) {
+  add_people(study, 1, {8, 7, 9, 2, 1});
+  study.store().unblind(seconds(1'769'860'800), "curious", true);
+  add_people(study, 6, {8, 6, 7, 9});
+  study.store().unblind(seconds(1'769'947'200), "a grant report", true);
+  add_people(study, 10, {9, 8, 2, 7, 8});
+  for (const int session : {4, 5, 8}) {
+    study.store().exclude(session, seconds(1'770'000'000), "guessed");
+  }
+  study.close_and_unblind();
+  return report_of(study);
+}
+
+}  // namespace
+
+TEST_CASE("a study with looks, late exclusions and too few participants says all of it") {
+  FakeStudy study(design::identification::classification(), {.registration = kRegistered});
+  const StudyReport report = looked_at(study);
+  REQUIRE(report.primary.has_value());
+  CHECK(report.primary->verdict == Verdict::undecided);
+  CHECK(report.participants == 11);
+  CHECK(choice_of(report, "registered").participants == 14);
+  CHECK(choice_of(report, "taken").participants == 11);
+  const std::string text = terminal_text(report);
+  const std::string screen = on_one_line(text.substr(0, text.find("What to bear in mind")));
+  for (const char* part :
+       {"Undecided. Collecting ended with 14 of 20 planned participants.",
+        "Outcomes were looked at on 2026-01-31 12:00 UTC, with 5 of 20 planned participants",
+        "Outcomes were looked at on 2026-02-01 12:00 UTC, with 9 of 20 planned participants",
+        "curious", "a grant report",
+        "3 sessions excluded after outcomes were seen: P4 (guessed), P5 (guessed), P8 (guessed).",
+        "20 participants were planned; collecting ended with 14 complete, of whom 11 are",
+        "p is not adjusted for 2 unregistered looks at outcomes."}) {
+    INFO(screen);
+    CHECK(contains(screen, part));
+  }
+  CHECK_FALSE(contains(text, "No deviation from the protocol was recorded"));
+}
+
+TEST_CASE("report --json holds what was registered, the answer, looks and departures") {
+  FakeStudy study(design::identification::classification(), {.registration = kRegistered});
+  const nlohmann::json json = json_of(looked_at(study));
+  CHECK(json["registered"]["estimand"] == "mean-accuracy");
+  CHECK(json["registered"]["test"] == "t");
+  CHECK(json["registered"]["alpha"] == 0.05);
+  CHECK(json["registered"]["participants"] == 20);
+  CHECK(json["registered"]["looks"].empty());
+  CHECK(json["primary"]["verdict"] == "undecided");
+  CHECK(json["primary"]["choices"].size() == 6);
+  CHECK(json["primary"]["excluded_after_outcomes"] == 3);
+  CHECK(json["primary"]["p_note"] == "p is not adjusted for 2 unregistered looks at outcomes.");
+  REQUIRE(json["looks"].size() == 3);
+  CHECK(json["looks"][0]["at"] == "2026-01-31T12:00:00Z");
+  CHECK(json["looks"][0]["participants"] == 5);
+  CHECK(json["looks"][0]["reason"] == "curious");
+  CHECK(json["departures"].size() == 5);
+  CHECK(json["prevalence"]["interval"].size() == 2);
+}
+
+TEST_CASE("the primary result is the t test of participants' accuracies against chance") {
+  FakeStudy study(design::identification::classification(),
+                  {.registration = R"({"participants": 6, "estimand": "mean-accuracy"})"});
+  add_people(study, 1, {8, 7, 6, 9, 5, 4});
+  study.close_and_unblind();
+  const StudyReport report = report_of(study);
+  const analysis::PrimaryResult& primary = *report.primary;
+  const std::vector<double> shares = {8 / 12.0, 7 / 12.0, 6 / 12.0, 9 / 12.0, 5 / 12.0, 4 / 12.0};
+  CHECK(primary.p == analysis::t_test_p(shares, 1.0 / 3.0, analysis::Sides::one));
+  CHECK(primary.registered().estimate == report.methods[0].mean.mean);
+  CHECK(primary.registered().interval == report.methods[0].mean.interval);
+  CHECK(primary.verdict == Verdict::supported);
+  CHECK(primary.bound.value() > primary.registered().interval->low);
+  CHECK(report.departures.empty());
+  CHECK(contains(terminal_text(report), "Supported. p is at most 0.05."));
+  CHECK(contains(terminal_text(report), "No departure from what was registered is recorded."));
+}
+
+TEST_CASE("a study file without the fields registers nothing") {
+  FakeStudy study(design::identification::classification());
+  add_people(study, 1, {8, 7, 6, 9, 5, 4});
+  study.close_and_unblind();
+  const nlohmann::json json = json_of(report_of(study));
+  CHECK(json["registered"].is_null());
+  CHECK(json["primary"]["verdict"] == "not registered");
+  CHECK(json["departures"].empty());
+}
+
+TEST_CASE("exclusions are held against the registered rules") {
+  FakeStudy study(design::identification::classification(),
+                  {.registration = R"({"participants": 5, "estimand": "mean-accuracy",
+                                       "exclusion_rules": {"deviations": ["asleep"]}})"});
+  add_people(study, 1, {8, 7, 6, 9, 5});
+  study.store().note(1, seconds(5), "asleep", "snored");
+  study.store().note(2, seconds(5), "asleep", "snored too");
+  study.store().exclude(2, seconds(6), "asleep");
+  study.store().exclude(3, seconds(6), "slow");
+  study.close_and_unblind();
+  const StudyReport report = report_of(study);
+  std::string all;
+  for (const std::string& one : report.departures) all += one + "\n";
+  CHECK_THAT(all, holds_text("1 session excluded for a reason that no registered rule states: P3 "
+                             "(slow)."));
+  CHECK_THAT(all, holds_text("1 session not excluded although a registered rule says so: P1 "
+                             "(asleep)."));
+  CHECK(choice_of(report, "registered").participants == 2);
+  CHECK(choice_of(report, "taken").participants == 3);
+  CHECK(choice_of(report, "all").participants == 5);
+}
+
+TEST_CASE("an effect may be excluded, reached or open") {
+  using analysis::judge;
+  analysis::PrimaryResult result;
+  result.null = 0.2;
+  result.smallest_effect = 0.4;
+  const analysis::StudyCourse course{
+      .planned = 20, .completed = 20, .analysed = 20, .closed = true, .has_registration = true};
+  const auto verdict = [&](double estimate, analysis::Interval interval, double p) {
+    result.choices = {{"registered", "", 20, 500, estimate, interval}};
+    result.p = p;
+    judge(result, course);
+    return result.verdict;
+  };
+  CHECK(verdict(0.6, {0.5, 0.7}, 0.001) == Verdict::supported);
+  CHECK_THAT(result.because, holds_text("lies above 40.0%"));
+  CHECK(verdict(0.25, {0.21, 0.29}, 0.01) == Verdict::supported);
+  CHECK_THAT(result.because, holds_text("an effect of that size is excluded"));
+  CHECK(verdict(0.3, {0.15, 0.45}, 0.2) == Verdict::undecided);
+  CHECK(verdict(0.2, {0.15, 0.25}, 0.5) == Verdict::not_supported);
+  result.sides = analysis::Sides::two;
+  CHECK(verdict(0.1, {0.05, 0.15}, 0.001) == Verdict::not_supported);
+  CHECK_THAT(result.because, holds_text("opposite"));
+}
+
+TEST_CASE("p within its level decides nothing after an unregistered look or before the end") {
+  analysis::PrimaryResult result;
+  result.null = 0.2;
+  result.choices = {{"registered", "", 20, 500, 0.6, analysis::Interval{0.5, 0.7}}};
+  result.p = 0.001;
+  analysis::StudyCourse course{
+      .planned = 20, .completed = 20, .analysed = 20, .closed = true, .has_registration = true};
+  const auto verdict = [&] {
+    analysis::judge(result, course);
+    return result.verdict;
+  };
+  course.unregistered_looks = 1;
+  CHECK(verdict() == Verdict::undecided);
+  result.p = 0.3;
+  CHECK(verdict() == Verdict::not_supported);
+  result.p = 0.001;
+  course.unregistered_looks = 0;
+  course.closed = false;
+  CHECK(verdict() == Verdict::undecided);
+  course.at_registered_look = true;
+  CHECK(verdict() == Verdict::supported);
+  course.pilot = true;
+  CHECK(verdict() == Verdict::not_registered);
+}
+
+TEST_CASE("a registered look has Lan and DeMets's level, and so has the end after it") {
+  FakeStudy study(
+      design::identification::classification(),
+      {.registration = R"({"participants": 8, "estimand": "mean-accuracy", "looks": [4]})"});
+  add_people(study, 1, {5, 4, 6, 5});
+  study.store().unblind(seconds(10), "as registered", true);
+  CHECK(report_of(study).primary->level == Approx(0.0055745966).epsilon(1e-5));
+  add_people(study, 5, {5, 4, 6, 5});
+  study.close_and_unblind();
+  const StudyReport report = report_of(study);
+  CHECK(report.primary->level == Approx(0.0482457031).epsilon(1e-5));
+  CHECK(report.departures.empty());
+}
+
+TEST_CASE("a registered difference is the first method less the second") {
+  FakeStudy study(design::identification::comparison(),
+                  {.registration = R"({"participants": 3, "estimand": "difference",
+                                       "methods": ["tv-gabor", "adaptive"], "sides": "one"})"});
+  for (int i = 1; i <= 3; ++i) {
+    study.add({.participant = "P" + std::to_string(i),
+               .enrolment = i,
+               .answers = [](const design::Presentation& shown) {
+                 const bool wrong = shown.stimulus.method == 0 && shown.stimulus.class_index == 0;
+                 return std::optional(wrong ? 1 : shown.stimulus.class_index);
+               }});
+  }
+  study.close_and_unblind();
+  const StudyReport report = report_of(study);
+  CHECK(report.primary->registered().estimate.value() == Approx(1.0 / 3.0));
+  CHECK(report.primary->p == 0.125);
+  CHECK(report.primary->verdict == Verdict::not_supported);
+}
+
+}  // namespace touchtrial
