@@ -30,6 +30,12 @@ constexpr std::array kPublications = {
         "Fagerland MW, Lydersen S, Laake P (2013). The McNemar test for binary matched-pairs "
         "data: mid-p and asymptotic are better than exact conditional. BMC Medical Research "
         "Methodology 13, 91."},
+    Publication{Source::fischer_whitney, "fischer2014",
+                "Fischer J, Whitney D (2014). Serial dependence in visual perception. Nature "
+                "Neuroscience 17(5), 738-743."},
+    Publication{Source::fleming_lau, "fleming2014",
+                "Fleming SM, Lau HC (2014). How to measure metacognition. Frontiers in Human "
+                "Neuroscience 8, 443."},
     Publication{Source::green_swets, "green1966",
                 "Green DM, Swets JA (1966). Signal Detection Theory and Psychophysics. Wiley."},
     Publication{Source::hacker_ratcliff, "hacker1979",
@@ -39,6 +45,9 @@ constexpr std::array kPublications = {
         Source::hesterberg, "hesterberg2015",
         "Hesterberg TC (2015). What teachers should know about the bootstrap: resampling in "
         "the undergraduate statistics curriculum. The American Statistician 69(4), 371-386."},
+    Publication{Source::hills_armitage, "hills1979",
+                "Hills M, Armitage P (1979). The two-period cross-over clinical trial. British "
+                "Journal of Clinical Pharmacology 8(1), 7-20."},
     Publication{Source::holm, "holm1979",
                 "Holm S (1979). A simple sequentially rejective multiple test procedure. "
                 "Scandinavian Journal of Statistics 6(2), 65-70."},
@@ -48,6 +57,10 @@ constexpr std::array kPublications = {
     Publication{Source::ince, "ince2021",
                 "Ince RAA, Paton AT, Kay JW, Schyns PG (2021). Bayesian inference of population "
                 "prevalence. eLife 10, e62461."},
+    Publication{Source::inthout, "inthout2014",
+                "IntHout J, Ioannidis JPA, Borm GF (2014). The Hartung-Knapp-Sidik-Jonkman method "
+                "for random effects meta-analysis is straightforward and considerably outperforms "
+                "the standard DerSimonian-Laird method. BMC Medical Research Methodology 14, 25."},
     Publication{Source::kuhn, "kuhn1955",
                 "Kuhn HW (1955). The Hungarian method for the assignment problem. Naval Research "
                 "Logistics Quarterly 2(1-2), 83-97."},
@@ -81,6 +94,8 @@ constexpr std::array kPublications = {
         "Robins J, Breslow N, Greenland S (1986). Estimators of the Mantel-Haenszel variance "
         "consistent in both sparse data and large-strata limiting models. Biometrics 42(2), "
         "311-323."},
+    Publication{Source::senn, "senn2002",
+                "Senn S (2002). Cross-over Trials in Clinical Research, second edition. Wiley."},
     Publication{Source::student, "student1908",
                 "Student (1908). The probable error of a mean. Biometrika 6(1), 1-25."},
     Publication{Source::tan_reed_durlach, "tan2010",
@@ -95,6 +110,9 @@ constexpr std::array kPublications = {
     Publication{Source::viechtbauer, "viechtbauer2007",
                 "Viechtbauer W (2007). Confidence intervals for the amount of heterogeneity in "
                 "meta-analysis. Statistics in Medicine 26(1), 37-52."},
+    Publication{Source::wagner, "wagner1993",
+                "Wagner HL (1993). On measuring performance in category judgment studies of "
+                "nonverbal behavior. Journal of Nonverbal Behavior 17(1), 3-28."},
     Publication{Source::wilson, "wilson1927",
                 "Wilson EB (1927). Probable inference, the law of succession, and statistical "
                 "inference. Journal of the American Statistical Association 22(158), 209-212."},

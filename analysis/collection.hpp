@@ -56,6 +56,8 @@ struct SessionRecord {
   std::string withdrawal_reason;
   std::optional<double> largest_force_n;  ///< sent, to tenths; of a session that has ended
   int resumed = 0;  ///< how often the session was resumed after the program had ended
+  /// Of the dealt orders of methods, once outcomes are shown; negative: dealt without a partner.
+  std::optional<int> order_block{};
 };
 
 /// The timing of the servo in one trial in real time.
@@ -100,7 +102,8 @@ struct Collection {
   std::vector<ServoTrial> servo_trials;  ///< by session and trial, without erased sessions
   ParticipantFlow flow;
   std::vector<store::PersonLook> looks;  ///< at single participants' outcomes, in order
-  bool visual = false;  ///< textures were seen on a screen, not felt; the same for all sessions
+  bool visual = false;     ///< textures were seen on a screen, not felt; the same for all sessions
+  bool is_public = false;  ///< without ids and without texts of people: without_identities
 };
 
 /// Reads what a study prescribes.

@@ -106,10 +106,11 @@ Json deviations_json(const Collection& collection) {
 nlohmann::ordered_json collection_object(const Collection& collection) {
   Json sessions = Json::array();
   for (const SessionRecord& session : collection.sessions) {
-    sessions.push_back(session_json(session));
+    if (!collection.is_public) sessions.push_back(session_json(session));
   }
   Json looks = Json::array();
   for (const store::PersonLook& look : collection.looks) {
+    if (collection.is_public) break;
     looks.push_back({{"participant", look.participant}, {"reason", look.reason}});
   }
   return {{"prescription", prescription_json(collection.prescription)},

@@ -125,8 +125,9 @@ std::vector<std::string> people_notes(const Collection& collection) {
                     " withdrew and let the data be used: counted like the others.");
   }
   for (const store::PersonLook& look : collection.looks) {
-    notes.push_back("Outcomes of participant " + look.participant +
-                    " alone were looked at: " + look.reason + ".");
+    notes.push_back(collection.is_public ? "Outcomes of one participant alone were looked at."
+                                         : "Outcomes of participant " + look.participant +
+                                               " alone were looked at: " + look.reason + ".");
   }
   return notes;
 }

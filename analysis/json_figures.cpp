@@ -20,6 +20,13 @@ nlohmann::ordered_json interval_json(const std::optional<Interval>& interval) {
   return interval_json(*interval);
 }
 
+nlohmann::ordered_json quartiles_json(const Quartiles& quartiles) {
+  return {{"n", quartiles.n},
+          {"lower_quartile", figure_json(quartiles.lower)},
+          {"median", figure_json(quartiles.median)},
+          {"upper_quartile", figure_json(quartiles.upper)}};
+}
+
 std::optional<Interval> known(const Interval& interval, const Proportion& of) {
   return of.n == 0 ? std::nullopt : std::optional(interval);
 }
@@ -47,6 +54,14 @@ nlohmann::ordered_json statistics_json(const engine::GlcmStatistics& statistics)
           {"entropy", statistics.entropy},
           {"contrast", statistics.contrast},
           {"correlation", statistics.correlation}};
+}
+
+nlohmann::ordered_json glcm_json(const engine::GlcmTable& glcm) {
+  nlohmann::ordered_json directions = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < engine::kGlcmOffsets.size(); ++i) {
+    directions[std::to_string(engine::kGlcmOffsets[i].degrees)] = statistics_json(glcm[i]);
+  }
+  return directions;
 }
 
 std::string json_text(const nlohmann::ordered_json& object) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "analysis/quality.hpp"
+#include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "engine/metrics/glcm.hpp"
 #include "protocols/design/session_plan.hpp"
@@ -31,6 +32,8 @@ struct StudyHead;
 void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion);
 
 [[nodiscard]] nlohmann::ordered_json statistics_json(const engine::GlcmStatistics& statistics);
+/// The statistics by the degrees of their direction.
+[[nodiscard]] nlohmann::ordered_json glcm_json(const engine::GlcmTable& glcm);
 
 /// Adds whether the numbers come from simulated participants, and if so also a stamp.
 void put_stamp(nlohmann::ordered_json& object, bool simulated);
@@ -46,6 +49,11 @@ void put_state(nlohmann::ordered_json& object, const store::StudyState& state, b
 /// How sessions were conducted: prescription, flow, deviations and sessions.
 [[nodiscard]] nlohmann::ordered_json collection_object(const Collection& collection);
 [[nodiscard]] nlohmann::ordered_json registration_object(const design::Registration& registration);
+/// Quartiles with their n.
+[[nodiscard]] nlohmann::ordered_json quartiles_json(const Quartiles& quartiles);
+/// Adds whether the report is public, what participants told about themselves in bands, and how
+/// hands explored.
+void put_people(nlohmann::ordered_json& object, const StudyHead& head);
 /// Adds what was registered, the answer, the prevalence, looks at outcomes and departures.
 void put_registered(nlohmann::ordered_json& object, const StudyHead& head);
 /// Every publication behind the report's statistics, by its key.

@@ -101,6 +101,27 @@ void require_whole(const store::StudyStore& store) {
   }
 }
 
+/// What each participant who counts said, over all of the participant's sessions.
+std::vector<Demographics> said_by_participants(const Outcomes& outcomes,
+                                               const std::map<int, Demographics>& by_session) {
+  std::map<std::string, Demographics> people;
+  for (const SessionOutcome& one : outcomes.sessions) {
+    if (one.counted) people[one.row.participant];
+  }
+  for (const SessionOutcome& one : outcomes.sessions) {
+    const auto person = people.find(one.row.participant);
+    const auto said = by_session.find(one.row.session);
+    if (person == people.end() || said == by_session.end()) continue;
+    const Demographics& own = said->second;
+    if (own.age_band) person->second.age_band = own.age_band;
+    if (own.sex) person->second.sex = own.sex;
+    if (own.handedness_score) person->second.handedness_score = own.handedness_score;
+  }
+  std::vector<Demographics> all;
+  for (auto& [id, said] : people) all.push_back(std::move(said));
+  return all;
+}
+
 [[noreturn]] void refuse_unseen(const std::string& participant) {
   if (participant.empty()) {
     throw StoreError(
@@ -144,9 +165,15 @@ Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& k
       if (participant.empty()) ++outcomes.sessions_unseen;
       continue;
     }
-    sessions[row.session] = {row, session_counts(row, store.commitment())};
+    sessions[row.session] = {row, session_counts(row, store.commitment()),
+                             design::order_block_of(key.study, key.stations, row.enrolment)};
     outcomes.sessions.push_back(sessions[row.session]);
   }
+  for (SessionRecord& record : outcomes.collection.sessions) {
+    const auto shown = sessions.find(record.row.session);
+    if (shown != sessions.end()) record.order_block = shown->second.order_block;
+  }
+  outcomes.demographics = in_bands(said_by_participants(outcomes, demographics_of(store, key)));
   const auto schedules = open_schedules(store, key);
   const auto measures = open_measures(store, key);
   for (const store::TrialRow& row : open_trials(store, key)) {

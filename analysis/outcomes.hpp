@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/collection.hpp"
+#include "analysis/demographics.hpp"
 #include "analysis/looks.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/study_store.hpp"
@@ -16,6 +17,7 @@ namespace touchtrial::analysis {
 struct SessionOutcome {
   store::SessionRow row;
   bool counted = false;
+  int order_block = -1;  ///< design::order_block_of the enrolment number
 };
 
 /// One trial with its stimulus and answer.
@@ -57,6 +59,7 @@ struct Outcomes {
   design::Study design;              ///< the study file, which has the rule for drawing orders
   LookRecord looked;                 ///< who looked at outcomes, and what was decided after that
   Collection collection;
+  std::vector<Characteristic> demographics{};  ///< of the participants who count
 };
 
 /// "session 2, event 7: <what>"
@@ -74,8 +77,7 @@ struct Outcomes {
 /// Chains, sealed ends and derived tables are checked against the events first; traces are not.
 ///
 /// \param participant  whose sessions alone are opened, if a look at this participant or at the
-/// study
-///   shows them; empty: the study's
+///   study shows them; empty: the study's
 /// \throws StoreError if the study has not been unblinded, or nothing shows this participant
 /// \throws VerificationError if the key does not match the database, the database is inconsistent,
 ///   or a session does not agree with its schedule; the message names the session

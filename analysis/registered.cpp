@@ -105,8 +105,39 @@ std::string words_on_worth(const PrimaryResult& result) {
          ", the smallest registered as worth having: whether it is reached is undecided.";
 }
 
+/// What the interval says of the margin: "as good" may be better, or still a little worse.
+std::string words_on_margin(const PrimaryResult& result) {
+  const std::optional<Interval>& interval = result.registered().interval;
+  if (!result.margin || !interval) return "";
+  const std::string level = fmt::format(" The {:.4g}% interval", 100.0 * result.interval_level);
+  const std::string margin = share_text(-*result.margin, true);
+  if (interval->high < -*result.margin) {
+    return level + " lies below " + margin +
+           ", the registered margin: the first method is worse "
+           "by more than that.";
+  }
+  if (interval->low <= -*result.margin) {
+    return level + " contains " + margin + ", the registered margin.";
+  }
+  const std::string above = level + " lies above " + margin + ", the registered margin";
+  if (interval->low > 0.0) return above + ", and above 0: the first method is better.";
+  if (interval->high < 0.0) {
+    return above + ", and below 0: the first method is worse, but by less than the margin.";
+  }
+  return above + ", and contains 0.";
+}
+
+bool has_one_order(const PrimaryResult& result) {
+  const auto& groups = result.crossover;
+  return groups && (groups->first_first == 0) != (groups->second_first == 0);
+}
+
 /// Why the registered test cannot decide yet; empty if it can.
 std::string obstacle(const PrimaryResult& result, const StudyCourse& course) {
+  if (has_one_order(result)) {
+    return "All participants had the methods in the same order, so that an effect of the method "
+           "and one of the period cannot be told apart.";
+  }
   if (!result.p) return "There are too few participants for the test.";
   const bool reached = course.planned == 0 || course.completed >= course.planned;
   const bool may_stop = course.at_registered_look && *result.p <= result.level;
@@ -138,15 +169,16 @@ void judge(PrimaryResult& result, const StudyCourse& course) {
     return decide(Verdict::not_registered,
                   "The study file registers no estimand and no test, so nothing is decided here.");
   }
-  const std::string worth = words_on_worth(result);
+  const std::string worth = words_on_worth(result) + words_on_margin(result);
   const std::string hindered = obstacle(result, course);
   if (!hindered.empty()) return decide(Verdict::undecided, hindered + worth);
   const std::string level = fmt::format("{:.3g}", result.level);
   if (*result.p > result.level) {
     const std::string above = "p is above " + level + ".";
     const std::optional<Interval>& interval = result.registered().interval;
-    const bool open =
-        result.smallest_effect && interval && interval->high >= *result.smallest_effect;
+    const std::optional<double> least =
+        result.margin ? std::optional(-*result.margin) : result.smallest_effect;
+    const bool open = least && interval && interval->high >= *least;
     return decide(open ? Verdict::undecided : Verdict::not_supported, above + worth);
   }
   if (is_against(result)) {
@@ -206,7 +238,13 @@ std::string named_with(const SessionOutcome& session, const std::string& why) {
   return session.row.participant + (why.empty() ? "" : " (" + why + ")");
 }
 
-/// The sessions for which `why` returns a text, with it: "P01 (asleep), P02 (left)".
+/// ": <text>", or nothing for a text that is empty or was left out.
+std::string after_colon(const std::string& text) {
+  return text.empty() ? "" : ": " + text;
+}
+
+/// The number of sessions for which `why` returns a text, and whose they are: "P01 (asleep), P02
+/// (left)"; nobody is named in a public report.
 template <typename Why>
 std::pair<int, std::string> sessions_with(const Outcomes& outcomes, Why why) {
   std::vector<std::string> names;
@@ -214,7 +252,7 @@ std::pair<int, std::string> sessions_with(const Outcomes& outcomes, Why why) {
     const std::optional<std::string> reason = why(session);
     if (reason) names.push_back(named_with(session, *reason));
   }
-  return {static_cast<int>(names.size()), listed(names)};
+  return {static_cast<int>(names.size()), outcomes.collection.is_public ? "" : listed(names)};
 }
 
 /// The reasons of exclusions by session.
@@ -236,17 +274,18 @@ void add_looks(const Outcomes& outcomes, Departures& departures) {
     if (!look.is_unregistered() && look.kind != LookKind::person) continue;
     const std::string station = look.station > 0 ? fmt::format(" at station {}", look.station) : "";
     if (look.kind == LookKind::person) {
-      departures.push_back(
-          fmt::format("The outcomes of participant {} alone were looked at{} on {}: {}.",
-                      look.participant, station, date_text(look.at), look.reason));
+      const std::string who =
+          outcomes.collection.is_public ? "one participant" : "participant " + look.participant;
+      departures.push_back(fmt::format("The outcomes of {} alone were looked at{} on {}{}.", who,
+                                       station, date_text(look.at), after_colon(look.reason)));
       continue;
     }
     const std::string of = planned > 0 ? fmt::format(" of {} planned", planned) : "";
     departures.push_back(fmt::format(
-        "Outcomes were looked at{} on {}, with {}{} {} complete and before collecting ended: {}. "
-        "This look was not registered.",
+        "Outcomes were looked at{} on {}, with {}{} {} complete{}. This look was not registered.",
         station, date_text(look.at), look.participants, of,
-        look.participants == 1 && of.empty() ? "participant" : "participants", look.reason));
+        look.participants == 1 && of.empty() ? "participant" : "participants",
+        after_colon(look.reason)));
   }
 }
 
@@ -256,9 +295,11 @@ void add_numbers(const Outcomes& outcomes, Departures& departures) {
   const auto analysed = std::ranges::count_if(outcomes.sessions, &SessionOutcome::counted);
   if (planned == 0 || !outcomes.state.closed || completed == planned) return;
   departures.push_back(
-      fmt::format("{} planned; collecting ended with {} complete, of whom {} {} analysed.",
+      fmt::format("{} planned; collecting ended with {} complete{}.",
                   counted(planned, "participant") + (planned == 1 ? " was" : " were"), completed,
-                  analysed, analysed == 1 ? "is" : "are"));
+                  analysed == completed ? ""
+                                        : fmt::format(", of whom {} {} left after all exclusions",
+                                                      analysed, analysed == 1 ? "is" : "are")));
 }
 
 void add_late_decisions(const Outcomes& outcomes, Departures& departures) {
@@ -274,15 +315,15 @@ void add_late_decisions(const Outcomes& outcomes, Departures& departures) {
     return reasons[one.row.session];
   });
   if (excluded > 0) {
-    departures.push_back(fmt::format("{} excluded after outcomes were seen: {}.",
-                                     counted(excluded, "session"), who));
+    departures.push_back(counted(excluded, "session") + " excluded after outcomes were seen" +
+                         after_colon(who) + ".");
   }
   const auto [replaced, whom] = late(looked.replaced_afterwards, [](const SessionOutcome& one) {
     return "by " + one.row.replaced_by;
   });
   if (replaced > 0) {
-    departures.push_back(fmt::format("{} replaced after outcomes were seen: {}.",
-                                     counted(replaced, "session"), whom));
+    departures.push_back(counted(replaced, "session") + " replaced after outcomes were seen" +
+                         after_colon(whom) + ".");
   }
   if (!looked.erased_afterwards.empty()) {
     departures.push_back(counted(static_cast<int>(looked.erased_afterwards.size()), "session") +
@@ -299,11 +340,14 @@ void add_rules(const Outcomes& outcomes, Departures& departures) {
       sessions_with(outcomes, [&](const SessionOutcome& one) -> std::optional<std::string> {
         const bool excluded = one.row.excluded && !one.row.erased;
         if (!excluded || met.contains(one.row.session)) return {};
-        return reasons[one.row.session];
+        // The reason of a late exclusion stands in the departure about it.
+        const bool is_late = outcomes.looked.excluded_afterwards.contains(one.row.session);
+        return is_late ? "" : reasons[one.row.session];
       });
   if (without > 0) {
-    departures.push_back(fmt::format("{} excluded for a reason that no registered rule states: {}.",
-                                     counted(without, "session"), who));
+    departures.push_back(counted(without, "session") +
+                         " excluded for a reason that no registered rule states" +
+                         after_colon(who) + ".");
   }
   const auto [kept, whose] =
       sessions_with(outcomes, [&](const SessionOutcome& one) -> std::optional<std::string> {
@@ -312,8 +356,9 @@ void add_rules(const Outcomes& outcomes, Departures& departures) {
         return rule->second;
       });
   if (kept > 0) {
-    departures.push_back(fmt::format("{} not excluded although a registered rule says so: {}.",
-                                     counted(kept, "session"), whose));
+    departures.push_back(counted(kept, "session") +
+                         " not excluded although a registered rule says so" + after_colon(whose) +
+                         ".");
   }
 }
 

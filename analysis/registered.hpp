@@ -3,8 +3,10 @@
 #pragma once
 
 #include "analysis/outcomes.hpp"
+#include "analysis/statistics/crossover.hpp"
 #include "analysis/statistics/mean_test.hpp"
 #include "analysis/statistics/proportion.hpp"
+#include "analysis/statistics/strata.hpp"
 
 #include <map>
 #include <optional>
@@ -30,7 +32,7 @@ struct PrimaryChoice {
   int participants = 0;
   int trials = 0;
   std::optional<double> estimate{};
-  std::optional<Interval> interval{};  ///< t, at the level 1 - alpha
+  std::optional<Interval> interval{};  ///< Student's, at PrimaryResult::interval_level
 };
 
 /// The question that decides a study, and its answer.
@@ -42,12 +44,20 @@ struct PrimaryResult {
   Sides sides = Sides::one;
   double alpha = 0.05;
   double level = 0.05;  ///< that p must not exceed; less than alpha at an interim look or after one
+  double interval_level = 0.95;  ///< 1 - alpha, or 1 - 2 alpha with a margin
   std::optional<double> smallest_effect{};
+  std::optional<double> margin{};        ///< of non-inferiority; the null hypothesis is -margin
   std::optional<double> p{};             ///< of the registered choice
   std::optional<double> bound{};         ///< one-sided: the lower limit that goes with the test
   std::vector<PrimaryChoice> choices{};  ///< the registered one first
+  /// Of the registered choice, if the test is the period-adjusted one.
+  std::optional<CrossoverEstimate> crossover{};
+  std::optional<CrossoverPermutation> permutation{};
   Verdict verdict = Verdict::not_registered;
   std::string because{};  ///< why, in one sentence or more
+  /// The registered choice with stations as strata, at interval_level; nothing unless the study
+  /// was collected from two stations or more.
+  std::optional<StratifiedMean> stations{};
 
   [[nodiscard]] const PrimaryChoice& registered() const { return choices.front(); }
 };
@@ -75,9 +85,10 @@ struct StudyCourse {
 
 /// Decides on the registered question: sets `verdict` and `because`.
 ///
-/// It is undecided if the study is open, ended before its planned number of participants, or has a
-/// p that is within its level after an unregistered look; and if p is above its level while the
-/// interval contains the smallest effect worth having.
+/// It is undecided if all participants had one order of two methods in blocks, if the test needs
+/// more participants, if the study is open, ended before its planned number of participants, or has
+/// a p that is within its level after an unregistered look; and if p is above its level while the
+/// interval contains the smallest effect worth having, or does not lie below minus the margin.
 /// \pre result has at least one choice
 void judge(PrimaryResult& result, const StudyCourse& course);
 

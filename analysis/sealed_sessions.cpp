@@ -116,20 +116,24 @@ std::map<int, SecretKey> participant_keys(const store::StudyStore& store,
   return keys;
 }
 
+store::PersonKeys person_keys(const store::StudyStore& store, const design::StudyKey& key,
+                              const store::SessionRow& session) {
+  store::PersonKeys own{.participant = participant_key(store, key, session), .safety = {}};
+  const std::optional<Bytes> wrapped = store.wrapped_keys(session.session).safety;
+  if (!wrapped) return own;
+  own.safety = store::unwrap_safety_key(key.box(), session.own_session, *wrapped);
+  if (own.safety) return own;
+  throw VerificationError(
+      fmt::format("session {}: the safety key does not open with this study key; restore a backup "
+                  "of the database",
+                  session.session));
+}
+
 std::map<int, store::PersonKeys> person_keys(const store::StudyStore& store,
                                              const design::StudyKey& key) {
   std::map<int, store::PersonKeys> all;
   for (const store::SessionRow& session : store.sessions()) {
-    store::PersonKeys& own = all[session.session];
-    own.participant = participant_key(store, key, session);
-    const std::optional<Bytes> wrapped = store.wrapped_keys(session.session).safety;
-    if (!wrapped) continue;
-    own.safety = store::unwrap_safety_key(key.box(), session.own_session, *wrapped);
-    if (own.safety) continue;
-    throw VerificationError(
-        fmt::format("session {}: the safety key does not open with this study key; restore a "
-                    "backup of the database",
-                    session.session));
+    all.emplace(session.session, person_keys(store, key, session));
   }
   return all;
 }

@@ -31,8 +31,14 @@ void require_key_of(const store::StudyStore& store, const design::StudyKey& key)
 [[nodiscard]] std::map<int, SecretKey> participant_keys(const store::StudyStore& store,
                                                         const design::StudyKey& key);
 
-/// What is left of the keys of every session, by session.
-/// \throws VerificationError as participant_key does
+/// What is left of a session's keys.
+/// \throws VerificationError as participant_key does, for either key
+[[nodiscard]] store::PersonKeys person_keys(const store::StudyStore& store,
+                                            const design::StudyKey& key,
+                                            const store::SessionRow& session);
+
+/// The same of every session, by session.
+/// \throws the same
 [[nodiscard]] std::map<int, store::PersonKeys> person_keys(const store::StudyStore& store,
                                                            const design::StudyKey& key);
 

@@ -25,6 +25,8 @@ StudyHead head_of(const Outcomes& outcomes) {
   head.collection = outcomes.collection;
   head.state = outcomes.state;
   head.registration = outcomes.design.registration;
+  head.explorations = explorations_of(outcomes);
+  head.demographics = outcomes.demographics;
   head.looks = outcomes.looked.looks;
   head.departures = departures_of(outcomes);
   head.course = course_of(outcomes, head.participants);
@@ -42,6 +44,7 @@ std::string framed_json(const StudyHead& head, const std::string& members) {
   object["registration"] = registration_object(head.registration);
   object["collection"] = collection_object(head.collection);
   put_registered(object, head);
+  put_people(object, head);
   return json_text(object);
 }
 

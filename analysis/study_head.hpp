@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/collection.hpp"
+#include "analysis/explorations.hpp"
 #include "analysis/outcomes.hpp"
 #include "analysis/registered.hpp"
 #include "analysis/statistics/prevalence.hpp"
@@ -20,15 +21,17 @@ struct StudyHead {
   int participants = 0;  ///< participants with a session that counts
   int trials = 0;        ///< trials that count
   std::vector<std::string> classes;
-  Collection collection;                   ///< how it was collected
-  store::StudyState state{};               ///< unblinded; an interim look if not closed
-  design::Registration registration;       ///< the registration deposited before collection
-  std::vector<std::string> warnings;       ///< how a reader could misread the numbers
-  std::vector<Look> looks{};               ///< at outcomes, by whomever
-  std::vector<std::string> departures{};   ///< departures_of
-  StudyCourse course{};                    ///< numbers of people and looks
-  std::optional<PrimaryResult> primary{};  ///< if the protocol has a question that decides
-  std::optional<Prevalence> prevalence{};  ///< if each participant takes a test against chance
+  Collection collection;                       ///< how it was collected
+  store::StudyState state{};                   ///< unblinded; an interim look if not closed
+  design::Registration registration;           ///< the registration deposited before collection
+  std::vector<std::string> warnings;           ///< how a reader could misread the numbers
+  std::vector<Explorations> explorations{};    ///< by method
+  std::vector<Characteristic> demographics{};  ///< of the participants who count, in bands
+  std::vector<Look> looks{};                   ///< at outcomes, by whomever
+  std::vector<std::string> departures{};       ///< departures_of
+  StudyCourse course{};                        ///< numbers of people and looks
+  std::optional<PrimaryResult> primary{};      ///< if the protocol has a question that decides
+  std::optional<Prevalence> prevalence{};      ///< if each participant takes a test against chance
 };
 
 /// Fills in everything except the warnings, `primary` and `prevalence`.
@@ -36,7 +39,9 @@ struct StudyHead {
 
 /// The JSON object of a report: the head's members, the protocol's own members, then warnings,
 /// registration, collection, and what was registered with its answer. Indented, ending with a line
-/// feed. \param members  the protocol's members, as a JSON object
+/// feed.
+///
+/// \param members  the protocol's members, as a JSON object
 [[nodiscard]] std::string framed_json(const StudyHead& head, const std::string& members);
 
 }  // namespace touchtrial::analysis

@@ -30,10 +30,6 @@ std::string p_value(double p) {
   return fmt::format("{:.3g}", p * (1.0 + 1e-9));
 }
 
-std::string counted(std::int64_t n, const std::string& noun) {
-  return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
-}
-
 std::string heading(const std::string& title, bool simulated) {
   return fmt::format("\n{}{}\n", title, simulated ? " [SIMULATED]" : "");
 }

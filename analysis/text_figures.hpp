@@ -2,8 +2,8 @@
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"
+#include "core/text.hpp"
 
-#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -20,8 +20,7 @@ namespace touchtrial::analysis {
 /// Three significant digits, never "0".
 [[nodiscard]] std::string p_value(double p);
 
-/// "1 session", "3 sessions"
-[[nodiscard]] std::string counted(std::int64_t n, const std::string& noun);
+using touchtrial::counted;
 
 /// A table's title after an empty line, with a stamp if its numbers are simulated.
 [[nodiscard]] std::string heading(const std::string& title, bool simulated);

@@ -23,6 +23,7 @@ inline constexpr int kNotVerified = 3;
 
 void add_extract_command(CLI::App& program, Action& action);
 void add_evaluate_command(CLI::App& program, Action& action);
+void add_paper_command(CLI::App& program, Action& action);
 void add_stimuli_command(CLI::App& program, Action& action);
 /// The commands of "stimuli".
 void add_stimuli_sheet_command(CLI::App& stimuli, Action& action);

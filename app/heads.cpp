@@ -60,10 +60,6 @@ std::string words_of(const std::vector<store::Loss>& losses) {
   return listed(losses, "; ", &store::Loss::what);
 }
 
-std::string answers_words(const store::HeadRecord& record) {
-  return record.acknowledged == 1 ? "1 answer" : std::to_string(record.acknowledged) + " answers";
-}
-
 void accept(store::StudyStore& store, const std::vector<store::Loss>& losses,
             const std::string& reason) {
   std::map<int, std::string> sessions;
@@ -111,7 +107,7 @@ void refuse_lost_database(const std::filesystem::path& database,
       "and its -wal from where they are whole, or begin a new one with --accept-loss REASON, which "
       "is recorded",
       one_line(database.string()), one_line(readings.front().file.string()),
-      answers_words(readings.front().record)));
+      counted(readings.front().record.acknowledged, "answer")));
 }
 
 void keep_heads(store::StudyStore& store, const fs::path& database, const Signer& signer,
@@ -162,6 +158,23 @@ void keep_heads(store::StudyStore& store, const fs::path& database, const Signer
       [files, signer](const store::HeadChange& change) { files.update(signer, change); });
 }
 
+void require_head_beside(const fs::path& database) {
+  const store::HeadFile file(store::head_path_for(database));
+  if (!is_there(file.path())) return;
+  const store::StudyStore store =
+      store::StudyStore::open(database, store::StudyStore::Access::read_only);
+  std::vector<store::HeadReading> readings;
+  if (auto reading = file.reading(store::head_signers(store.commitment()))) {
+    readings.push_back(std::move(*reading));
+  }
+  const std::vector<store::Loss> missing = losses_of(store, std::move(readings));
+  if (missing.empty()) return;
+  throw VerificationError(
+      one_line(database.string()) + ": is not as it was left: " + words_of(missing) +
+      "; take the database and its -wal from where they are whole, or record the loss at its "
+      "station, for instance with `touchtrial note --accept-loss REASON`");
+}
+
 void make_head(const store::StudyStore& store, const fs::path& database, const Signer& signer) {
   const fs::path own = store::head_path_for(database);
   std::error_code ignored;
@@ -172,7 +185,8 @@ void make_head(const store::StudyStore& store, const fs::path& database, const S
 
 std::string head_words(const store::StudyStore& store) {
   const store::HeadRecord now = store::record_of(store);
-  return fmt::format("head {}, {} acknowledged", store::spoken_head(now), answers_words(now));
+  return fmt::format("head {}, {} acknowledged", store::spoken_head(now),
+                     counted(now.acknowledged, "answer"));
 }
 
 }  // namespace touchtrial::app

@@ -36,6 +36,11 @@ void refuse_lost_database(const std::filesystem::path& database,
 void keep_heads(store::StudyStore& store, const std::filesystem::path& database,
                 const Signer& signer, const HeadOptions& options, HeadUse use);
 
+/// Holds a database that is only read against the head file beside it, if there is one.
+/// \throws VerificationError, naming what the database lacks and the remedy
+/// \throws FileError if the head file cannot be read
+void require_head_beside(const std::filesystem::path& database);
+
 /// Makes the head file of a database that was filled at once, as simulations do, and has none.
 void make_head(const store::StudyStore& store, const std::filesystem::path& database,
                const Signer& signer);

@@ -101,10 +101,30 @@ fs::path pack_of(const CheckedStudy& study, const design::StationKey& station,
   return named.empty() && is_there(station.pack_folder) ? station.pack_folder : study.place.pack;
 }
 
+/// Refuses a protected file of another station, or study, before its passphrase is asked for.
+/// \param name  of the station whose file it should be; empty: any of the key's
+void require_clear_part(const design::StudyKey& key, const std::string& name,
+                        const fs::path& file) {
+  const std::optional<PublicKey> signer = design::signer_in_clear(file);
+  if (!signer) return;
+  const auto own = std::ranges::find_if(key.stations, [&](const design::Station& station) {
+    return design::station_key(key, station.name).signer().public_half() == *signer;
+  });
+  if (own == key.stations.end()) {
+    throw VerificationError(
+        "is another study's, or of a station that the key does not know; give the station the "
+        "file that was made with this key");
+  }
+  if (!name.empty() && own->name != name) {
+    throw VerificationError("is the file of station " + own->name);
+  }
+}
+
 StationFinding station_finding(const CheckedStudy& study, const std::string& name,
                                const fs::path& file, const fs::path& pack) {
   StationFinding finding{name, file, ""};
   try {
+    require_clear_part(study.key, name, file);
     const design::StationKey station = design::load_station_key(file);
     if (!name.empty() && station.station.name != name) {
       throw VerificationError("is the file of station " + station.station.name);
@@ -187,7 +207,9 @@ int checked_stations(const KeyCheckArguments& arguments) {
 /// The sessions of a database, by what the key does with them.
 struct OpenedKeys {
   int open = 0;
-  int withdrawn = 0;
+  int withdrawn = 0;  ///< of those that open: the person withdrew, and the data are kept
+  int erased = 0;
+  int safety = 0;  ///< safety records that open
   std::vector<std::string> faults;
 };
 
@@ -195,8 +217,10 @@ OpenedKeys opened_keys(const store::StudyStore& store, const design::StudyKey& k
   OpenedKeys counts;
   for (const store::SessionRow& session : store.sessions()) {
     try {
-      const auto own = analysis::participant_key(store, key, session);
-      ++(own ? counts.open : counts.withdrawn);
+      const store::PersonKeys own = analysis::person_keys(store, key, session);
+      ++(own.participant ? counts.open : counts.erased);
+      if (own.participant && session.withdrawn) ++counts.withdrawn;
+      if (own.safety) ++counts.safety;
     } catch (const VerificationError& error) {
       counts.faults.emplace_back(error.what());
     }
@@ -221,11 +245,15 @@ int checked_database(const KeyCheckArguments& arguments) {
                                            {"protected", design::is_protected(key_path)},
                                            {"open", counts.open},
                                            {"withdrawn", counts.withdrawn},
+                                           {"erased", counts.erased},
+                                           {"safety", counts.safety},
                                            {"faults", counts.faults}}));
   } else {
-    std::string text =
-        fmt::format("key {}\nopens {}; {} withdrawn, which nothing opens\n", key_path.string(),
-                    analysis::counted(counts.open, "session"), counts.withdrawn);
+    std::string text = fmt::format(
+        "key {}\nopens {} ({} of people who withdrew and left their data) and {}; {} "
+        "erased, which nothing opens\n",
+        key_path.string(), counted(counts.open, "session"), counts.withdrawn,
+        counted(counts.safety, "safety record"), counts.erased);
     for (const std::string& fault : counts.faults) {
       text += "DOES NOT HOLD: " + one_line(fault) + "\n";
     }

@@ -32,6 +32,7 @@ constexpr int kBadInput = 2;
 void add_commands(CLI::App& program, Action& action) {
   add_extract_command(program, action);
   add_evaluate_command(program, action);
+  add_paper_command(program, action);
   add_stimuli_command(program, action);
   add_prepare_command(program, action);
   add_prereg_command(program, action);

@@ -42,7 +42,9 @@ collect::Stations stations_of(const std::vector<fs::path>& databases) {
   collect::Stations stations;
   for (const fs::path& database : databases) {
     const std::string where = database.string();
-    collect::Stations those = collect::is_address(where)
+    const bool is_on_server = collect::is_address(where);
+    if (!is_on_server) require_head_beside(database);
+    collect::Stations those = is_on_server
                                   ? collect::stations_of_server(collect::ServerAddress(where))
                                   : collect::stations_of_file(database);
     for (auto& station : those) stations.push_back(std::move(station));

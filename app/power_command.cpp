@@ -181,6 +181,7 @@ struct PowerArguments {
   std::vector<fs::path> combine;
   std::vector<std::string> methods;
   std::string sizes = "8,12,16,20,30";
+  std::optional<double> margin;
   std::string shard;
   bool has_shard = false;
   planning::PowerPlan plan;
@@ -207,12 +208,18 @@ std::string fields_digest(const design::StudyKey& key, const engine::Pack& pack)
 struct PowerPreparation {
   PowerPreparation(const PowerArguments& arguments, design::Study loaded)
       : study(std::move(loaded)),
-        test(planning::primary_test_of(study, labels(arguments))),
+        test(test_for(study, arguments)),
         subject(subject_for(arguments.subject, study)),
         key(simulated_key(study, arguments.study)) {
     // Shards begin at the same time and share the pack.
     prepare_simulated_pack(key, true);
     pack.emplace(key.pack_folder);
+  }
+
+  static planning::PrimaryTest test_for(const design::Study& study,
+                                        const PowerArguments& arguments) {
+    const planning::PrimaryTest test = planning::primary_test_of(study, labels(arguments));
+    return arguments.margin ? planning::with_margin(test, *arguments.margin) : test;
   }
 
   static std::optional<planning::MethodLabels> labels(const PowerArguments& arguments) {
@@ -270,7 +277,8 @@ void make_missing_runs(const PowerPreparation& prepared, const PowerArguments& a
   const simulation::LabelledFields fields(prepared.key, source);
   const auto feelings = feelings_for(prepared, progress.plan, arguments.jobs, fields);
   const planning::RehearsedStudy study(prepared.study, prepared.subject, prepared.test, *feelings,
-                                       progress.plan.participants.back());
+                                       progress.plan.participants.back(),
+                                       progress.plan.first_half_loss);
   planning::PowerWork work{.jobs = arguments.jobs, .progress = progress_bar("simulating")};
   if (keeper) work.keep = [&](const planning::PowerProgress& so_far) { keeper->keep(so_far); };
   planning::make_runs(study, prepared.test, work, progress);
@@ -311,6 +319,7 @@ int power(PowerArguments arguments) {
       arguments.has_shard ? shard_named(arguments.shard) : planning::Shard{};
   const PowerPreparation prepared(arguments, design::load_study(arguments.study));
   plan.level = prepared.test.alpha;
+  plan.margin = prepared.test.margin.value_or(0.0);
   planning::PowerProgress progress = planning::new_progress(prepared.setting(), plan, shard);
   if (!arguments.folder.empty()) {
     make_folder(arguments.folder);
@@ -339,6 +348,11 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
       .add_option("--methods", arguments.methods,
                   "The two methods to test, as A,B, if a comparison has more than two")
       ->delimiter(',');
+  command
+      .add_option("--margin", arguments.margin,
+                  "Test whether the first method is as good: worse by less than this difference of "
+                  "accuracies (0.07: 7 points), in place of the registered question")
+      ->type_name("SHARE");
   command.add_flag("--no-early-stop", arguments.no_early_stop,
                    "Make all runs, even if the result is already certain");
   command
@@ -346,6 +360,12 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
                   "Explorations of each stimulus from which trials draw")
       ->capture_default_str();
   command.add_option("--trainings", plan.trainings, "Trainings from which studies draw")
+      ->capture_default_str();
+  command
+      .add_option("--first-half-loss", plan.first_half_loss,
+                  "Share of right answers that people miss in the first half of their trials, as "
+                  "they learn; 0 to 1")
+      ->type_name("SHARE")
       ->capture_default_str();
   command.add_flag(
       "--servo", plan.servo,

@@ -39,9 +39,12 @@ void print_head(const store::StudyStore& store, const fs::path& database) {
 }
 
 void add_signing_options(CLI::App& command, SigningFiles& files) {
-  command.add_option("--station-file", files.station,
-                     "This station's file (default: the one beside the database, or here)");
-  add_key_option(command, files.key, "The investigator's key, in place of a station's file");
+  CLI::Option* key =
+      add_key_option(command, files.key, "The investigator's key, in place of a station's file");
+  command
+      .add_option("--station-file", files.station,
+                  "This station's file (default: the one beside the database, or here)")
+      ->excludes(key);
   add_accept_loss_option(command, files.accept_loss);
 }
 
@@ -171,6 +174,7 @@ int keep_data(const PeopleArguments& arguments) {
         ": withdrawn; takes no further part, and the data stay: they are analysed as the study "
         "says, and reports say how many let them be used\n"
         "to erase them later, run the same command with --erase\n");
+  print_head(store, arguments.database);
   return 0;
 }
 
@@ -186,6 +190,7 @@ int erase_safety(const PeopleArguments& arguments) {
   store.withdraw(sessions, utc_now(), "", store::Kept::nothing, kNotErased);
   print(place_of(arguments) + ": the texts of the safety record cannot be read again by anybody\n" +
         kOtherCopies);
+  print_head(store, arguments.database);
   return 0;
 }
 
@@ -224,6 +229,7 @@ int erase(const PeopleArguments& arguments) {
         (removed ? ", and the personal data are removed\n" : "\n") +
         (store.stations() > 0 ? "this is a merged database: withdraw at the station too\n" : "") +
         kOtherCopies);
+  if (!sessions.empty()) print_head(store, arguments.database);
   return 0;
 }
 
@@ -256,8 +262,7 @@ struct UnblindArguments {
 std::string left_open(const store::StudyStore& store) {
   std::string participants;
   for (const store::SessionRow& row : store.sessions()) {
-    if (row.state != store::SessionState::open || row.withdrawn || !row.replaced_by.empty())
-      continue;
+    if (!row.may_go_on()) continue;
     participants += (participants.empty() ? "" : ", ") + row.participant;
   }
   return participants;
@@ -296,11 +301,13 @@ int unblind(const UnblindArguments& arguments) {
     print(arguments.database.string() + ": the look at participant " + arguments.participant +
           " is recorded; `touchtrial export --participant " + arguments.participant +
           " --key KEY` shows the outcomes\n");
+    print_head(store, arguments.database);
     return 0;
   }
   store.unblind(utc_now(), arguments.reason, arguments.interim);
   print(arguments.database.string() + ": unblinded" +
         (arguments.interim ? " for an interim look\n" : "\n"));
+  print_head(store, arguments.database);
   return 0;
 }
 

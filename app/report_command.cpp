@@ -1,3 +1,4 @@
+#include "analysis/identities.hpp"
 #include "analysis/outcomes.hpp"
 #include "analysis/page/report_folder.hpp"
 #include "analysis/page/study_document.hpp"
@@ -15,6 +16,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -32,6 +34,7 @@ struct ReportArguments {
   std::string trial;
   bool paper_values = false;
   bool json = false;
+  bool is_public = false;
 };
 
 void write_report(const ReportArguments& arguments, const analysis::ReportFiles& files) {
@@ -49,11 +52,18 @@ std::size_t columns_of_output() {
 
 analysis::Provenance provenance_for(const store::StudyStore& store,
                                     const ReportArguments& arguments) {
-  return analysis::provenance_of(store, collect::study_name(arguments.database.string()));
+  analysis::Provenance provenance =
+      analysis::provenance_of(store, collect::study_name(arguments.database.string()));
+  if (arguments.is_public) provenance.state.unblinding_reason.clear();
+  return provenance;
 }
 
-/// Refuses --trial and --cues yes, which show what was presented.
+/// Refuses --trial and --cues yes, which show what was presented, and --public.
 void refuse_while_blind(const ReportArguments& arguments) {
+  if (arguments.is_public) {
+    throw UsageError(one_line(collect::study_name(arguments.database.string())) +
+                     ": not unblinded, and only results are published; omit --public");
+  }
   if (arguments.trial.empty() && arguments.cues != "yes") return;
   throw UsageError(one_line(collect::study_name(arguments.database.string())) +
                    ": not unblinded, and --trial and --cues yes show outcomes; run `touchtrial "
@@ -111,7 +121,8 @@ int report(const ReportArguments& arguments) {
     return report_quality(store, arguments);
   }
   const design::StudyKey key = key_of_database(store, arguments.database, arguments.key);
-  const analysis::Outcomes outcomes = analysis::load_outcomes(store, key);
+  analysis::Outcomes outcomes = analysis::load_outcomes(store, key);
+  if (arguments.is_public) outcomes = analysis::without_identities(std::move(outcomes));
   const analysis::TraceSource traces{store, key};
   const auto results =
       analysis::analysis_of(outcomes.design).results(outcomes, wishes_of(arguments, traces));
@@ -143,12 +154,16 @@ void add_report_command(CLI::App& program, Action& action) {
           "Read all traces for ideal observers; auto: with --out, if there are at most 2,500")
       ->check(CLI::IsMember({"auto", "yes", "no"}))
       ->capture_default_str();
+  CLI::Option* is_public = command->add_flag(
+      "--public", arguments->is_public,
+      "Leave out participants' ids, serial numbers, and every reason, note and remark");
   command
       ->add_option(
           "--trial", arguments->trial,
           "Trial whose exploration is drawn over its texture, as P01:3 (default: if traces "
           "are read, the first counted trial of each method)")
       ->type_name("PARTICIPANT:N")
+      ->excludes(is_public)
       ->needs(folder);
   command
       ->add_flag("--paper-values", arguments->paper_values,

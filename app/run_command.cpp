@@ -5,7 +5,6 @@
 #include "core/text.hpp"
 #include "protocols/design/station.hpp"
 
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -31,6 +30,14 @@ std::pair<int, int> size_of(const std::string& text) {
   return size;
 }
 
+OnExisting policy_of(const std::string& text) {
+  if (text == "refuse") return OnExisting::refuse;
+  if (text == "resume") return OnExisting::resume;
+  if (text == "restart") return OnExisting::restart;
+  throw CLI::ValidationError("--on-existing",
+                             "'" + text + "' is unknown; give refuse, resume or restart");
+}
+
 void check(const RunOptions& options) {
   if (options.database.empty()) throw UsageError("run: --db is empty; give it a file name");
   if (!options.is_simulated() && options.headless) {
@@ -40,9 +47,6 @@ void check(const RunOptions& options) {
 }
 
 void add_session_options(CLI::App& command, RunOptions& options) {
-  const std::map<std::string, OnExisting> policies = {{"refuse", OnExisting::refuse},
-                                                      {"resume", OnExisting::resume},
-                                                      {"restart", OnExisting::restart}};
   add_study_argument(command, options.study);
   command.add_option("--participant", options.participant, "Id, for instance P07; not a name")
       ->required();
@@ -61,9 +65,11 @@ void add_session_options(CLI::App& command, RunOptions& options) {
   command.add_flag("--pilot", options.pilot,
                    "A pilot session, never pooled; needs a database of its own");
   command
-      .add_option("--on-existing", options.on_existing,
-                  "What to do if the participant has a session: refuse, resume or restart")
-      ->transform(CLI::CheckedTransformer(policies).description("refuse|resume|restart"));
+      .add_option_function<std::string>(
+          "--on-existing",
+          [&options](const std::string& text) { options.on_existing = policy_of(text); },
+          "What to do if the participant has a session: refuse, resume or restart")
+      ->type_name("refuse|resume|restart");
   command
       .add_option("--enrolment", options.enrolment,
                   "Enrolment number, one of this station's (default: its next)")

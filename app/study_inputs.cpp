@@ -8,6 +8,7 @@
 #include "core/public_keys.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
+#include "protocols/design/key_protection.hpp"
 
 #include <optional>
 #include <span>
@@ -49,6 +50,13 @@ design::StudyKey key_of_database(const store::StudyStore& store,
 
 namespace {
 
+/// Whether a protected file's clear part names another station than the database's.
+bool is_of_other_station(const std::filesystem::path& file,
+                         const store::StudyCommitment& commitment) {
+  const std::optional<PublicKey> signer = design::signer_in_clear(file);
+  return signer && commitment.station && *signer != commitment.station->key;
+}
+
 /// The file of the database's station in one of the folders; empty if there is none.
 /// \param damaged  gets why files could not be read
 std::optional<design::StationKey> station_key_in(std::span<const std::filesystem::path> folders,
@@ -60,6 +68,7 @@ std::optional<design::StationKey> station_key_in(std::span<const std::filesystem
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
       if (entry.path().extension() != ".station") continue;
       try {
+        if (is_of_other_station(entry.path(), commitment)) continue;
         design::StationKey key = design::load_station_key(entry.path());
         if (key.signer().public_half() == commitment.station->key) return key;
       } catch (const UsageError&) {
@@ -75,7 +84,9 @@ std::optional<design::StationKey> station_key_in(std::span<const std::filesystem
 /// \throws as sign_with_files
 Signer signer_for(const store::StudyStore& store, const std::filesystem::path& database,
                   const SigningFiles& files) {
-  if (!files.station.empty()) return design::load_station_key(files.station).signer();
+  if (!files.station.empty()) {
+    return station_key_for(store.commitment(), database, files.station).signer();
+  }
   if (!files.key.empty() || is_there(key_path_for(database, {}))) {
     return key_of_database(store, database, files.key).signer();
   }
@@ -97,6 +108,18 @@ Signer signer_for(const store::StudyStore& store, const std::filesystem::path& d
 }
 
 }  // namespace
+
+design::StationKey station_key_for(const store::StudyCommitment& commitment,
+                                   const std::filesystem::path& database,
+                                   const std::filesystem::path& file) {
+  if (is_of_other_station(file, commitment)) {
+    throw StoreError(one_line(file.string() + ": is not the file of station " +
+                              commitment.station->name + ", whose database " + database.string() +
+                              " is; give that station's file with --station-file, or another "
+                              "database"));
+  }
+  return design::load_station_key(file);
+}
 
 void sign_with_files(store::StudyStore& store, const std::filesystem::path& database,
                      const SigningFiles& files) {

@@ -24,6 +24,14 @@ namespace touchtrial::app {
                                                const std::filesystem::path& database,
                                                const std::filesystem::path& given);
 
+/// Loads the file of a database's station. That a protected file is another station's is said
+/// before anybody is asked for its passphrase; of others, loading does not tell.
+/// \throws StoreError with the remedy if the file's clear part names another station
+/// \throws FileError as load_station_key
+[[nodiscard]] design::StationKey station_key_for(const store::StudyCommitment& commitment,
+                                                 const std::filesystem::path& database,
+                                                 const std::filesystem::path& file);
+
 /// What a user named to sign with; empty paths: nothing.
 struct SigningFiles {
   std::filesystem::path key;

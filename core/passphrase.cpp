@@ -6,21 +6,18 @@
 #include <sodium.h>
 
 namespace touchtrial {
-namespace {
 
-bool is_within(std::uint64_t number, std::uint64_t least, std::uint64_t most) {
-  return number >= least && number <= most;
+bool is_in_range(const PassphraseCost& cost) noexcept {
+  const PassphraseCost& least = kLeastPassphraseCost;
+  const PassphraseCost& most = kMostPassphraseCost;
+  return cost.passes >= least.passes && cost.passes <= most.passes &&
+         cost.memory_bytes >= least.memory_bytes && cost.memory_bytes <= most.memory_bytes;
 }
-
-}  // namespace
 
 SecretKey key_of_passphrase(std::string_view passphrase, const Salt& salt,
                             const PassphraseCost& cost) {
   static_assert(std::tuple_size_v<Salt> == crypto_pwhash_SALTBYTES);
-  const PassphraseCost& least = kLeastPassphraseCost;
-  const PassphraseCost& most = kMostPassphraseCost;
-  if (!is_within(cost.passes, least.passes, most.passes) ||
-      !is_within(cost.memory_bytes, least.memory_bytes, most.memory_bytes)) {
+  if (!is_in_range(cost)) {
     throw std::invalid_argument("key_of_passphrase: the cost is out of range");
   }
   if (sodium_init() < 0) throw std::runtime_error("libsodium cannot be used");

@@ -24,6 +24,7 @@ struct PassphraseCost {
 /// The range of a cost that key_of_passphrase accepts.
 inline constexpr PassphraseCost kLeastPassphraseCost{1, std::uint64_t{8} << 10U};
 inline constexpr PassphraseCost kMostPassphraseCost{32, std::uint64_t{4} << 30U};
+[[nodiscard]] bool is_in_range(const PassphraseCost& cost) noexcept;
 
 /// \throws std::invalid_argument if a number of the cost is out of range
 /// \throws std::bad_alloc if there is not enough memory

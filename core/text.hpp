@@ -2,6 +2,8 @@
 #pragma once
 
 #include <charconv>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <iterator>
 #include <optional>
@@ -19,6 +21,21 @@ template <typename Number>
   const auto [stop, error] = std::from_chars(text.data(), end, number);
   if (error != std::errc{} || stop != end) return std::nullopt;
   return number;
+}
+
+/// "1 session", "3 sessions"
+[[nodiscard]] inline std::string counted(std::int64_t n, const std::string& noun) {
+  return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
+}
+
+/// Digits in groups of four, for people to read and copy: "0f3a 91c2 77de".
+[[nodiscard]] inline std::string in_fours(std::string_view digits) {
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && i % 4 == 0) text += ' ';
+    text += digits[i];
+  }
+  return text;
 }
 
 /// Words with commas between them, for example "bark, brick and cork".

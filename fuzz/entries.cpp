@@ -4,14 +4,18 @@
 #include "device/falcon/falcon_kinematics.hpp"
 #include "device/falcon/falcon_packet.hpp"
 #include "engine/image_file.hpp"
+#include "protocols/design/key_protection.hpp"
+#include "protocols/design/recovery_sheet.hpp"
 #include "protocols/design/study.hpp"
 #include "protocols/registration/registration.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "protocols/store/head_copy.hpp"
 #include "protocols/store/trace.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -58,6 +62,31 @@ bool claims_a_long_trace(ByteView bytes) {
   std::uint32_t count = 0;
   for (std::size_t i = 4; i-- > 0;) count = count << 8U | bytes[kCountAt + i];
   return count > kLong && count <= kRefused;
+}
+
+/// Signs the heads of this program, so that changed texts get past the signature.
+const Signer& fuzzing_signer() {
+  static const Signer signer(sha256(bytes_of("fuzz")));
+  return signer;
+}
+
+/// A record that was read is written, and read again.
+void check_head(const store::HeadRecord& record) {
+  const std::vector<PublicKey> signers = {fuzzing_signer().public_half()};
+  const std::string copy = store::head_copy_of(record, fuzzing_signer(), "study.db.head");
+  require(store::read_head_copy(copy, signers).record == record, "a head survives being stored");
+}
+
+/// The study for which sheets of the corpus were printed.
+const design::Study& recovered_study() {
+  registration::register_protocols();
+  static const design::Study study = design::parse_study(
+      R"({"study": "small", "protocol": "classification",
+          "classes": [{"label": "rough", "images": ["rough.png"]},
+                      {"label": "smooth", "images": ["smooth.png"]}],
+          "methods": [{"name": "adaptive"}]})",
+      "folder", "study.json");
+  return study;
 }
 
 /// Counts replies at every position, not only where the stream looks.
@@ -114,6 +143,44 @@ void read_as_trace(ByteView bytes) {
     const store::Trace trace = store::decode_trace(bytes);
     require(equal(store::decode_trace(store::encode_trace(trace)), trace),
             "a trace survives being stored");
+  });
+}
+
+void read_as_head(ByteView bytes) {
+  const std::vector<PublicKey> signers = {fuzzing_signer().public_half()};
+  const store::HeadCopy copy = store::read_head_copy(text_of(bytes), signers);
+  require(copy.record.has_value() == copy.fault.empty(), "a copy has a record or a fault");
+  accept_or_refuse([&] {
+    if (copy.record) check_head(*copy.record);
+  });
+  accept_or_refuse([&] { check_head(store::head_record_from(text_of(bytes), "its text")); });
+}
+
+void read_as_protected(ByteView bytes) {
+  accept_or_refuse([&] {
+    const std::string text = text_of(bytes);
+    const auto signer = design::signer_in_clear(text, "study.key");
+    if (!signer) return;
+    require(text.find("\nsigns " + to_hex(ByteView(*signer)) + "\n") != std::string::npos,
+            "a protected file names who signs with it");
+  });
+}
+
+void read_as_recovery(ByteView bytes) {
+  design::RecoveryReader reader;
+  std::istringstream lines(text_of(bytes));
+  for (std::string line; std::getline(lines, line);) {
+    accept_or_refuse([&] { static_cast<void>(reader.take(line)); });
+  }
+  accept_or_refuse([&] {
+    const design::StudyKey key = reader.key_for(recovered_study());
+    require(reader.missing() == 0, "a key takes every line");
+    design::RecoveryReader again;
+    int number = 0;
+    for (const std::string& line : design::recovery_lines(key)) {
+      require(again.take(std::to_string(++number) + ": " + line), "a printed line is read");
+    }
+    require(again.key_for(recovered_study()).master == key.master, "a key survives its sheet");
   });
 }
 

@@ -16,6 +16,12 @@ void read_as_image(ByteView bytes);
 void read_as_study(ByteView bytes);
 void read_as_subject(ByteView bytes);
 void read_as_trace(ByteView bytes);
+/// One of the two copies in a head file, or the text of one.
+void read_as_head(ByteView bytes);
+/// A key or a station's file under a passphrase.
+void read_as_protected(ByteView bytes);
+/// The lines of a recovery sheet.
+void read_as_recovery(ByteView bytes);
 /// The data of a Falcon: bulk transfers, each preceded by one byte with its size.
 void read_as_falcon(ByteView bytes);
 
@@ -24,10 +30,13 @@ struct Entry {
   void (*read)(ByteView bytes);
 };
 
-inline constexpr std::array<Entry, 5> kEntries = {{{"image", read_as_image},
+inline constexpr std::array<Entry, 8> kEntries = {{{"image", read_as_image},
                                                    {"study", read_as_study},
                                                    {"subject", read_as_subject},
                                                    {"trace", read_as_trace},
+                                                   {"head", read_as_head},
+                                                   {"protected", read_as_protected},
+                                                   {"recovery", read_as_recovery},
                                                    {"falcon", read_as_falcon}}};
 
 }  // namespace touchtrial::fuzz

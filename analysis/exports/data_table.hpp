@@ -32,8 +32,8 @@ struct DataTable {
 /// CSV as in RFC 4180, except that each line ends with a single line feed. The text is UTF-8
 /// without a byte order mark and begins with a header. Texts are harmless cells. A text that
 /// contains a comma, a quote or a line end is quoted. Numbers have a decimal point and the fewest
-/// digits that read back the same. A missing value is an empty field. \throws std::invalid_argument
-/// if a row and the header differ in length
+/// digits that read back the same. A missing value is an empty field.
+/// \throws std::invalid_argument if a row and the header differ in length
 [[nodiscard]] std::string csv_text(const DataTable& table);
 
 /// The table in the form of BIDS: tab-separated UTF-8 without a byte order mark, with line feeds

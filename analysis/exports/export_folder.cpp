@@ -146,9 +146,9 @@ ExportFile text_file(fs::path name, std::function<std::string()> content) {
           }};
 }
 
-ExportFile text_file(fs::path name, std::string content) {
-  return {std::move(name), [content = std::move(content)](const fs::path& path) {
-            replace_file(path, std::string_view(content));
+ExportFile text_file(fs::path name, std::string content, FileMode mode) {
+  return {std::move(name), [content = std::move(content), mode](const fs::path& path) {
+            replace_file(path, std::string_view(content), mode);
           }};
 }
 

@@ -2,6 +2,8 @@
 /// files of them.
 #pragma once
 
+#include "core/files.hpp"
+
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -22,7 +24,8 @@ struct ExportFile {
 [[nodiscard]] ExportFile text_file(std::filesystem::path name,
                                    std::function<std::string()> content);
 /// A file whose content is known already.
-[[nodiscard]] ExportFile text_file(std::filesystem::path name, std::string content);
+[[nodiscard]] ExportFile text_file(std::filesystem::path name, std::string content,
+                                   FileMode mode = FileMode::everyone);
 
 /// The study and the format of an export.
 struct ExportMark {
@@ -39,9 +42,11 @@ inline constexpr const char* kExportMark = ".touchtrial-export.json";
 /// example, those of a participant whose data were erased since). A mark in the folder keeps the
 /// list of files. The mark is updated before the first file is written, so that an export that was
 /// cut short can be repeated. Concurrent files are written last, as many at a time as there are
-/// cores. \return the files, in the order given \throws FileError if the folder or a file cannot be
-/// written \throws FileError, before anything is written, if the folder holds the export of another
-/// study, or a file with one of these names that no export of this study wrote
+/// cores.
+/// \return the files, in the order given
+/// \throws FileError if the folder or a file cannot be written
+/// \throws FileError, before anything is written, if the folder holds the export of another study,
+///   or a file with one of these names that no export of this study wrote
 std::vector<std::filesystem::path> write_export(const std::filesystem::path& folder,
                                                 const ExportMark& mark,
                                                 const std::vector<ExportFile>& files);

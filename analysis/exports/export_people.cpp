@@ -113,6 +113,23 @@ std::optional<SafetyFacts> facts_of(const store::Event& event) {
   }
 }
 
+/// Over which presentations a session's largest force was found.
+enum class ForceOf { none, session, so_far, unknown };
+
+DataCell force_words(ForceOf source) {
+  switch (source) {
+    case ForceOf::none:
+      return "none";
+    case ForceOf::session:
+      return "session";
+    case ForceOf::so_far:
+      return "so-far";
+    case ForceOf::unknown:
+      break;
+  }
+  return "not-known";
+}
+
 /// Gathers the two tables.
 class SafetyRecord {
  public:
@@ -123,16 +140,21 @@ class SafetyRecord {
     }
     for (const store::SessionRow& row : store.sessions()) sessions_[row.session].row = row;
     store.for_each(EventKind::closed, [&](const store::Event& event) {
-      sessions_.at(event.session).largest_force_n =
-          store::closed_from_json(event.body).largest_force_n;
+      Session& session = sessions_.at(event.session);
+      session.largest_force_n = store::closed_from_json(event.body).largest_force_n;
+      session.force_of = session.largest_force_n ? ForceOf::session : ForceOf::none;
     });
+    for (auto& [number, session] : sessions_) {
+      if (session.force_of == ForceOf::unknown) open_forces(store, session);
+    }
     store.for_each_of(kSafetyKinds, [&](const store::Event& event) { add(event); });
     for (const store::Event& event : store.events(0)) add(event);
   }
 
   [[nodiscard]] DataTable sessions() const {
     DataTable table{{"participant", "session", "state", "excluded", "withdrawn", "erased", "device",
-                     "interruptions", "stops", "deviations", "largest_force_n", "simulated"},
+                     "interruptions", "stops", "deviations", "largest_force_n", "largest_force_of",
+                     "simulated"},
                     {}};
     for (const auto& [number, one] : sessions_) {
       table.rows.push_back({one.row.participant, std::int64_t{number},
@@ -140,7 +162,7 @@ class SafetyRecord {
                             flag(one.row.withdrawn), flag(one.row.erased), one.row.device,
                             one.interruptions, one.stops, one.deviations,
                             one.largest_force_n ? DataCell(*one.largest_force_n) : DataCell(),
-                            flag(one.row.simulated)});
+                            force_words(one.force_of), flag(one.row.simulated)});
     }
     return table;
   }
@@ -150,10 +172,29 @@ class SafetyRecord {
   struct Session {
     store::SessionRow row;
     std::optional<double> largest_force_n{};
+    ForceOf force_of = ForceOf::unknown;
     std::int64_t interruptions = 0;
     std::int64_t stops = 0;
     std::int64_t deviations = 0;
   };
+
+  /// The largest force of a session that has not ended is sealed in its events, under the
+  /// participant's key. Nothing else of them is kept.
+  void open_forces(const store::StudyStore& store, Session& session) const {
+    const auto own = keys_.find(session.row.session);
+    if (own == keys_.end() || !own->second.participant) return;
+    session.force_of = ForceOf::none;
+    for (const store::Event& stored : store.events(session.row.session)) {
+      const bool is_trace = stored.kind == EventKind::trace_stored;
+      if (!is_trace && stored.kind != EventKind::interrupted) continue;
+      const store::Event event = whole_event(stored, *own->second.participant).event;
+      const double force_n = is_trace ? store::trace_body_from_json(event.body).largest_force_n
+                                      : store::trial_from_json(event.body).largest_force_n;
+      session.largest_force_n =
+          std::max(session.largest_force_n.value_or(0.0), store::in_tenths(force_n));
+      session.force_of = ForceOf::so_far;
+    }
+  }
 
   void add(const store::Event& stored) {
     const auto found = sessions_.find(store::session_about(stored));
@@ -221,7 +262,10 @@ std::vector<std::filesystem::path> export_participant(
   add("deviations.csv",
       rows_with(deviations_table(collection, commitment.simulated), "participant", id));
   add("servo.csv", rows_with(servo_table(collection, commitment.simulated), "session", sessions));
-  if (person) add("personal.csv", personal_table(*person));
+  if (person) {
+    files.push_back(text_file(prefix + "personal.csv", csv_text(personal_table(*person)),
+                              FileMode::owner_only));
+  }
   if (outcomes) {
     add("unscored_trials.csv", unscored_table(*outcomes));
     for (ExportFile& file : event_files(store, *study.key, *outcomes, prefix)) {
@@ -239,7 +283,8 @@ std::vector<std::filesystem::path> export_safety(const store::StudyStore& store,
   const SafetyRecord record(store, key);
   return write_export(folder, {commitment.study, commitment.study_id, "safety"},
                       {text_file("safety_sessions.csv", csv_text(record.sessions())),
-                       text_file("safety_events.csv", csv_text(record.events()))});
+                       text_file("safety_events.csv", csv_text(record.events()),
+                                 key != nullptr ? FileMode::owner_only : FileMode::everyone)});
 }
 
 }  // namespace touchtrial::analysis

@@ -26,7 +26,8 @@ std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
 
 /// Writes events.csv and one file for each flight record. Contains the sessions whose outcomes may
 /// be shown, without those of participants whose data were erased. Requires unblinding, because the
-/// forces before a fault can tell textures apart. \param outcomes  of this store, opened with `key`
+/// forces before a fault can tell textures apart.
+/// \param outcomes  of this store, opened with `key`
 /// \return the files, in the order written
 /// \throws VerificationError, naming the event, if a sealed part does not open
 /// \throws FileError if the folder or a file cannot be written

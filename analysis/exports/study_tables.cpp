@@ -44,6 +44,12 @@ constexpr RecordColumn kRecordColumns[] = {
        return std::int64_t{*record.practice->correct};
      },
      true},
+    {"order_block",
+     [](const SessionRecord& record) -> DataCell {
+       if (!record.order_block) return std::monostate{};
+       return std::int64_t{*record.order_block};
+     },
+     true},
     {"practice_passed",
      [](const SessionRecord& record) -> DataCell {
        if (!record.practice) return std::monostate{};
@@ -62,6 +68,11 @@ constexpr RecordColumn kRecordColumns[] = {
      [](const SessionRecord& record) -> DataCell {
        if (!record.largest_force_n) return std::monostate{};
        return *record.largest_force_n;
+     }},
+    {"station",
+     [](const SessionRecord& record) -> DataCell {
+       if (record.row.station == 0) return std::monostate{};
+       return std::int64_t{record.row.station};
      }},
     {"device_serial", [](const SessionRecord& record) -> DataCell { return record.device_serial; }},
     {"device_model", station_text<&store::StationRecord::model>},

@@ -32,7 +32,8 @@ unset key
 
 constexpr double kLegendRow_cm = 0.42;
 constexpr double kSample_cm = 0.6;
-constexpr double kLegendLetter_cm = 0.145;
+/// With room for narrow windows, which show larger letters.
+constexpr double kLegendLetter_cm = 0.17;
 constexpr double kStamp_cm = 2.2;  ///< the stamp's width, in the upper right corner
 constexpr std::size_t kLegendColumns = 48;
 
@@ -76,6 +77,43 @@ std::string_view series_colour(std::size_t n) noexcept {
 
 int series_mark(std::size_t n) noexcept {
   return kMarks[n % kMarks.size()];
+}
+
+namespace {
+
+double linear(int channel) noexcept {
+  const double c = channel / 255.0;
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+double luminance(Rgb colour) noexcept {
+  return 0.2126 * linear(colour.red) + 0.7152 * linear(colour.green) + 0.0722 * linear(colour.blue);
+}
+
+constexpr Rgb kBlack{0, 0, 0};
+constexpr Rgb kWhite{255, 255, 255};
+
+}  // namespace
+
+Rgb shade_of(double share) noexcept {
+  const auto between = [share](double from, double to) {
+    return static_cast<int>(std::lround(from + (to - from) * share));
+  };
+  return {between(255.0, 0.0), between(255.0, 62.0), between(255.0, 110.0)};
+}
+
+double contrast(Rgb a, Rgb b) noexcept {
+  const double one = luminance(a) + 0.05;
+  const double other = luminance(b) + 0.05;
+  return std::max(one, other) / std::min(one, other);
+}
+
+Rgb ink_on(Rgb ground) noexcept {
+  return contrast(kWhite, ground) > contrast(kBlack, ground) ? kWhite : kBlack;
+}
+
+std::string hexadecimal(Rgb colour) {
+  return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
 }
 
 Figure figure_on(const Sheet& sheet, std::string id, std::string alt) {

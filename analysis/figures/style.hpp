@@ -22,6 +22,24 @@ inline constexpr std::string_view kFaint = "#8c8c8c";
 /// gnuplot's number of the n-th series' filled mark.
 [[nodiscard]] int series_mark(std::size_t n) noexcept;
 
+struct Rgb {
+  int red = 0;  ///< 0 to 255, like the others
+  int green = 0;
+  int blue = 0;
+
+  friend bool operator==(const Rgb&, const Rgb&) = default;
+};
+
+/// A colour from white to dark blue: the larger the share, the darker, in colour and in grey.
+/// \param share  0 .. 1
+[[nodiscard]] Rgb shade_of(double share) noexcept;
+/// Black or white, whichever has more contrast.
+[[nodiscard]] Rgb ink_on(Rgb ground) noexcept;
+/// The contrast of two colours, from 1 to 21. Source: WCAG 2.1, relative luminance.
+[[nodiscard]] double contrast(Rgb a, Rgb b) noexcept;
+/// "#003e6e"
+[[nodiscard]] std::string hexadecimal(Rgb colour);
+
 /// The paper that a figure is drawn on.
 struct Sheet {
   double width_cm = 16.0;

@@ -84,11 +84,7 @@ std::string image_text(const EvaluatedImage& image) {
 using Json = nlohmann::ordered_json;
 
 Json picture_json(const engine::PictureFigures& picture) {
-  Json glcm = Json::object();
-  for (std::size_t i = 0; i < engine::kGlcmOffsets.size(); ++i) {
-    glcm[std::to_string(engine::kGlcmOffsets[i].degrees)] = statistics_json(picture.glcm[i]);
-  }
-  return {{"entropy", picture.entropy}, {"glcm", glcm}};
+  return {{"entropy", picture.entropy}, {"glcm", glcm_json(picture.glcm)}};
 }
 
 Json orders_json(const std::vector<engine::OrderFigures>& orders) {

@@ -18,6 +18,7 @@ namespace touchtrial::analysis {
 struct Cited {
   std::string text;
   std::vector<Source> sources{};
+  std::string lead{};  ///< stands before the text, emphasised: a verdict in a word or two
 };
 
 enum class Align { left, right };
@@ -60,6 +61,7 @@ struct Subheading {
 /// Warnings against misreading the report.
 struct Warnings {
   std::vector<std::string> sentences;
+  std::string title{};  ///< may be empty
 };
 
 /// Names and their meanings.
@@ -94,9 +96,11 @@ struct Document {
   std::string title;
   std::string stamp;  ///< for example "SIMULATED"; may be empty; stands on every table
   std::vector<std::string> banners;  ///< what readers must know first
-  Definitions header;                ///< study, program and evidence
-  std::vector<Section> sections;
-  std::string colophon;  ///< last line
+  Definitions header;                ///< study, program and evidence; stands behind the sections
+  std::vector<Section> sections;     ///< what readers want to know before anything else comes first
+  std::string colophon;              ///< last line
+  bool numbered = true;              ///< whether the page numbers its tables and figures
+  std::string about = "This report";  ///< the title of the header
 };
 
 /// Every cited source, in the order of first citation. Reference number n is element n - 1.
@@ -125,6 +129,11 @@ struct Document {
 /// at the end.
 [[nodiscard]] std::string tables_markdown(const Document& document);
 
+/// The whole document in GitHub's Markdown, with the references at the end.
+/// \param pictures  the folder of the pictures' files, relative to the Markdown file: "images"; a
+///   picture that could not be drawn is described instead
+[[nodiscard]] std::string document_markdown(const Document& document, const std::string& pictures);
+
 /// One table as LaTeX for \input: a float, or a longtable if it has many rows. The preamble needs
 /// booktabs and longtable, and for pdfLaTeX also T1 fonts and UTF-8 input.
 [[nodiscard]] std::string table_latex(const Table& table, const std::string& stamp);
@@ -134,7 +143,8 @@ struct Document {
 /// The document as text for a terminal: the sections that are not for the page alone, then the
 /// header. Without pictures, subheadings and the notes that only name a method, which are those
 /// with sources. An asterisk precedes emphasised cells. Begins with the banners and ends with the
-/// stamp, if there are any. \param width  columns of the terminal, >= 80
+/// stamp, if there are any.
+/// \param width  columns of the terminal, >= 80
 [[nodiscard]] std::string document_text(const Document& document, std::size_t width = kTextWidth);
 
 }  // namespace touchtrial::analysis

@@ -76,7 +76,9 @@ class BlockText {
  public:
   BlockText(const std::string& stamp, std::size_t width) : stamp_(stamp), width_(width) {}
 
-  std::string operator()(const Cited& cited) const { return paragraph("  ", cited.text); }
+  std::string operator()(const Cited& cited) const {
+    return paragraph("  ", cited.lead.empty() ? cited.text : cited.lead + ' ' + cited.text);
+  }
   std::string operator()(const Table& table) const {
     std::string text = caption(table.caption) + table_text(table, width_);
     for (const Cited& note : table.notes) {
@@ -87,7 +89,7 @@ class BlockText {
   std::string operator()(const Picture&) const { return ""; }
   std::string operator()(const Subheading&) const { return ""; }
   std::string operator()(const Warnings& warnings) const {
-    std::string text;
+    std::string text = warnings.title.empty() ? "" : paragraph("  ", warnings.title);
     for (const std::string& one : warnings.sentences) text += paragraph("  - ", one);
     return text;
   }
@@ -137,7 +139,7 @@ std::string document_text(const Document& document, std::size_t width) {
     for (const Block& block : section.blocks) text += std::visit(blocks, block);
   }
   if (!document.header.entries.empty()) {
-    text += section_title("This report", document.stamp) + blocks(document.header);
+    text += section_title(document.about, document.stamp) + blocks(document.header);
   }
   if (!document.stamp.empty()) text += '\n' + document.stamp + '\n';
   return text;

@@ -19,12 +19,15 @@ namespace touchtrial::analysis {
 /// Adds to every table and every sentence with a p that it is not adjusted for unregistered looks.
 void say_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sections);
 
-/// The flow of participants, the conditions, looks at outcomes, and deviations from the protocol.
-/// Contains nothing about outcomes.
-/// \param has_departures  whether the report lists departures from what was registered
+/// The flow of participants, dates and conditions, and deviations from the protocol; nothing about
+/// outcomes.
+/// \param head  of a study that is unblinded: adds the numbers of people, what they told about
+/// themselves in bands, and looks at outcomes; null: none of these
 [[nodiscard]] Section participants_section(const Collection& collection,
-                                           const std::vector<Look>& looks = {},
-                                           bool has_departures = false);
+                                           const StudyHead* head = nullptr);
+/// Times, forces and speeds.
+/// \return without blocks if no trial counts
+[[nodiscard]] Section exploration_section(const StudyHead& head);
 /// What was registered before the study.
 [[nodiscard]] Section registration_section(const design::Registration& registration);
 /// The timing of the servo over the trials that ran in real time.

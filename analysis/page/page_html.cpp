@@ -11,7 +11,7 @@ namespace touchtrial::analysis {
 namespace {
 
 constexpr std::size_t kFoldedRows = 60;  ///< longer tables are folded away
-constexpr std::size_t kWholeRows = 30;   ///< longer tables may break across printed pages
+constexpr std::size_t kWholeRows = 12;   ///< longer tables may break across printed pages
 /// Text columns with longer cells get a minimum width.
 constexpr std::size_t kWideHtmlCell = 40;
 
@@ -33,6 +33,7 @@ struct Writer {
 
 std::string cited_html(const Writer& writer, const Cited& cited) {
   std::string text = xml_escaped(cited.text);
+  if (!cited.lead.empty()) text = "<strong>" + xml_escaped(cited.lead) + "</strong> " + text;
   for (std::size_t i = 0; i < cited.sources.size(); ++i) {
     const std::size_t number = reference_number(cited.sources[i], writer.references);
     text += fmt::format("{}<a href=\"#reference-{}\" aria-label=\"reference {}\">{}</a>",
@@ -42,7 +43,8 @@ std::string cited_html(const Writer& writer, const Cited& cited) {
 }
 
 std::string html_of(Writer& writer, const Cited& paragraph) {
-  return "<p>" + cited_html(writer, paragraph) + "</p>\n";
+  return (paragraph.lead.empty() ? "<p>" : "<p class=\"lead\">") + cited_html(writer, paragraph) +
+         "</p>\n";
 }
 
 std::string html_of(Writer& /*writer*/, const Subheading& heading) {
@@ -50,9 +52,12 @@ std::string html_of(Writer& /*writer*/, const Subheading& heading) {
 }
 
 std::string html_of(Writer& /*writer*/, const Warnings& warnings) {
-  std::string html = "<ul class=\"warnings\">\n";
+  if (warnings.sentences.empty()) return "";
+  std::string html = "<div class=\"warnings\">\n";
+  if (!warnings.title.empty()) html += "<p>" + xml_escaped(warnings.title) + "</p>\n";
+  html += "<ul>\n";
   for (const std::string& one : warnings.sentences) html += "<li>" + xml_escaped(one) + "</li>\n";
-  return warnings.sentences.empty() ? "" : html + "</ul>\n";
+  return html + "</ul>\n</div>\n";
 }
 
 std::string html_of(Writer& /*writer*/, const Definitions& definitions) {
@@ -102,6 +107,11 @@ std::string body_rows(const Table& table) {
   return html + "</tbody>\n";
 }
 
+/// "<b>Table 3.</b> "; nothing on a page that does not number.
+std::string number_of(const Writer& writer, const char* what, int number) {
+  return writer.document.numbered ? fmt::format("<b>{} {}.</b> ", what, number) : "";
+}
+
 std::string notes_html(const Writer& writer, const Table& table) {
   if (table.notes.empty()) return "";
   std::string html = "<div class=\"notes\">\n";
@@ -111,7 +121,7 @@ std::string notes_html(const Writer& writer, const Table& table) {
 
 std::string html_of(Writer& writer, const Table& table) {
   const std::string caption =
-      fmt::format("<b>Table {}.</b> {}", ++writer.tables,
+      fmt::format("{}{}", number_of(writer, "Table", ++writer.tables),
                   xml_escaped(stamped(table.caption, writer.document.stamp)));
   std::string html = fmt::format(
       "<div class=\"scroll\" role=\"region\" tabindex=\"0\" "
@@ -142,15 +152,15 @@ std::string html_of(Writer& writer, const Picture& picture) {
   if (svg.empty()) {
     // The caption would describe marks and bars that are missing, so the description stands
     // instead.
-    return html +
-           fmt::format("<figcaption><b>Figure {}, not drawn.</b> {}</figcaption>\n</figure>\n",
-                       number, xml_escaped(stamped(picture.alt, writer.document.stamp)));
+    return html + fmt::format("<figcaption>{}<b>Not drawn.</b> {}</figcaption>\n</figure>\n",
+                              number_of(writer, "Figure", number),
+                              xml_escaped(stamped(picture.alt, writer.document.stamp)));
   }
-  html += fmt::format("<figcaption><b>Figure {}.</b> {}</figcaption>\n", number,
+  html += fmt::format("<figcaption>{}{}</figcaption>\n", number_of(writer, "Figure", number),
                       xml_escaped(stamped(picture.caption, writer.document.stamp)));
   return html +
-         fmt::format("<details><summary>Figure {} in words</summary><p>{}</p></details>\n", number,
-                     xml_escaped(picture.alt)) +
+         fmt::format("<details><summary>{}In words</summary><p>{}</p></details>\n",
+                     number_of(writer, "Figure", number), xml_escaped(picture.alt)) +
          "</figure>\n";
 }
 
@@ -195,16 +205,30 @@ std::string navigation(const Writer& writer) {
     html += "<li><a href=\"#" + section.id + "\">" + xml_escaped(section.title) + "</a></li>\n";
   }
   if (!writer.references.empty()) html += "<li><a href=\"#references\">References</a></li>\n";
+  html += "<li><a href=\"#this-report\">" + xml_escaped(writer.document.about) + "</a></li>\n";
   return html + "</ul>\n</nav>\n";
 }
 
-std::string header_html(Writer& writer) {
+std::string header_html(const Writer& writer) {
   std::string html = "<header>\n";
   for (const std::string& banner : writer.document.banners) {
     html += "<p class=\"banner\">" + xml_escaped(banner) + "</p>\n";
   }
-  return html + "<h1>" + xml_escaped(writer.document.title) + "</h1>\n" +
-         html_of(writer, writer.document.header) + "</header>\n";
+  return html + "<h1>" + xml_escaped(writer.document.title) + "</h1>\n</header>\n";
+}
+
+/// The sections, with the contents behind the first: whoever opens the page sees the result.
+std::string main_html(Writer& writer) {
+  std::string html = "<main id=\"main\" tabindex=\"-1\">\n";
+  std::string contents = navigation(writer);
+  for (const Section& section : writer.document.sections) {
+    html += section_html(writer, section) + contents;
+    contents.clear();
+  }
+  html += references_html(writer);
+  return html + "<section aria-labelledby=\"this-report\">\n<h2 id=\"this-report\">" +
+         xml_escaped(writer.document.about) + "</h2>\n" + html_of(writer, writer.document.header) +
+         "</section>\n</main>\n";
 }
 
 }  // namespace
@@ -213,11 +237,8 @@ std::string page_html(const Document& document) {
   Writer writer{document, references_of(document)};
   const std::string title = xml_escaped(stamped(document.title, document.stamp));
   std::string html = kHead + ("<title>" + title + "</title>\n<style>") + kPageStyle +
-                     "</style>\n</head>\n<body>\n"
-                     "<a class=\"skip\" href=\"#main\">Skip to the results</a>\n";
-  html += header_html(writer) + navigation(writer) + "<main id=\"main\" tabindex=\"-1\">\n";
-  for (const Section& section : document.sections) html += section_html(writer, section);
-  html += references_html(writer) + "</main>\n<footer>" + xml_escaped(document.colophon) +
+                     "</style>\n</head>\n<body>\n";
+  html += header_html(writer) + main_html(writer) + "<footer>" + xml_escaped(document.colophon) +
           "</footer>\n";
   return html + "</body>\n</html>\n";
 }

@@ -24,33 +24,37 @@ inline constexpr const char* kPageStyle = R"(
 html { -webkit-text-size-adjust: 100%; text-size-adjust: 100%; }
 body { font: 16px/1.55 system-ui, -apple-system, "Segoe UI", "Noto Sans", "DejaVu Sans", sans-serif;
        color: var(--ink); background: var(--ground); margin: 0; }
-header, nav, main, footer { max-width: 62rem; margin: 0 auto; padding: 0 1.25rem; }
-header { padding-top: 1.5rem; }
-h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 1rem; overflow-wrap: anywhere; }
+header, main, footer { max-width: 62rem; margin: 0 auto; padding: 0 1.25rem; }
+header { padding-top: 1rem; }
+h1 { font-size: 1.6rem; line-height: 1.2; margin: 0 0 .6rem; overflow-wrap: anywhere; }
 h2 { font-size: 1.4rem; line-height: 1.25; margin: 3rem 0 1rem; padding-top: .6rem;
      border-top: 2px solid var(--rule); overflow-wrap: anywhere; }
+main > section:first-child > h2 { margin-top: 0; padding-top: .4rem; margin-bottom: .5rem; }
 h3 { font-size: 1.1rem; margin: 2rem 0 .6rem; overflow-wrap: anywhere; }
 p { margin: 0 0 .8rem; max-width: 46rem; overflow-wrap: anywhere; }
 a { color: var(--link); }
 a:focus-visible, summary:focus-visible, .scroll:focus-visible { outline: 3px solid var(--link);
   outline-offset: 2px; }
-.skip { position: absolute; left: -100rem; background: var(--ground); padding: .5rem 1rem; z-index: 1; }
-.skip:focus { left: .5rem; top: .5rem; }
+.lead { max-width: none; }
 .banner { border-left: 6px solid var(--stamp-line); background: var(--stamp-ground);
-          color: var(--stamp-ink); padding: .6rem 1rem; margin: 0 0 .8rem; font-weight: 600;
-          max-width: none; }
+          color: var(--stamp-ink); padding: .4rem 1rem; margin: 0 0 .6rem; font-weight: 600;
+          font-size: .95rem; line-height: 1.4; max-width: none; }
 .warnings { border-left: 6px solid var(--warn-line); background: var(--warn-ground);
-            color: var(--warn-ink); padding: .8rem 1rem .8rem 2.2rem; margin: 0 0 1.2rem; }
-.warnings li { margin: .3rem 0; max-width: 46rem; overflow-wrap: anywhere; }
+            color: var(--warn-ink); padding: .5rem 1rem; margin: 0 0 1rem; font-size: .95rem;
+            line-height: 1.4; }
+.warnings p { margin: 0; font-weight: 600; }
+.warnings ul { margin: 0; padding: 0 0 0 1.2rem; }
+.warnings li { margin: .25rem 0; overflow-wrap: anywhere; }
 dl { display: grid; grid-template-columns: minmax(8rem, max-content) 1fr; gap: .25rem 1.25rem;
      margin: 0 0 1.2rem; }
 dt { color: var(--soft); }
 dd { margin: 0; overflow-wrap: anywhere; }
-nav { margin-top: 1.5rem; }
+nav { margin-top: 2rem; }
 nav h2 { font-size: 1rem; margin: 0 0 .3rem; padding: 0; border: 0; }
 nav ul { margin: 0; padding: 0; list-style: none; columns: 17rem; column-gap: 2rem; }
 nav li { padding: .15rem 0; break-inside: avoid; }
-.table { margin: 1.4rem 0 1.8rem; }
+.table { margin: 1.2rem 0 1.8rem; }
+main > section:first-child .table { margin: .8rem 0; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .9rem;
         border-bottom: 1.5px solid var(--rule); }
@@ -73,13 +77,14 @@ tbody tr:nth-child(even) { background: var(--panel); }
 tbody tr td.s { background: var(--strong); font-weight: 600; }
 .notes { font-size: .85rem; color: var(--soft); margin-top: .5rem; }
 .notes p { margin: 0 0 .25rem; }
+main > section:first-child .notes p { max-width: none; }
 details { margin: 1rem 0; }
 summary { cursor: pointer; padding: .25rem 0; }
 figure { margin: 1.6rem 0 2rem; }
 figcaption { margin-top: .5rem; max-width: 46rem; overflow-wrap: anywhere; }
 figure details { margin: .3rem 0 0; font-size: .9rem; }
 .plot { background: #fff; padding: .4rem; border: 1px solid var(--line); width: 46rem;
-        max-width: 100%; min-width: 34rem; }
+        max-width: 100%; }
 figure[id^="figure-exploration"] .plot { width: 34rem; }
 .plot svg { display: block; width: 100%; height: auto; max-width: 100%; }
 .flow ol { list-style: none; margin: 0; padding: 0; max-width: 34rem; }
@@ -93,12 +98,15 @@ figure[id^="figure-exploration"] .plot { width: 34rem; }
 .references li { margin: .35rem 0; max-width: 46rem; overflow-wrap: anywhere; }
 footer { border-top: 1px solid var(--line); margin-top: 3rem; padding-top: .8rem;
          padding-bottom: 2rem; color: var(--soft); font-size: .85rem; overflow-wrap: anywhere; }
-@media (max-width: 34rem) {
+@media (max-width: 40rem) {
   h1 { font-size: 1.5rem; }
-  header, nav, main, footer { padding-left: 1rem; padding-right: 1rem; }
+  header, main, footer { padding-left: 1rem; padding-right: 1rem; }
+  .plot { border: 0; padding: 0; }
+  .plot svg g[font-size] { font-size: 12.5px; }
   dl { display: block; }
   dd { margin: 0 0 .5rem; }
-  th, td { padding: .3rem .5rem; }
+  table { font-size: .82rem; }
+  th, td { padding: .25rem .35rem; }
 }
 @page { size: A4; margin: 16mm 15mm; }
 @media print {
@@ -107,12 +115,14 @@ footer { border-top: 1px solid var(--line); margin-top: 3rem; padding-top: .8rem
     --warn-line: #777; --stamp-ink: #8a1c14; --stamp-ground: #fff; --stamp-line: #b3261e;
     --strong: #e8e8e8; }
   body { font-size: 9.5pt; line-height: 1.4; }
-  header, nav, main, footer { max-width: none; padding: 0; }
-  nav, .skip, figure details { display: none; }
+  header, main, footer { max-width: none; padding: 0; }
+  nav, figure details { display: none; }
   h1 { font-size: 18pt; }
-  h2 { font-size: 13pt; margin: 9mm 0 3mm; padding-top: 2mm; }
+  h2 { font-size: 13pt; margin: 7mm 0 2mm; padding-top: 2mm; }
   h3 { font-size: 11pt; margin: 5mm 0 2mm; }
   h2, h3 { break-after: avoid; }
+  .banner, .warnings { font-size: 9pt; padding: 1.5mm 3mm; margin: 0 0 3mm; }
+  .references { font-size: 8pt; }
   p, .warnings li { orphans: 3; widows: 3; max-width: none; }
   a { text-decoration: none; }
   .scroll { overflow: visible; }
@@ -127,7 +137,10 @@ footer { border-top: 1px solid var(--line); margin-top: 3rem; padding-top: .8rem
   tbody tr:nth-child(even), tbody tr td.s { print-color-adjust: exact;
     -webkit-print-color-adjust: exact; }
   .notes { font-size: 7.8pt; }
-  .plot { border: 0; padding: 0; min-width: 0; max-width: 100%; }
+  .plot { border: 0; padding: 0; width: 125mm; max-width: 100%; }
+  figure { margin: 4mm 0; }
+  figure[id^="figure-exploration"] .plot { width: 85mm; }
+  .table { margin: 3mm 0 5mm; }
 }
 )";
 

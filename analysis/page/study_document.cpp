@@ -103,9 +103,8 @@ Document framed_document(const StudyHead& head, Section headline, std::vector<Se
   headline.blocks.insert(headline.blocks.begin(), std::make_move_iterator(verdict.begin()),
                          std::make_move_iterator(verdict.end()));
   std::vector<Section> sections = {
-      std::move(headline), warnings_section(head.warnings),
-      participants_section(head.collection, head.looks, !head.departures.empty()),
-      registration_section(head.registration)};
+      std::move(headline), participants_section(head.collection, &head), exploration_section(head),
+      warnings_section(head.warnings), registration_section(head.registration)};
   std::ranges::move(results, std::back_inserter(sections));
   say_unadjusted(head.looks, sections);
   for (Section& section : sections) {

@@ -30,10 +30,12 @@ using Pictures = std::vector<Picture>;
 
 /// The frame of every protocol's report: title, banners, header, and the sections on warnings,
 /// participants and registration.
+///
 /// \param headline  the result in a few sentences; stands first, after the verdict on the
-/// registered question \param results  the protocol's other sections, in their order; sections
-/// without blocks are left out \param figures_missing  whether the header says that figures could
-/// not be drawn
+///   registered question
+/// \param results  the protocol's other sections, in their order; sections without blocks are left
+///   out
+/// \param figures_missing  whether the header says that figures could not be drawn
 [[nodiscard]] Document framed_document(const StudyHead& head, Section headline,
                                        std::vector<Section> results, const Provenance& provenance,
                                        bool figures_missing = false);

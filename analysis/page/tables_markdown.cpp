@@ -1,5 +1,8 @@
 #include "analysis/escaping.hpp"
 #include "analysis/page/document.hpp"
+#include "analysis/text_table.hpp"
+
+#include <cstddef>
 
 #include <fmt/format.h>
 
@@ -54,7 +57,70 @@ std::string warnings_text(const Warnings& warnings) {
   return text + '\n';
 }
 
+/// Columns of a paragraph in the Markdown file.
+constexpr std::size_t kMarkdownWidth = 110;
+
+/// The blocks of a document in Markdown, each with an empty line after it.
+struct MarkdownWriter {
+  const Document& document;
+  const std::string& pictures;
+  std::vector<Source> references;
+
+  [[nodiscard]] std::string operator()(const Cited& paragraph) const {
+    return wrapped("",
+                   markdown_escaped(paragraph.text) +
+                       markdown_escaped(citation_mark(paragraph, references)),
+                   kMarkdownWidth) +
+           '\n';
+  }
+  [[nodiscard]] std::string operator()(const Table& table) const {
+    return table_text(table, document.stamp, references) + '\n';
+  }
+  [[nodiscard]] std::string operator()(const Picture& picture) const {
+    if (picture.svg.empty()) return (*this)(Cited{"Not drawn: " + picture.alt});
+    return "![" + markdown_escaped(picture.alt) + "](" + pictures + '/' + picture.id + ".svg)\n\n" +
+           (*this)(Cited{stamped(picture.caption, document.stamp)});
+  }
+  [[nodiscard]] std::string operator()(const Subheading& heading) const {
+    return "### " + markdown_escaped(heading.title) + "\n\n";
+  }
+  [[nodiscard]] std::string operator()(const Warnings& warnings) const {
+    return warnings_text(warnings);
+  }
+  [[nodiscard]] std::string operator()(const Definitions& definitions) const {
+    std::string text;
+    for (const auto& [name, meaning] : definitions.entries) {
+      text += "- " + markdown_escaped(name) + ": " + markdown_escaped(meaning) + '\n';
+    }
+    return text + '\n';
+  }
+  [[nodiscard]] std::string operator()(const Flow& flow) const {
+    std::string text;
+    for (const FlowStep& step : flow.steps) {
+      text += "- " + markdown_escaped(step.text) + '\n';
+      for (const std::string& one : step.leaving) text += "  - " + markdown_escaped(one) + '\n';
+    }
+    return text + '\n' + (*this)(Cited{stamped(flow.caption, document.stamp)});
+  }
+};
+
 }  // namespace
+
+std::string document_markdown(const Document& document, const std::string& pictures) {
+  const MarkdownWriter writer{document, pictures, references_of(document)};
+  std::string text = "# " + markdown_escaped(stamped(document.title, document.stamp)) + "\n\n";
+  for (const std::string& banner : document.banners)
+    text += "**" + markdown_escaped(banner) + "**\n\n";
+  if (!document.header.entries.empty()) text += writer(document.header);
+  for (const Section& section : document.sections) {
+    text += "## " + markdown_escaped(section.title) + "\n\n";
+    for (const Block& block : section.blocks) text += std::visit(writer, block);
+  }
+  if (!writer.references.empty()) {
+    text += "## References\n\n" + references_text(writer.references) + '\n';
+  }
+  return text + markdown_escaped(document.colophon) + '\n';
+}
 
 std::string table_markdown(const Table& table, const std::string& stamp) {
   const std::vector<Source> references = references_of(table);

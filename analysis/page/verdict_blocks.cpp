@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace touchtrial::analysis {
 namespace {
@@ -20,8 +22,8 @@ std::string estimand_figure(const PrimaryResult& primary, std::optional<double> 
   return is_difference(primary) ? points_figure(value) + " points" : share_figure(value);
 }
 
-std::string level_of(double alpha) {
-  return fmt::format("{:.4g}%", 100.0 * (1.0 - alpha));
+std::string level_words(double level) {
+  return fmt::format("{:.4g}%", 100.0 * level);
 }
 
 std::string first_letter_raised(std::string text) {
@@ -39,18 +41,21 @@ std::string people_of(const PrimaryResult& primary, const StudyCourse& course) {
                      course.completed);
 }
 
-Cited verdict_sentence(const PrimaryResult& primary) {
-  return {fmt::format("{}. {}", first_letter_raised(name_of(primary.verdict)), primary.because)};
+/// The verdict, for a reader who stops there.
+std::string lead_of(Verdict verdict) {
+  const bool is_decided = verdict == Verdict::supported || verdict == Verdict::not_supported;
+  return first_letter_raised(name_of(verdict)) + (is_decided ? " by the registered test." : ".");
 }
 
-Cited estimate_sentence(const StudyHead& head) {
+/// The verdict, the estimate with its interval and test, and why the verdict is what it is.
+Cited verdict_sentence(const StudyHead& head) {
   const PrimaryResult& primary = *head.primary;
   const PrimaryChoice& choice = primary.registered();
   std::string text = fmt::format("{}: {}", first_letter_raised(primary.words),
                                  estimand_figure(primary, choice.estimate));
   if (choice.interval) {
-    text +=
-        fmt::format(", {} t interval {}", level_of(primary.alpha), share_range(choice.interval));
+    text += fmt::format(", {} t interval {}", level_words(primary.interval_level),
+                        share_range(choice.interval));
   }
   text += " (" + people_of(primary, head.course) + ")";
   text += ". " + first_letter_raised(primary.test);
@@ -59,11 +64,94 @@ Cited estimate_sentence(const StudyHead& head) {
   if (primary.level != primary.alpha) {
     text += fmt::format(", nominal level at this look {:.3g}", primary.level);
   }
-  if (primary.bound) {
-    text += fmt::format(", lower {} limit {}", level_of(primary.alpha),
+  if (primary.bound && !primary.margin) {
+    text += fmt::format(", lower {} limit {}", level_words(1.0 - primary.alpha),
                         estimand_figure(primary, primary.bound));
   }
-  return {text + ".", {Source::student}};
+  std::vector<Source> sources{Source::student};
+  if (primary.crossover) sources = {Source::hills_armitage, Source::senn};
+  return {text + ". " + primary.because, std::move(sources), lead_of(primary.verdict)};
+}
+
+bool are_same(const PrimaryChoice& a, const PrimaryChoice& b) {
+  const auto ends = [](const PrimaryChoice& one) {
+    return one.interval ? std::optional(std::pair(one.interval->low, one.interval->high))
+                        : std::nullopt;
+  };
+  return a.participants == b.participants && a.trials == b.trials && a.estimate == b.estimate &&
+         ends(a) == ends(b);
+}
+
+/// The choices without those that give the numbers of an earlier one, each with the words of
+/// these.
+std::vector<std::pair<PrimaryChoice, std::vector<std::string>>> different(
+    const std::vector<PrimaryChoice>& choices) {
+  std::vector<std::pair<PrimaryChoice, std::vector<std::string>>> all;
+  for (const PrimaryChoice& choice : choices) {
+    const auto same =
+        std::ranges::find_if(all, [&](const auto& one) { return are_same(one.first, choice); });
+    if (same == all.end()) {
+      all.emplace_back(choice, std::vector<std::string>{});
+    } else {
+      same->second.push_back(choice.words);
+    }
+  }
+  return all;
+}
+
+/// What belongs to a comparison of two methods, one after the other.
+Cited crossover_sentence(const PrimaryResult& primary, const CrossoverEstimate& crossover) {
+  std::string text = fmt::format("{} had the first method first, {} had it last",
+                                 crossover.first_first, crossover.second_first);
+  if (crossover.period) {
+    text += fmt::format(". Second period less first, whichever the method: {} points",
+                        points_figure(crossover.period));
+    if (crossover.period_interval) text += " " + share_range(crossover.period_interval);
+  }
+  if (primary.permutation) {
+    text += fmt::format(
+        ". Check by dealing the orders anew within the blocks in which they were dealt: {}; the "
+        "least p that they could give is {:.3g}",
+        p_phrase(primary.permutation->p), primary.permutation->least);
+  }
+  return {text +
+              ". What the first method leaves behind for the second (carry-over) is confounded "
+              "with the order: it is not tested, and never chooses the analysis.",
+          {Source::senn, Source::phipson_smyth}};
+}
+
+/// Rows for the first choice with stations as strata, if the study has several.
+void add_stations(const PrimaryResult& primary, Table& table) {
+  if (!primary.stations) return;
+  const StratifiedMean& stations = *primary.stations;
+  const PrimaryChoice& choice = primary.registered();
+  const auto add = [&](const std::string& what, double mean,
+                       const std::optional<Interval>& interval) {
+    table.rows.push_back({what, std::to_string(choice.participants), std::to_string(choice.trials),
+                          is_difference(primary) ? points_figure(mean) : share_figure(mean),
+                          share_range(interval), kNoFigure});
+  };
+  add(fmt::format("first row, {} stations as fixed strata", stations.strata), stations.mean,
+      stations.interval);
+  if (stations.random) {
+    add(fmt::format("first row, {} stations as a sample of others", stations.strata),
+        stations.random->mean, stations.random->interval);
+  }
+}
+
+Cited note_of(const StratifiedMean& stations) {
+  std::string text =
+      "Fixed strata: for these stations, from the spread between participants of one station.";
+  if (!stations.random) {
+    return {text + fmt::format(" With fewer than {} stations nothing can be said of others.",
+                               kFewestRandomStrata),
+            {Source::student}};
+  }
+  text += fmt::format(
+      " A sample of others: the standard deviation between stations is {} points; Hartung, Knapp, "
+      "Sidik and Jonkman's interval.",
+      plain_figure(100.0 * stations.random->spread, 1));
+  return {text, {Source::student, Source::paule_mandel, Source::inthout}};
 }
 
 Table choices_table(const StudyHead& head) {
@@ -74,26 +162,41 @@ Table choices_table(const StudyHead& head) {
                {"participants"},
                {"trials"},
                {is_difference(primary) ? "difference (points)" : "mean"},
-               {"t " + level_of(primary.alpha) + (is_difference(primary) ? " (points)" : " (%)")},
+               {"t " + level_words(primary.interval_level) +
+                (is_difference(primary) ? " (points)" : " (%)")},
                {"p"}}};
-  for (const PrimaryChoice& choice : primary.choices) {
-    const bool first = &choice == &primary.choices.front();
+  std::vector<Cited> repeated;
+  for (const auto& [choice, same] : different(primary.choices)) {
+    const bool first = table.rows.empty();
+    if (!same.empty()) {
+      repeated.push_back({same.size() + 1 == primary.choices.size()
+                              ? "Every other choice gives the same numbers: excluded sessions put "
+                                "back, valid trials alone, trials with a response alone."
+                              : fmt::format("The same numbers as \"{}\": {}.", choice.words,
+                                            fmt::join(same, "; "))});
+    }
     const std::string estimate =
         is_difference(primary) ? points_figure(choice.estimate) : share_figure(choice.estimate);
     table.rows.push_back({choice.words, std::to_string(choice.participants),
                           std::to_string(choice.trials), Cell(estimate, first),
                           share_range(choice.interval), first ? p_figure(primary.p) : kNoFigure});
   }
+  add_stations(primary, table);
   table.notes = {
       {"p belongs to the first row alone; the others show what a choice changes. Each "
        "participant weighs the same, however many trials it has."}};
+  table.notes.insert(table.notes.end(), repeated.begin(), repeated.end());
   if (head.course.excluded_afterwards > 0) {
     table.notes.push_back({counted(head.course.excluded_afterwards, "session") +
                            " excluded after outcomes were seen."});
   }
-  if (!is_difference(primary)) {
+  if (primary.stations) table.notes.push_back(note_of(*primary.stations));
+  if (!is_difference(primary) && primary.p) {
     table.notes.push_back(
-        {"A mean above chance says that some people can, not that everybody can."});
+        {*primary.p <= primary.level
+             ? "A mean above chance says that some people can, not that everybody can."
+             : "A mean that is not shown to be above chance does not say that nobody can; "
+               "\"Accuracy\" has the test of that."});
   }
   return table;
 }
@@ -103,13 +206,15 @@ Table choices_table(const StudyHead& head) {
 std::vector<Block> verdict_blocks(const StudyHead& head) {
   std::vector<Block> blocks;
   if (head.primary) {
-    blocks.emplace_back(verdict_sentence(*head.primary));
-    blocks.emplace_back(estimate_sentence(head));
+    blocks.emplace_back(verdict_sentence(head));
+    if (const auto& crossover = head.primary->crossover) {
+      blocks.emplace_back(crossover_sentence(*head.primary, *crossover));
+    }
   }
   if (!head.departures.empty()) {
-    blocks.emplace_back(Cited{head.registration.analysis ? "Departures from what was registered:"
-                                                         : "Departures from the plan:"});
-    blocks.emplace_back(Warnings{head.departures});
+    blocks.emplace_back(Warnings{head.departures, head.registration.analysis
+                                                      ? "Departures from what was registered:"
+                                                      : "Departures from the plan:"});
   } else if (head.registration.analysis) {
     blocks.emplace_back(Cited{"No departure from what was registered is recorded."});
   }

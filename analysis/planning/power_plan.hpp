@@ -28,10 +28,12 @@ struct PowerPlan {
   int runs = 1000;                ///< simulated studies of each size and hypothesis
   std::uint64_t seed = 1;
   bool stop_early = true;
-  bool servo = false;       ///< use ServoFeelings
-  int explorations = 1000;  ///< BankedFeelingsOptions
-  int trainings = 16;       ///< BankedFeelingsOptions
-  double level = 0.05;      ///< of the primary test
+  bool servo = false;            ///< use ServoFeelings
+  int explorations = 1000;       ///< BankedFeelingsOptions
+  int trainings = 16;            ///< BankedFeelingsOptions
+  double level = 0.05;           ///< of the primary test
+  double margin = 0.0;           ///< of the primary test; 0: none
+  double first_half_loss = 0.0;  ///< RehearsedStudy
 
   friend bool operator==(const PowerPlan&, const PowerPlan&) = default;
 };

@@ -79,7 +79,8 @@ std::string first_difference(const PowerProgress& a, const PowerProgress& b) {
       {"--no-early-stop", a.plan.stop_early == b.plan.stop_early},
       {"--servo", a.plan.servo == b.plan.servo},
       {"--explorations", a.plan.explorations == b.plan.explorations},
-      {"--trainings", a.plan.trainings == b.plan.trainings}};
+      {"--trainings", a.plan.trainings == b.plan.trainings},
+      {"--first-half-loss", a.plan.first_half_loss == b.plan.first_half_loss}};
   const auto differs = std::ranges::find(equal, false, &std::pair<const char*, bool>::second);
   return differs == std::end(equal) ? "" : differs->first;
 }

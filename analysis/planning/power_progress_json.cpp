@@ -13,7 +13,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "touchtrial power progress";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 29U;
 
 ordered_json setting_object(const PowerSetting& setting) {
@@ -36,7 +36,9 @@ ordered_json stored_plan(const PowerPlan& plan) {
           {"servo", plan.servo},
           {"explorations", plan.explorations},
           {"trainings", plan.trainings},
-          {"level", plan.level}};
+          {"level", plan.level},
+          {"margin", plan.margin},
+          {"first_half_loss", plan.first_half_loss}};
 }
 
 ordered_json cell_object(const PowerCell& cell) {
@@ -90,6 +92,9 @@ PowerPlan plan_of(const ordered_json& object) {
   plan.explorations = object.at("explorations");
   plan.trainings = object.at("trainings");
   plan.level = object.at("level");
+  plan.margin = object.at("margin");
+  plan.first_half_loss = object.at("first_half_loss");
+  require(plan.margin >= 0.0 && plan.margin <= 1.0, "its margin is out of range");
   require(plan.level > 0.0 && plan.level < 1.0, "its level is out of range");
   const PowerPlan as_written = plan;
   settle(plan);

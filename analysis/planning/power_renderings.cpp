@@ -36,6 +36,13 @@ std::string looks_sentence(const PowerPlan& plan) {
 }
 
 std::string null_sentence(const PowerReport& report) {
+  if (report.plan.margin > 0.0) {
+    return fmt::format(
+        "Power: for methods that feel alike; each presentation is felt as one of the two at "
+        "random. Type-I error: the same, but people miss so many of their right answers with the "
+        "first method that it is worse by the margin, {:.4g} points.",
+        100.0 * report.plan.margin);
+  }
   return report.setting.estimate == kDifferenceWords
              ? "Type-I error: for methods that feel alike; each presentation is felt as one of "
                "the two at random."
@@ -86,6 +93,11 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
   if (!plan.servo) sentences.push_back(kBankSentence);
   sentences.push_back(looks_sentence(plan));
   sentences.push_back(null_sentence(report));
+  if (plan.first_half_loss > 0.0) {
+    sentences.push_back(fmt::format(
+        "In the first half of their trials, people miss {:.4g} % of their right answers.",
+        100.0 * plan.first_half_loss));
+  }
   if (!report.setting.has_fixed_counts) sentences.push_back(kOrdersSentence);
   const bool is_exact = std::ranges::any_of(
       report.rows, [](const PowerRow& row) { return row.attainable != row.level; });
@@ -262,9 +274,16 @@ ordered_json target_object(const TargetSize& target) {
 }
 
 ordered_json plan_object(const PowerPlan& plan) {
-  return {{"participants", plan.participants}, {"runs", plan.runs},          {"seed", plan.seed},
-          {"stop_early", plan.stop_early},     {"looks", looks_of(plan)},    {"servo", plan.servo},
-          {"explorations", plan.explorations}, {"trainings", plan.trainings}};
+  return {{"participants", plan.participants},
+          {"runs", plan.runs},
+          {"seed", plan.seed},
+          {"stop_early", plan.stop_early},
+          {"looks", looks_of(plan)},
+          {"servo", plan.servo},
+          {"explorations", plan.explorations},
+          {"trainings", plan.trainings},
+          {"margin", plan.margin},
+          {"first_half_loss", plan.first_half_loss}};
 }
 
 ordered_json methods_object(const PowerReport& report) {

@@ -53,7 +53,7 @@ bool is_difference(const PrimaryTest& test) {
 
 /// The largest p within the level that these differences could have.
 double attainable_of(const PrimaryTest& test, const std::vector<double>& values) {
-  if (test.test == design::RegisteredTest::t) return test.alpha;
+  if (test.test != design::RegisteredTest::sign_flip) return test.alpha;
   if (test.sides == analysis::Sides::two) {
     return analysis::sign_flip_attainable(values, test.alpha);
   }
@@ -72,11 +72,28 @@ PrimaryTest primary_test_of(const design::Study& study,
   return *analysis::identification::primary_question(study, 1);
 }
 
+PrimaryTest with_margin(PrimaryTest test, double margin) {
+  if (!is_difference(test)) {
+    throw UsageError("--margin: the study presents one method; a margin compares two");
+  }
+  if (!(margin > 0.0 && margin <= 1.0)) {
+    throw UsageError(fmt::format(
+        "--margin: {} is out of range; give a difference of accuracies, 0.07 for 7 points",
+        margin));
+  }
+  test.margin = margin;
+  test.smallest_effect.reset();
+  test.sides = analysis::Sides::one;
+  if (test.test == design::RegisteredTest::sign_flip) test.test = design::RegisteredTest::t;
+  return test;
+}
+
 std::string words_of(const PrimaryTest& test, const design::Study& study) {
   const std::string& first = study.methods[test.first].label;
-  const std::string what = is_difference(test) ? "accuracy with " + first + " less that with " +
-                                                     study.methods[test.second].label
-                                               : "mean accuracy with " + first + " against chance";
+  std::string what = is_difference(test) ? "accuracy with " + first + " less that with " +
+                                               study.methods[test.second].label
+                                         : "mean accuracy with " + first + " against chance";
+  if (test.margin) what += fmt::format(" against {:.4g} points", -100.0 * *test.margin);
   return fmt::format("{}: {}, level {}", what, analysis::identification::test_words(test),
                      test.alpha);
 }
@@ -86,13 +103,16 @@ std::string estimate_words(const PrimaryTest& test) {
 }
 
 PowerRun judged(const PrimaryTest& test, const analysis::Outcomes& outcomes, bool with_attainable) {
-  const std::vector<double> values = analysis::identification::primary_values(test, outcomes);
+  const auto people = analysis::identification::primary_values(test, outcomes);
   const auto classes = static_cast<int>(outcomes.classes.size());
-  const analysis::Interval range{is_difference(test) ? -1.0 : 0.0, 1.0};
-  const analysis::MeanEstimate mean = analysis::participant_mean(values, range);
-  return {analysis::identification::primary_p(test, classes, values).value_or(1.0),
-          with_attainable ? attainable_of(test, values) : 0.0, mean.mean.value_or(0.0),
-          mean.interval.low, mean.interval.high};
+  const analysis::identification::PrimaryEstimate found =
+      analysis::identification::primary_estimate(test, people, analysis::kConfidenceLevel);
+  const analysis::Interval whole{is_difference(test) ? -1.0 : 0.0, 1.0};
+  const analysis::Interval interval = found.interval.value_or(whole);
+  return {
+      analysis::identification::primary_p(test, classes, people).value_or(1.0),
+      with_attainable ? attainable_of(test, analysis::identification::differences_of(people)) : 0.0,
+      found.estimate.value_or(0.0), interval.low, interval.high};
 }
 
 bool is_significant(const PowerRun& run, double level) noexcept {

@@ -27,6 +27,10 @@ using PrimaryTest = analysis::identification::PrimaryQuestion;
 [[nodiscard]] PrimaryTest primary_test_of(const design::Study& study,
                                           const std::optional<MethodLabels>& methods);
 
+/// The same question by a margin in place of an effect: whether the first method is as good.
+/// \throws UsageError if the test is not of a difference, or the margin is not in (0, 1]
+[[nodiscard]] PrimaryTest with_margin(PrimaryTest test, double margin);
+
 /// \return for instance "mean accuracy with adaptive against chance: one-sample t test over
 ///   participants, one-sided, level 0.05"
 [[nodiscard]] std::string words_of(const PrimaryTest& test, const design::Study& study);
@@ -38,11 +42,11 @@ inline constexpr std::string_view kDifferenceWords = "difference of accuracies";
 /// The result of one simulated study.
 struct PowerRun {
   double p = 1.0;
-  /// Largest p of the sign flips within the level, the level itself for a t test; 0 if not
+  /// Largest p of the sign flips within the level, the level itself for the t tests; 0 if not
   /// computed.
   double attainable = 0.0;
   double estimate = 0.0;  ///< mean over participants: accuracy, or difference of accuracies
-  double low = 0.0;       ///< its 95 % t interval
+  double low = 0.0;       ///< its 95 % t interval, period-adjusted if the test is
   double high = 0.0;
 
   [[nodiscard]] double width() const noexcept { return high - low; }

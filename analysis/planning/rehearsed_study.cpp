@@ -5,6 +5,7 @@
 #include "protocols/simulation/felt_decision.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -54,7 +55,7 @@ void require_answers(const design::Study& study, const simulation::SubjectModel&
       subject.source, subject.explore_s, study.trials.explore_limit_s)));
 }
 
-analysis::SessionOutcome completed_session(int number) {
+analysis::SessionOutcome completed_session(int number, int order_block) {
   analysis::SessionOutcome session;
   session.row.session = number;
   session.row.participant = participant_name(number);
@@ -62,6 +63,7 @@ analysis::SessionOutcome completed_session(int number) {
   session.row.state = store::SessionState::completed;
   session.row.simulated = true;
   session.counted = true;
+  session.order_block = order_block;
   return session;
 }
 
@@ -81,6 +83,12 @@ analysis::TrialOutcome answered_trial(int number, const design::Presentation& pr
   trial.response = schedule.layout[position];
   trial.right = trial.stimulus.class_index;
   return trial;
+}
+
+/// Another picture than that at a position, each equally likely.
+int another_position(int position, std::size_t pictures, RandomStream& random) {
+  const auto further = 1 + random.below(pictures - 1);
+  return static_cast<int>((static_cast<std::uint64_t>(position) + further) % pictures);
 }
 
 }  // namespace
@@ -137,10 +145,11 @@ std::string_view name_of(Hypothesis hypothesis) {
 
 RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::SubjectModel& subject,
                                const PrimaryTest& test, const Feelings& feelings,
-                               int most_participants)
+                               int most_participants, double first_half_loss)
     : subject_(subject),
       test_(test),
       feelings_(feelings),
+      first_half_loss_(first_half_loss),
       of_method_(stimuli_of_method(study, test.first)),
       empty_(nobody_yet(study)) {
   require_answers(study, subject);
@@ -151,14 +160,51 @@ RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::Sub
     for (const int class_index : planned.schedule.layout) {
       planned.pictures.push_back(study.classes[class_index].label);
     }
+    planned.scored = static_cast<int>(std::ranges::count(planned.schedule.presentations,
+                                                         design::PresentationKind::scored,
+                                                         &design::Presentation::kind));
+    planned.order_block = design::order_block_of(study, key.stations, number);
   }
+  if (!test_.margin) return;
+  const double accuracy = accuracy_if_alike();
+  if (accuracy <= *test_.margin) {
+    throw UsageError(fmt::format(
+        "a margin of {:.4g} points is not less than the accuracy of methods that are alike "
+        "({:.1f} %), so that nothing is worse by it; register a smaller margin",
+        100.0 * *test_.margin, 100.0 * accuracy));
+  }
+  margin_loss_ = *test_.margin / accuracy;
+}
+
+double RehearsedStudy::accuracy_if_alike() const {
+  constexpr int kParticipants = 400;
+  const auto size = std::min(static_cast<int>(schedules_.size()), kParticipants);
+  analysis::Proportion right;
+  for (int made = 0; made < kParticipants; made += size) {
+    RandomStream seeds(0, "power: methods alike", static_cast<std::uint64_t>(made));
+    for (const analysis::TrialOutcome& trial :
+         outcomes(size, Hypothesis::population, seeds.bits()).trials) {
+      if (trial.stimulus.method != test_.first) continue;
+      ++right.n;
+      if (trial.correct()) ++right.correct;
+    }
+  }
+  return right.share().value_or(0.0);
+}
+
+double RehearsedStudy::loss_of(const PlannedSchedule& planned, int place, int method,
+                               Hypothesis hypothesis) const {
+  const double early = 2 * place < planned.scored ? first_half_loss_ : 0.0;
+  const bool is_worse = hypothesis == Hypothesis::null && method == test_.first;
+  return 1.0 - (1.0 - early) * (1.0 - (is_worse ? margin_loss_ : 0.0));
 }
 
 design::StimulusIndex RehearsedStudy::felt_stimulus(const design::StimulusIndex& presented,
                                                     Hypothesis hypothesis,
                                                     std::uint64_t draw) const {
-  if (hypothesis == Hypothesis::population) return presented;
-  if (test_.estimand == design::Estimand::mean_accuracy) return of_method_[draw % of_method_.size()];
+  if (hypothesis == Hypothesis::population && !test_.margin) return presented;
+  if (test_.estimand == design::Estimand::mean_accuracy)
+    return of_method_[draw % of_method_.size()];
   design::StimulusIndex felt = presented;
   if (felt.method == test_.first || felt.method == test_.second) {
     felt.method = draw % 2 == 0 ? test_.first : test_.second;
@@ -168,24 +214,36 @@ design::StimulusIndex RehearsedStudy::felt_stimulus(const design::StimulusIndex&
 
 void RehearsedStudy::add_participant(int number, const Answering& answering,
                                      analysis::Outcomes& outcomes) const {
-  const auto& [schedule, pictures] = schedules_[static_cast<std::size_t>(number) - 1];
+  const PlannedSchedule& planned = schedules_[static_cast<std::size_t>(number) - 1];
+  const design::Schedule& schedule = planned.schedule;
   const simulation::Individual individual(subject_, answering.study_seed, number);
   const simulation::FeltDecision decision(individual, answering.knowledge);
   const simulation::SeenPictures seen =
-      simulation::see(pictures, subject_, individual, answering.knowledge);
+      simulation::see(planned.pictures, subject_, individual, answering.knowledge);
   // One stream for each participant: making a stream takes longer than the rest of a trial.
   RandomStream draws(answering.study_seed, "power: feelings", static_cast<std::uint64_t>(number));
+  std::optional<RandomStream> losses;
+  if (first_half_loss_ + margin_loss_ > 0.0) {
+    losses.emplace(answering.study_seed, "power: losses", static_cast<std::uint64_t>(number));
+  }
   FeltTrial trial{answering.study_seed, number, 0, 0};
+  int place = -1;
   for (const design::Presentation& presentation : schedule.presentations) {
     ++trial.nth;
     trial.draw = draws.bits();
     const std::uint64_t instead = draws.bits();
     if (presentation.kind != design::PresentationKind::scored) continue;
+    ++place;
     const design::StimulusIndex felt =
         felt_stimulus(presentation.stimulus, answering.hypothesis, instead);
     RandomStream random = simulation::stream_of_trial(trial.study_seed, simulation::kAnswerPurpose,
                                                       trial.participant, trial.nth);
-    const int position = decision.answer(feelings_.felt(felt, trial), seen, random).position;
+    int position = decision.answer(feelings_.felt(felt, trial), seen, random).position;
+    const double loss = loss_of(planned, place, presentation.stimulus.method, answering.hypothesis);
+    const bool is_right = schedule.layout[position] == presentation.stimulus.class_index;
+    if (loss > 0.0 && is_right && losses->uniform() < loss) {
+      position = another_position(position, schedule.layout.size(), *losses);
+    }
     outcomes.trials.push_back(answered_trial(number, presentation, schedule, position));
   }
 }
@@ -197,7 +255,8 @@ analysis::Outcomes RehearsedStudy::outcomes(int participants, Hypothesis hypothe
       feelings_.knowledge(study_seed);
   const Answering answering{*knowledge, hypothesis, study_seed};
   for (int number = 1; number <= participants; ++number) {
-    outcomes.sessions.push_back(completed_session(number));
+    outcomes.sessions.push_back(
+        completed_session(number, schedules_[static_cast<std::size_t>(number) - 1].order_block));
     add_participant(number, answering, outcomes);
   }
   return outcomes;

@@ -88,7 +88,9 @@ class ServoFeelings final : public Feelings {
   const simulation::SubjectModel& subject_;
 };
 
-/// The population that a study is simulated with.
+/// The population that a study is simulated with. If the test has a margin, methods are alike in
+/// the population too (as under `null` without one), and under `null` the first is worse by the
+/// margin: people miss some of their right answers with it.
 enum class Hypothesis {
   population,  ///< people as in the subject file
   /// The same people, with no effect to find. For a test against chance, they feel a random
@@ -103,14 +105,17 @@ enum class Hypothesis {
 class RehearsedStudy {
  public:
   /// \param most_participants  of any simulated study, >= 1: the number of schedules that are made
+  /// \param first_half_loss  share of right answers that people miss in the first half of their
+  ///   scored trials, as an effect of learning: 0 .. 1
   /// \throws StudyError if the study's orders are impossible, or if participants explore so long
-  ///   that they would never answer
+  ///   that they would never answer; UsageError if the margin is more than the methods' accuracy
   RehearsedStudy(const design::Study& study, const simulation::SubjectModel& subject,
-                 const PrimaryTest& test, const Feelings& feelings, int most_participants);
+                 const PrimaryTest& test, const Feelings& feelings, int most_participants,
+                 double first_half_loss = 0.0);
 
   /// Outcomes of participants with the numbers and enrolment numbers 1 .. `participants`. With
-  /// `population` and ServoFeelings, the scored trials are exactly those of
-  /// `simulate --seed study_seed`; times, evidence and unscored trials are left out.
+  /// `population` and ServoFeelings, without margin and loss, the scored trials are exactly those
+  /// of `simulate --seed study_seed`; times, evidence and unscored trials are left out.
   [[nodiscard]] analysis::Outcomes outcomes(int participants, Hypothesis hypothesis,
                                             std::uint64_t study_seed) const;
 
@@ -119,6 +124,8 @@ class RehearsedStudy {
   struct PlannedSchedule {
     design::Schedule schedule;
     std::vector<std::string> pictures;  ///< labels, by position
+    int scored = 0;                     ///< presentations
+    int order_block = -1;               ///< analysis::SessionOutcome
   };
   struct Answering;
 
@@ -128,9 +135,18 @@ class RehearsedStudy {
                                                     Hypothesis hypothesis,
                                                     std::uint64_t draw) const;
 
+  /// The probability of missing a right answer.
+  /// \param place  among the participant's scored presentations, from 0
+  [[nodiscard]] double loss_of(const PlannedSchedule& planned, int place, int method,
+                               Hypothesis hypothesis) const;
+  /// Accuracy with the test's first method if both are alike.
+  [[nodiscard]] double accuracy_if_alike() const;
+
   const simulation::SubjectModel& subject_;
   PrimaryTest test_;
   const Feelings& feelings_;
+  double first_half_loss_;
+  double margin_loss_ = 0.0;  ///< share of right answers missed with the first method, if worse
   std::vector<PlannedSchedule> schedules_;
   std::vector<design::StimulusIndex> of_method_;  ///< every stimulus of the test's first method
   analysis::Outcomes empty_;

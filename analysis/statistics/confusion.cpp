@@ -136,6 +136,27 @@ Proportion ConfusionMatrix::accuracy() const noexcept {
   return all;
 }
 
+std::optional<double> unbiased_hit_rate(const ConfusionMatrix& confusion, int class_index) {
+  const int presented = confusion.presented(class_index);
+  const int right = confusion.count(class_index, class_index);
+  if (presented == 0) return std::nullopt;
+  if (right == 0) return 0.0;
+  return static_cast<double>(right) / presented * right / confusion.answered(class_index);
+}
+
+std::optional<double> unbiased_hit_rate_by_chance(const ConfusionMatrix& confusion,
+                                                  int class_index) {
+  const double presented = confusion.presented(class_index);
+  const double answered = confusion.answered(class_index);
+  const double n = confusion.accuracy().n;
+  if (presented == 0.0) return std::nullopt;
+  if (answered == 0.0) return 0.0;
+  // Right answers are hypergeometric: this is their mean square over both margins.
+  const double mean = presented * answered / n;
+  const double variance = n > 1.0 ? mean * (n - presented) / n * (n - answered) / (n - 1.0) : 0.0;
+  return (mean * mean + variance) / (presented * answered);
+}
+
 std::optional<double> percentage(int part, int whole) noexcept {
   if (whole == 0) return std::nullopt;
   return 100.0 * part / whole;

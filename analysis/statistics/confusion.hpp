@@ -54,6 +54,19 @@ class ConfusionMatrix {
 /// \return 100 * part / whole, or nothing if the whole is 0
 [[nodiscard]] std::optional<double> percentage(int part, int whole) noexcept;
 
+/// The share of a class's presentations that were answered right, times the share of its answers
+/// that were right. Whoever answers one class every time gets no more than the share of its
+/// presentations. Source: docs/statistics.md, "Unbiased hit rate"; Wagner 1993.
+///
+/// \return 0 if the class was never answered right; nothing if it was never presented
+[[nodiscard]] std::optional<double> unbiased_hit_rate(const ConfusionMatrix& confusion,
+                                                      int class_index);
+
+/// The mean of unbiased_hit_rate over all orders of the same presentations, with the same answers.
+/// \return nothing if the class was never presented
+[[nodiscard]] std::optional<double> unbiased_hit_rate_by_chance(const ConfusionMatrix& confusion,
+                                                                int class_index);
+
 /// The one-to-one matching of classes and answers that the most trials agree with.
 struct LabelMatching {
   Proportion accuracy;         ///< of all trials, those with the matched answer

@@ -11,9 +11,9 @@ namespace touchtrial::analysis {
 
 /// How much of alpha may be spent up to a share of the information.
 enum class AlphaSpending {
-  obrien_fleming,  ///< little at first: 2 (1 - Phi(z / sqrt(share))), z the quantile of 1 - alpha /
-                   ///< 2
-  pocock,          ///< about as much at every look: alpha log(1 + (e - 1) share)
+  /// Little at first: 2 (1 - Phi(z / sqrt(share))), with z the quantile of 1 - alpha / 2.
+  obrien_fleming,
+  pocock,  ///< about as much at every look: alpha log(1 + (e - 1) share)
 };
 
 /// The nominal level at each look: p of the data so far must not exceed it. Statistics of all looks

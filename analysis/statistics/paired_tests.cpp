@@ -23,6 +23,9 @@ namespace {
 /// rounding.
 constexpr double kTie = 1e-9;
 
+/// Random sign patterns where there are too many to count all.
+constexpr std::size_t kSampledPatterns = 99'999;
+
 /// The sums of all 2^n sign patterns, ascending.
 std::vector<double> sorted_sums(std::span<const double> differences) {
   std::vector<double> sums{0.0};
@@ -55,10 +58,9 @@ double exact_share_at_least(std::span<const double> differences, double threshol
 
 /// The sums of random sign patterns.
 std::vector<double> sampled_sums(std::span<const double> differences) {
-  constexpr std::size_t kPatterns = 99'999;
   constexpr std::array<double, 2> kSign{-1.0, 1.0};
   RandomStream random(0, "sign flips");
-  std::vector<double> sums(kPatterns);
+  std::vector<double> sums(kSampledPatterns);
   for (double& sum : sums) {
     std::uint64_t signs = 0;
     for (std::size_t k = 0; k < differences.size(); ++k, signs >>= 1U) {
@@ -234,6 +236,17 @@ std::optional<double> sign_flip_p(std::span<const double> differences, Sides sid
   const double threshold = std::abs(sum) - kTie * size;
   if (threshold <= 0.0) return 1.0;
   return two_sided_p(differences, threshold);
+}
+
+double sign_flip_least(std::span<const double> differences, Sides sides) {
+  const double tie = kTie * total_size(differences);
+  const auto free = std::ranges::count_if(
+      differences, [tie](double difference) { return std::abs(difference) > tie; });
+  if (free == 0) return 1.0;
+  if (differences.size() > kExactSignFlips) {
+    return p_of_draws(0.0, static_cast<double>(kSampledPatterns));
+  }
+  return std::ldexp(sides == Sides::one ? 1.0 : 2.0, -static_cast<int>(free));
 }
 
 double sign_flip_attainable(std::span<const double> differences, double level) {

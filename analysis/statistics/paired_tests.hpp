@@ -61,6 +61,10 @@ inline constexpr int kExactSignFlips = 32;
 [[nodiscard]] std::optional<double> sign_flip_p(std::span<const double> differences,
                                                 Sides sides = Sides::two);
 
+/// The least p that sign_flip_p could give for these differences, whatever their signs.
+/// \return 1 without a difference that is not 0
+[[nodiscard]] double sign_flip_least(std::span<const double> differences, Sides sides = Sides::two);
+
 /// The largest p within the level that these differences could have, whatever their signs: the rate
 /// at which the test rejects if the methods do not differ. 0 if it cannot reject.
 /// Cost: about thirty times that of sign_flip_p.

@@ -44,8 +44,7 @@ struct Verification {
 /// be verified.
 /// \param key,pack  null: the checks that need it are not made
 /// \param head  a hash, or its first digits, that was once the end of the file's chain and must
-/// still
-///   be on the chain; empty: none
+///   still be on the chain; empty: none
 [[nodiscard]] Verification verify_study(const store::StudyStore& store, const design::StudyKey* key,
                                         const engine::Pack* pack, const std::string& head = {});
 

@@ -4,6 +4,7 @@
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "protocols/design/key_protection.hpp"
 #include "protocols/session/commitment.hpp"
 
 #include <string>
@@ -18,6 +19,17 @@ namespace fs = std::filesystem;
 
 std::filesystem::path station_file_of(const RunOptions& options, const design::PackPlace& place) {
   return options.station_file.empty() ? place.station(options.station) : options.station_file;
+}
+
+/// A protected file of another station than the database's is refused before its passphrase is
+/// asked for.
+design::StationKey station_key_at(const RunOptions& options, const fs::path& file) {
+  if (!design::is_protected(file) || !is_there(options.database)) {
+    return design::load_station_key(file);
+  }
+  const store::StudyStore store =
+      store::StudyStore::open(options.database, store::StudyStore::Access::read_only);
+  return station_key_for(store.commitment(), options.database, file);
 }
 
 void require_unchanged(const design::StationKey& key, const design::Study& study) {
@@ -109,7 +121,7 @@ RunStudy run_study_for(const RunOptions& options) {
         "file here from the investigator's machine, where `touchtrial prepare` writes "
         "it again");
   }
-  design::StationKey key = design::load_station_key(file);
+  design::StationKey key = station_key_at(options, file);
   require_unchanged(key, study);
   key.study.folder = study.folder;
   if (key.simulated && !options.is_simulated()) {

@@ -20,6 +20,7 @@ constexpr std::uintmax_t kMaxSecretFileBytes = std::uintmax_t{129} << 20U;
 
 /// What stands in a protected file.
 struct Envelope {
+  PublicKey signer{};
   Salt salt{};
   PassphraseCost cost;
   Bytes box;
@@ -41,11 +42,12 @@ Passphrases& passphrases() {
   throw FileError(one_line(path.string() + ": " + what));
 }
 
-/// The first two lines, which the box is bound to.
+/// The first three lines, which the box is bound to.
 std::string head_of(const Envelope& envelope) {
-  return std::string(kProtectedFormat) + " " + std::to_string(kProtectedVersion) + "\nargon2id " +
-         to_hex(ByteView(envelope.salt)) + " " + std::to_string(envelope.cost.passes) + " " +
-         std::to_string(envelope.cost.memory_bytes) + "\n";
+  return std::string(kProtectedFormat) + " " + std::to_string(kProtectedVersion) + "\nsigns " +
+         to_hex(ByteView(envelope.signer)) + "\nargon2id " + to_hex(ByteView(envelope.salt)) + " " +
+         std::to_string(envelope.cost.passes) + " " + std::to_string(envelope.cost.memory_bytes) +
+         "\n";
 }
 
 std::string text_of_envelope(const Envelope& envelope) {
@@ -65,29 +67,25 @@ std::vector<std::string> words_of(std::string_view text) {
   return words;
 }
 
-bool is_within(const PassphraseCost& cost) {
-  const PassphraseCost& least = kLeastPassphraseCost;
-  const PassphraseCost& most = kMostPassphraseCost;
-  return cost.passes >= least.passes && cost.passes <= most.passes &&
-         cost.memory_bytes >= least.memory_bytes && cost.memory_bytes <= most.memory_bytes;
-}
-
 /// \return nothing unless the words are those of an envelope
 std::optional<Envelope> envelope_of(const std::vector<std::string>& words) {
-  constexpr std::size_t kWords = 9;  // format, version, argon2id with three numbers, box, hash, end
+  // Format, version, who signs in two words, argon2id with three numbers, box, hash, end.
+  constexpr std::size_t kWords = 11;
   if (words.size() != kWords) return std::nullopt;
-  const auto salt = from_hex(words[3]);
-  const auto passes = number_in<std::uint64_t>(words[4]);
-  const auto memory = number_in<std::uint64_t>(words[5]);
-  auto box = from_hex(words[6]);
+  const auto signer = digest_from_hex(words[3]);
+  const auto salt = from_hex(words[5]);
+  const auto passes = number_in<std::uint64_t>(words[6]);
+  const auto memory = number_in<std::uint64_t>(words[7]);
+  auto box = from_hex(words[8]);
   Envelope envelope;
-  if (!salt || salt->size() != envelope.salt.size() || !passes || !memory || !box) {
+  if (!signer || !salt || salt->size() != envelope.salt.size() || !passes || !memory || !box) {
     return std::nullopt;
   }
+  envelope.signer = *signer;
   std::ranges::copy(*salt, envelope.salt.begin());
   envelope.cost = {*passes, *memory};
   envelope.box = *std::move(box);
-  if (!is_within(envelope.cost)) return std::nullopt;
+  if (!is_in_range(envelope.cost)) return std::nullopt;
   return envelope;
 }
 
@@ -106,11 +104,11 @@ std::optional<Envelope> envelope_in(const std::string& text, const std::filesyst
               "backup");
 }
 
-Envelope sealed_under(const SecretKey& key, const Salt& salt, const PassphraseCost& cost,
-                      const std::string& text) {
-  Envelope envelope{.salt = salt, .cost = cost, .box = {}};
+/// The text of a protected file.
+/// \param envelope  without its box
+std::string sealed_text(Envelope envelope, const SecretKey& key, const std::string& text) {
   envelope.box = seal(key, head_of(envelope), bytes_of(text));
-  return envelope;
+  return text_of_envelope(envelope);
 }
 
 /// An envelope's key and the text in it.
@@ -168,8 +166,18 @@ void ask_passphrases_with(AskPassphrase ask) {
   known.keys.clear();
 }
 
+std::optional<PublicKey> signer_in_clear(const std::string& text,
+                                         const std::filesystem::path& source) {
+  const std::optional<Envelope> envelope = envelope_in(text, source);
+  return envelope ? std::optional(envelope->signer) : std::nullopt;
+}
+
+std::optional<PublicKey> signer_in_clear(const std::filesystem::path& file) {
+  return signer_in_clear(text_of_file(file), file);
+}
+
 bool is_protected(const std::filesystem::path& file) {
-  return envelope_in(text_of_file(file), file).has_value();
+  return signer_in_clear(file).has_value();
 }
 
 std::string read_secret_text(const std::filesystem::path& path) {
@@ -179,7 +187,8 @@ std::string read_secret_text(const std::filesystem::path& path) {
   return envelope ? opened_envelope(*envelope, path).text : text;
 }
 
-void save_secret_text(const std::filesystem::path& path, const std::string& text) {
+void save_secret_text(const std::filesystem::path& path, const std::string& text,
+                      const PublicKey& signer) {
   const auto envelope =
       is_there(path) ? envelope_in(text_of_file(path), path) : std::optional<Envelope>();
   if (!envelope) {
@@ -187,12 +196,13 @@ void save_secret_text(const std::filesystem::path& path, const std::string& text
     return;
   }
   const SecretKey key = opened_envelope(*envelope, path).key;
-  replace_file(path, text_of_envelope(sealed_under(key, envelope->salt, envelope->cost, text)),
-               FileMode::owner_only);
+  const Envelope anew{.signer = signer, .salt = envelope->salt, .cost = envelope->cost, .box = {}};
+  replace_file(path, sealed_text(anew, key, text), FileMode::owner_only);
 }
 
 void write_secret_text(const std::filesystem::path& path, const std::string& text,
-                       const std::optional<std::string>& passphrase, const PassphraseCost& cost) {
+                       const PublicKey& signer, const std::optional<std::string>& passphrase,
+                       const PassphraseCost& cost) {
   if (!passphrase) {
     replace_file(path, text, FileMode::owner_only);
     return;
@@ -203,7 +213,8 @@ void write_secret_text(const std::filesystem::path& path, const std::string& tex
   }
   const Salt salt = fresh_salt();
   const SecretKey key = key_of_passphrase(*passphrase, salt, cost);
-  replace_file(path, text_of_envelope(sealed_under(key, salt, cost, text)), FileMode::owner_only);
+  const Envelope anew{.signer = signer, .salt = salt, .cost = cost, .box = {}};
+  replace_file(path, sealed_text(anew, key, text), FileMode::owner_only);
   Passphrases& known = passphrases();
   const std::lock_guard lock(known.mutex);
   known.keys.insert_or_assign(salt, key);

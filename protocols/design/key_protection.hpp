@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/passphrase.hpp"
+#include "core/public_keys.hpp"
 #include "protocols/design/study_key.hpp"
 
 #include <filesystem>
@@ -27,6 +28,16 @@ void ask_passphrases_with(AskPassphrase ask);
 
 /// The fewest bytes of a new passphrase.
 inline constexpr std::size_t kShortestPassphrase = 8;
+
+/// Who signs with a protected file: the public half that its clear part names. A file can therefore
+/// be told from another's before anybody is asked for a passphrase.
+/// \return nothing if no passphrase protects the file
+/// \throws FileError if it is missing or cannot be read, or is protected and damaged
+[[nodiscard]] std::optional<PublicKey> signer_in_clear(const std::filesystem::path& file);
+/// The same of a file's text.
+/// \param source  the file's name, for errors
+[[nodiscard]] std::optional<PublicKey> signer_in_clear(const std::string& text,
+                                                       const std::filesystem::path& source);
 
 /// Whether a passphrase protects the file.
 /// \throws FileError if it is missing or cannot be read, or is protected and damaged
@@ -54,14 +65,18 @@ void save_study_key(const std::filesystem::path& path, const StudyKey& key,
 
 /// Writes a text durably with mode 0600. Where it replaces a protected file, the text is protected
 /// by the same passphrase.
+/// \param signer  who signs with the file
 /// \throws FileError as read_secret_text does, or if the file cannot be written
-void save_secret_text(const std::filesystem::path& path, const std::string& text);
+void save_secret_text(const std::filesystem::path& path, const std::string& text,
+                      const PublicKey& signer);
 
 /// Writes a text durably with mode 0600, under this passphrase, or in clear without one.
+/// \param signer  as for save_secret_text
 /// \throws UsageError if the passphrase is too short
 /// \throws FileError if the file cannot be written
 void write_secret_text(const std::filesystem::path& path, const std::string& text,
-                       const std::optional<std::string>& passphrase, const PassphraseCost& cost);
+                       const PublicKey& signer, const std::optional<std::string>& passphrase,
+                       const PassphraseCost& cost);
 
 ///@}
 

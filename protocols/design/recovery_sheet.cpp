@@ -35,15 +35,6 @@ std::string check_digits(int number, std::string_view content) {
       .substr(0, kGroupDigits);
 }
 
-std::string grouped(std::string_view digits) {
-  std::string text;
-  for (std::size_t i = 0; i < digits.size(); i += kGroupDigits) {
-    if (i > 0) text += ' ';
-    text += digits.substr(i, kGroupDigits);
-  }
-  return text;
-}
-
 std::vector<std::string> words_in(std::string_view text) {
   std::vector<std::string> words;
   bool begins = true;
@@ -77,7 +68,7 @@ std::pair<std::string, std::string> digits_and_check(const std::vector<std::stri
   std::string digits;
   for (const std::string& word : words) digits += as_digits(word);
   const std::size_t end = digits.size() - std::min(digits.size(), kGroupDigits);
-  return {grouped(digits.substr(0, end)), digits.substr(end)};
+  return {in_fours(digits.substr(0, end)), digits.substr(end)};
 }
 
 std::pair<std::string, std::string> words_and_check(const std::vector<std::string>& words) {
@@ -124,10 +115,10 @@ std::vector<std::string> recovery_lines(const StudyKey& key) {
   const std::string master = to_hex(key.master);
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < master.size(); i += kLineDigits) {
-    lines.push_back(grouped(std::string_view(master).substr(i, kLineDigits)));
+    lines.push_back(in_fours(std::string_view(master).substr(i, kLineDigits)));
   }
   lines.emplace_back();
-  lines.push_back(grouped(to_hex(key.seal).substr(0, kLineDigits)));
+  lines.push_back(in_fours(to_hex(key.seal).substr(0, kLineDigits)));
   for (const Station& station : key.stations) {
     for (const EnrolmentRange& range : station.ranges) {
       lines.push_back(station.name + " " + std::to_string(range.first) + "-" +
@@ -140,7 +131,7 @@ std::vector<std::string> recovery_lines(const StudyKey& key) {
                      " ranges of enrolment numbers, too many for a sheet; copy the key instead");
   }
   lines[kIdentityLine - 1] = std::string(kGroupDigits - std::min(kGroupDigits, count.size()), '0') +
-                             count + " " + grouped(key.study_id.substr(0, kLineDigits));
+                             count + " " + in_fours(key.study_id.substr(0, kLineDigits));
   int number = 0;
   for (std::string& line : lines) {
     ++number;
@@ -159,6 +150,9 @@ bool RecoveryReader::take(std::string_view text) {
   const auto [content, check] =
       *number <= kSealLine ? digits_and_check(words) : words_and_check(words);
   if (check != check_digits(*number, content)) refuse_line(*number);
+  const std::size_t counted_digits = *number == kIdentityLine ? kGroupDigits : 0;
+  const std::size_t expected = kLineDigits + counted_digits;
+  if (*number <= kSealLine && without_spaces(content).size() != expected) refuse_line(*number);
   if (*number > kSealLine && !station_line_in(content)) refuse_line(*number);
   lines_[*number] = content;
   return true;

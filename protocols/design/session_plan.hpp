@@ -92,6 +92,7 @@ enum class Estimand {
 enum class RegisteredTest {
   t,          ///< Student's t test over participants
   sign_flip,  ///< exact flips of the signs of participants' differences
+  crossover,  ///< period-adjusted t test of two methods, one after the other
 };
 
 /// How the error rate is spent over registered looks (Lan, DeMets 1983).
@@ -99,7 +100,7 @@ enum class Spending { obrien_fleming, pocock };
 
 /// "mean-accuracy" or "difference"
 [[nodiscard]] std::string_view name_of(Estimand estimand);
-/// "t" or "sign-flip"
+/// "t", "sign-flip" or "crossover"
 [[nodiscard]] std::string_view name_of(RegisteredTest test);
 /// "obrien-fleming" or "pocock"
 [[nodiscard]] std::string_view name_of(Spending spending);
@@ -121,7 +122,9 @@ struct RegisteredAnalysis {
   bool one_sided = true;                    ///< against larger values
   double alpha = 0.05;                      ///< in (0, 0.5]
   std::optional<double> smallest_effect{};  ///< worth having: an accuracy, or a difference
-  std::vector<int> looks;                   ///< numbers of participants at interim looks, ascending
+  /// Of non-inferiority: by how much the first method may be worse and still be as good; in (0, 1].
+  std::optional<double> margin{};
+  std::vector<int> looks;  ///< numbers of participants at interim looks, ascending
   Spending spending = Spending::obrien_fleming;
   std::optional<ExclusionRules> exclusion_rules{};
 

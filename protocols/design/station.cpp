@@ -93,6 +93,16 @@ ScheduleDraw draw_for(const Study& study, const Station& station, int enrolment,
           .method_order = row_of(secret, method_orders(study), *place)};
 }
 
+int order_block_of(const Study& study, std::span<const Station> stations, int enrolment) {
+  const int rows = method_orders(study);
+  int before = 0;  // blocks of earlier stations
+  for (const Station& station : stations) {
+    if (const auto place = station.place_of(enrolment)) return before + *place / rows;
+    before += station.size() / rows + 1;
+  }
+  return -1;
+}
+
 std::vector<Station> stations_named(std::span<const std::string> names) {
   if (names.empty() || names.size() > kMostStations) {
     throw UsageError("a plan is for 1 to " + std::to_string(kMostStations) + " stations");

@@ -55,6 +55,12 @@ enum class Draws { people, rehearsal };
 /// The number of different orders of methods among which participants are balanced.
 [[nodiscard]] int method_orders(const Study& study);
 
+/// The block in which an enrolment number's order of methods was dealt. Numbers of the same block
+/// have different orders, each equally likely; blocks of all stations have different numbers, >= 0.
+/// \return -1 if the number is no station's
+[[nodiscard]] int order_block_of(const Study& study, std::span<const Station> stations,
+                                 int enrolment);
+
 /// Stations without numbers and secrets.
 /// \param names  1 to kMostStations
 /// \throws UsageError if there are too few or too many names, a name is not 1 to 32 of

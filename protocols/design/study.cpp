@@ -141,7 +141,7 @@ Study read_study(const JsonValue& place) {
   if (const auto member = root.find("practice")) study.practice = read_practice(*member);
   if (const auto member = root.find("session")) study.session = read_session(*member);
   if (const auto member = root.find("registration")) {
-    study.registration = read_registration(*member);
+    study.registration = read_registration(*member, usual_test_of(study));
   }
   if (const auto member = root.find("blinding")) static_cast<void>(member->choice(kBlindingNames));
   if (const auto member = root.find("seed")) {

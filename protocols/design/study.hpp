@@ -82,6 +82,10 @@ struct Study {
   [[nodiscard]] int scored_trials() const;
 };
 
+/// The usual test of a difference of methods: crossover if two methods are presented one after the
+/// other, else sign flips.
+[[nodiscard]] RegisteredTest usual_test_of(const Study& study);
+
 /// Reads a study file strictly: refuses unknown keys, wrong types and impossible values.
 /// \throws StudyError with the file, the JSON pointer, and the nearest known key or value
 [[nodiscard]] Study load_study(const std::filesystem::path& path);

@@ -123,7 +123,8 @@ ScheduleDraw StudyKey::draw_of(int enrolment, Draws draws) const {
   const Station* const own = station_of(stations, enrolment);
   if (own == nullptr) {
     throw UsageError("study " + study.name + ": enrolment number " + std::to_string(enrolment) +
-                     " is no station's; hand out more with `touchtrial plan --extend`");
+                     " is no station's; hand out more with `touchtrial plan --extend`, as many as "
+                     "then if the key is from before it, or from an older recovery sheet");
   }
   return draw_for(study, *own, enrolment, draws);
 }

@@ -238,10 +238,11 @@ json whole_document(const std::string& text, const std::filesystem::path& path, 
   return document;
 }
 
-/// Reads a file of secrets, and lets `made` make the key from it.
+/// Lets `made` make the key from the text of a file of secrets.
 template <typename Make>
-auto loaded(const std::filesystem::path& path, const Kind& kind, Make made) {
-  const json document = whole_document(read_secret_text(path), path, kind);
+auto loaded(const std::filesystem::path& path, const std::string& text, const Kind& kind,
+            Make made) {
+  const json document = whole_document(text, path, kind);
   try {
     return made(document, path);
   } catch (const json::exception&) {
@@ -256,24 +257,24 @@ auto loaded(const std::filesystem::path& path, const Kind& kind, Make made) {
 }  // namespace
 
 void save_study_key(const std::filesystem::path& path, const StudyKey& key) {
-  save_secret_text(path, text_of_key(path, key));
+  save_secret_text(path, text_of_key(path, key), key.signer().public_half());
 }
 
 void save_study_key(const std::filesystem::path& path, const StudyKey& key,
                     const std::string& passphrase, const PassphraseCost& cost) {
-  write_secret_text(path, text_of_key(path, key), passphrase, cost);
+  write_secret_text(path, text_of_key(path, key), key.signer().public_half(), passphrase, cost);
 }
 
 void save_station_key(const std::filesystem::path& path, const StationKey& key) {
-  save_secret_text(path, text_of_key(path, key));
+  save_secret_text(path, text_of_key(path, key), key.signer().public_half());
 }
 
 StudyKey load_study_key(const std::filesystem::path& path) {
-  return loaded(path, kKey, key_of);
+  return loaded(path, read_secret_text(path), kKey, key_of);
 }
 
 StationKey load_station_key(const std::filesystem::path& path) {
-  return loaded(path, kStation, station_of_document);
+  return loaded(path, read_secret_text(path), kStation, station_of_document);
 }
 
 void protect(const std::filesystem::path& file, const std::optional<std::string>& passphrase,
@@ -281,8 +282,9 @@ void protect(const std::filesystem::path& file, const std::optional<std::string>
   const std::string text = read_secret_text(file);
   const bool is_station =
       text.find("\"format\": \"" + std::string(kStation.format) + "\"") != std::string::npos;
-  static_cast<void>(whole_document(text, file, is_station ? kStation : kKey));
-  write_secret_text(file, text, passphrase, cost);
+  const Signer signer = is_station ? loaded(file, text, kStation, station_of_document).signer()
+                                   : loaded(file, text, kKey, key_of).signer();
+  write_secret_text(file, text, signer.public_half(), passphrase, cost);
 }
 
 }  // namespace touchtrial::design

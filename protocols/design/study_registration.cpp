@@ -4,6 +4,7 @@
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 namespace touchtrial::design {
@@ -51,21 +52,23 @@ std::vector<int> read_looks(const JsonValue& place) {
   return looks;
 }
 
-/// The usual test of an estimand.
-RegisteredAnalysis usual_analysis(Estimand estimand) {
+constexpr std::string_view kAnalysisKeys[] = {"methods",         "test",   "sides", "alpha",
+                                              "smallest_effect", "margin", "looks", "spending",
+                                              "exclusion_rules"};
+
+/// The usual test of an estimand. Flips of signs are about 0, so a margin needs a t test.
+RegisteredAnalysis usual_analysis(Estimand estimand, bool has_margin, RegisteredTest usual_test) {
   RegisteredAnalysis analysis;
   analysis.estimand = estimand;
-  if (estimand == Estimand::difference) {
-    analysis.test = RegisteredTest::sign_flip;
-    analysis.one_sided = false;
-  }
+  if (estimand == Estimand::mean_accuracy) return analysis;
+  analysis.test =
+      has_margin && usual_test == RegisteredTest::sign_flip ? RegisteredTest::t : usual_test;
+  analysis.one_sided = has_margin;
   return analysis;
 }
 
-constexpr std::string_view kAnalysisKeys[] = {
-    "methods", "test", "sides", "alpha", "smallest_effect", "looks", "spending", "exclusion_rules"};
-
-std::optional<RegisteredAnalysis> read_analysis(const JsonObject& object) {
+std::optional<RegisteredAnalysis> read_analysis(const JsonObject& object,
+                                                RegisteredTest usual_test) {
   const auto estimand = object.find("estimand");
   if (!estimand) {
     for (const std::string_view key : kAnalysisKeys) {
@@ -75,7 +78,8 @@ std::optional<RegisteredAnalysis> read_analysis(const JsonObject& object) {
     }
     return std::nullopt;
   }
-  RegisteredAnalysis analysis = usual_analysis(estimand->choice(kEstimandNames));
+  RegisteredAnalysis analysis = usual_analysis(estimand->choice(kEstimandNames),
+                                               object.find("margin").has_value(), usual_test);
   if (const auto member = object.find("methods")) analysis.methods = read_pair(*member);
   if (const auto member = object.find("test")) analysis.test = member->choice(kRegisteredTestNames);
   if (const auto member = object.find("sides")) analysis.one_sided = member->choice(kSidesNames);
@@ -84,6 +88,9 @@ std::optional<RegisteredAnalysis> read_analysis(const JsonObject& object) {
   }
   if (const auto member = object.find("smallest_effect")) {
     analysis.smallest_effect = member->number({.low = 0.0, .high = 1.0, .open_low = true});
+  }
+  if (const auto member = object.find("margin")) {
+    analysis.margin = member->number({.low = 0.0, .high = 1.0, .open_low = true});
   }
   if (const auto member = object.find("looks")) analysis.looks = read_looks(*member);
   if (const auto member = object.find("spending")) {
@@ -125,6 +132,46 @@ void check_methods(const JsonValue& file, const Study& study) {
   }
 }
 
+/// A crossover compares two periods, each of one method.
+void check_crossover(const JsonValue& file, const Study& study) {
+  const char* const place = "/registration/test";
+  if (study.presented_methods() != 2) {
+    file.refuse_below(place, "adjusts two methods for two periods, but the study presents " +
+                                 std::to_string(study.presented_methods()) +
+                                 "; use \"sign-flip\" or \"t\"");
+  }
+  if (study.trials.blocks == Blocks::mixed) {
+    file.refuse_below(
+        place,
+        "adjusts for periods, but the trials' blocks are \"mixed\", so that there are "
+        "none; use \"sign-flip\" or \"t\"");
+  }
+}
+
+void check_margin(const JsonValue& file, const RegisteredAnalysis& analysis) {
+  if (!analysis.margin) return;
+  if (analysis.estimand != Estimand::difference) {
+    file.refuse_below("/registration/margin", "belongs to a difference of methods; remove it");
+  }
+  if (analysis.smallest_effect) {
+    file.refuse_below("/registration/margin",
+                      "is given beside \"smallest_effect\"; register one question: that the first "
+                      "method is better, or that it is as good");
+  }
+  if (!analysis.one_sided) {
+    file.refuse_below("/registration/sides",
+                      "must be \"one\" with a margin: the first method may be better");
+  }
+  if (analysis.alpha >= 0.5) {
+    file.refuse_below("/registration/alpha", "must be less than 0.5 with a margin");
+  }
+  if (analysis.test == RegisteredTest::sign_flip) {
+    file.refuse_below("/registration/test",
+                      "flips signs about 0, not about a margin; use \"crossover\" for blocks by "
+                      "method, else \"t\"");
+  }
+}
+
 void check_estimand(const JsonValue& file, const Study& study) {
   const RegisteredAnalysis& analysis = *study.registration.analysis;
   const char* const place = "/registration/estimand";
@@ -136,6 +183,7 @@ void check_estimand(const JsonValue& file, const Study& study) {
                         "\"mean-accuracy\"");
     }
     check_methods(file, study);
+    if (analysis.test == RegisteredTest::crossover) check_crossover(file, study);
     return;
   }
   if (several) {
@@ -146,9 +194,9 @@ void check_estimand(const JsonValue& file, const Study& study) {
   if (!analysis.methods.empty()) {
     file.refuse_below("/registration/methods", "belongs to a difference; remove it");
   }
-  if (analysis.test == RegisteredTest::sign_flip) {
+  if (analysis.test != RegisteredTest::t) {
     file.refuse_below("/registration/test",
-                      "flips the signs of differences, but the study compares no methods; use "
+                      "is about differences, but the study compares no methods; use "
                       "\"t\"");
   }
   const double chance = 1.0 / static_cast<double>(study.protocol->choices(study).size());
@@ -162,6 +210,12 @@ void check_estimand(const JsonValue& file, const Study& study) {
 
 }  // namespace
 
+RegisteredTest usual_test_of(const Study& study) {
+  return study.presented_methods() == 2 && study.trials.blocks == Blocks::by_method
+             ? RegisteredTest::crossover
+             : RegisteredTest::sign_flip;
+}
+
 std::string_view name_of(Estimand estimand) {
   return word_for(kEstimandNames, estimand);
 }
@@ -174,11 +228,11 @@ std::string_view name_of(Spending spending) {
   return word_for(kSpendingNames, spending);
 }
 
-Registration read_registration(const JsonValue& place) {
+Registration read_registration(const JsonValue& place, RegisteredTest usual_test) {
   const JsonObject object =
       place.object({"hypothesis", "participants", "stopping_rule", "exclusions", "primary_test",
-                    "estimand", "methods", "test", "sides", "alpha", "smallest_effect", "looks",
-                    "spending", "exclusion_rules", "safety_record_years"});
+                    "estimand", "methods", "test", "sides", "alpha", "smallest_effect", "margin",
+                    "looks", "spending", "exclusion_rules", "safety_record_years"});
   Registration registration;
   read_statement(object, "hypothesis", registration.hypothesis);
   if (const auto member = object.find("participants")) {
@@ -190,7 +244,7 @@ Registration read_registration(const JsonValue& place) {
   if (const auto member = object.find("safety_record_years")) {
     registration.safety_record_years = static_cast<int>(member->integer(0, 100));
   }
-  registration.analysis = read_analysis(object);
+  registration.analysis = read_analysis(object, usual_test);
   return registration;
 }
 
@@ -209,6 +263,7 @@ nlohmann::json to_json(const Registration& registration) {
   text["sides"] = word_for(kSidesNames, analysis.one_sided);
   text["alpha"] = analysis.alpha;
   if (analysis.smallest_effect) text["smallest_effect"] = *analysis.smallest_effect;
+  if (analysis.margin) text["margin"] = *analysis.margin;
   text["looks"] = analysis.looks;
   text["spending"] = word_for(kSpendingNames, analysis.spending);
   if (analysis.exclusion_rules) text["exclusion_rules"] = to_json(*analysis.exclusion_rules);
@@ -219,6 +274,7 @@ void check_registration(const JsonValue& file, const Study& study) {
   const Registration& registration = study.registration;
   if (!registration.analysis) return;
   check_estimand(file, study);
+  check_margin(file, *registration.analysis);
   const std::vector<int>& looks = registration.analysis->looks;
   if (!looks.empty() && looks.back() >= registration.participants) {
     file.refuse_below("/registration/looks",
@@ -229,6 +285,11 @@ void check_registration(const JsonValue& file, const Study& study) {
 }
 
 namespace {
+
+/// A hundred times the share, without the binary digits of 7.000000000000001.
+std::string per_cent_text(double share) {
+  return number_text(std::round(1e10 * share) / 1e8);
+}
 
 std::string estimand_words(const RegisteredAnalysis& analysis) {
   if (analysis.estimand == Estimand::mean_accuracy) {
@@ -241,11 +302,23 @@ std::string estimand_words(const RegisteredAnalysis& analysis) {
   return "mean over participants of the accuracy" + of;
 }
 
+std::string name_in_words(RegisteredTest test) {
+  switch (test) {
+    case RegisteredTest::sign_flip:
+      return "exact sign flips over participants";
+    case RegisteredTest::crossover:
+      return "period-adjusted t test over participants (period differences compared between the "
+             "two "
+             "orders of methods), checked by a permutation of orders within the blocks in which "
+             "they were dealt";
+    case RegisteredTest::t:
+      break;
+  }
+  return "Student's t test over participants";
+}
+
 std::string test_words(const RegisteredAnalysis& analysis) {
-  const std::string test = analysis.test == RegisteredTest::t
-                               ? "Student's t test over participants"
-                               : "exact sign flips over participants";
-  return test + (analysis.one_sided ? ", one-sided" : ", two-sided");
+  return name_in_words(analysis.test) + (analysis.one_sided ? ", one-sided" : ", two-sided");
 }
 
 std::string looks_words(const RegisteredAnalysis& analysis) {
@@ -260,7 +333,7 @@ std::string rules_words(const ExclusionRules& rules) {
   std::vector<std::string> words = rules.deviations;
   for (std::string& code : words) code = "a deviation " + in_quotes(code);
   if (rules.invalid_trials) {
-    words.push_back("more than " + number_text(100.0 * *rules.invalid_trials) +
+    words.push_back("more than " + per_cent_text(*rules.invalid_trials) +
                     " % of trials not valid");
   }
   if (words.empty()) return "none, besides sessions stopped early and participants who withdrew";
@@ -276,12 +349,19 @@ std::vector<std::pair<std::string, std::string>> fields_of(const Registration& r
   const bool accuracy = analysis.estimand == Estimand::mean_accuracy;
   const std::string worth =
       analysis.smallest_effect
-          ? number_text(100.0 * *analysis.smallest_effect) + (accuracy ? " % right" : " points")
+          ? per_cent_text(*analysis.smallest_effect) + (accuracy ? " % right" : " points")
           : "not stated";
+  const std::pair<std::string, std::string> size =
+      analysis.margin
+          ? std::pair<std::string, std::string>(
+                "margin", "as good if worse by less than " + per_cent_text(*analysis.margin) +
+                              " points; decided by the " +
+                              per_cent_text(1.0 - 2.0 * analysis.alpha) + " % t interval")
+          : std::pair<std::string, std::string>("smallest worth having", worth);
   return {{"estimand", estimand_words(analysis)},
           {"test", test_words(analysis)},
           {"alpha", number_text(analysis.alpha)},
-          {"smallest worth having", worth},
+          size,
           {"interim looks", looks_words(analysis)},
           {"exclusion rules",
            analysis.exclusion_rules ? rules_words(*analysis.exclusion_rules) : "not stated"}};

@@ -55,7 +55,8 @@ inline constexpr std::array kEstimandNames = {
 
 inline constexpr std::array kRegisteredTestNames = {
     Named<RegisteredTest>{"t", RegisteredTest::t},
-    Named<RegisteredTest>{"sign-flip", RegisteredTest::sign_flip}};
+    Named<RegisteredTest>{"sign-flip", RegisteredTest::sign_flip},
+    Named<RegisteredTest>{"crossover", RegisteredTest::crossover}};
 
 inline constexpr std::array kSidesNames = {Named<bool>{"one", true}, Named<bool>{"two", false}};
 
@@ -114,7 +115,8 @@ inline constexpr int kMaxScoredTrials = 10'000;
 [[nodiscard]] TrialOptions read_trials(const JsonValue& place);
 [[nodiscard]] PracticePlan read_practice(const JsonValue& place);
 [[nodiscard]] SessionPlan read_session(const JsonValue& place);
-[[nodiscard]] Registration read_registration(const JsonValue& place);
+/// \param usual_test  of a difference in this study
+[[nodiscard]] Registration read_registration(const JsonValue& place, RegisteredTest usual_test);
 /// Checks that the registered analysis is one of this study.
 /// \param file  the whole study file
 void check_registration(const JsonValue& file, const Study& study);

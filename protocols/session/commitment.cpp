@@ -20,10 +20,6 @@ std::string line(const std::string& what, const std::string& value) {
   return "- " + what + ": " + value + "\n";
 }
 
-std::string counted(int number, const std::string& one, const std::string& many) {
-  return std::to_string(number) + " " + (number == 1 ? one : many);
-}
-
 /// In alphabetical order, which does not reveal their order in the study.
 std::string labels_of(const design::Study& study) {
   std::vector<std::string> labels;
@@ -39,16 +35,16 @@ std::string methods_of(const design::Study& study) {
 
 std::string participants_of(const design::Registration& registration) {
   if (registration.participants == 0) return "";
-  return counted(registration.participants, "participant", "participants") + ".";
+  return counted(registration.participants, "participant") + ".";
 }
 
 std::string practice_of(const design::Study& study) {
   if (study.trials.practice == 0) return "none";
   const design::PracticePlan& practice = study.practice;
-  return counted(study.trials.practice, "presentation", "presentations") + " a round of " +
-         counted(static_cast<int>(practice.classes.size()), "texture", "textures") +
+  return counted(study.trials.practice, "presentation") + " a round of " +
+         counted(static_cast<int>(practice.classes.size()), "texture") +
          " that are not in the study; criterion " + std::to_string(practice.criterion) +
-         " correct, " + counted(practice.rounds, "round", "rounds") + " at most";
+         " correct, " + counted(practice.rounds, "round") + " at most";
 }
 
 std::string design_of(const design::Study& study) {

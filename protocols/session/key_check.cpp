@@ -19,6 +19,14 @@ void require_holds(bool holds, const char* what) {
   if (!holds) throw VerificationError(what);
 }
 
+/// The key signed for this station since it was written, or since its recovery sheet was printed.
+[[noreturn]] void refuse_older_key(const std::string& what) {
+  throw VerificationError(what +
+                          ": the key, or the recovery sheet that it was restored from, is from "
+                          "before the last `touchtrial plan`; take a newer one, or run the same "
+                          "`plan` again with this key");
+}
+
 void require_same_study(const design::StudyKey& key, const design::StationKey& station) {
   require_holds(station.study_id == key.study_id,
                 "is another study's; give the station the file that was made with this key");
@@ -38,13 +46,19 @@ void require_same_secrets(const design::StudyKey& key, const design::StationKey&
           station.investigator_signature == key.signer().public_half(),
       "seals for another investigator; give the station the file that was made with this key");
   const auto own = std::ranges::find(key.stations, station.station.name, &design::Station::name);
+  if (own == key.stations.end() && key.stations.front().name == design::kOnlyStation) {
+    refuse_older_key("is of a station that the key does not know");
+  }
   require_holds(own != key.stations.end(),
-                "is of a station that the key does not know; run `touchtrial plan`, and give the "
-                "station its file");
+                "is of a station that the key does not know; give the station the file that "
+                "`touchtrial plan` wrote");
   require_holds(
       station.station.secret == own->secret,
       "has another secret than the key gives this station; give the station the file that "
       "was made with this key");
+  if (own->size() < station.station.size()) {
+    refuse_older_key("has enrolment numbers that the key does not know");
+  }
   require_holds(station.station.ranges == own->ranges,
                 "has other enrolment numbers than the key gives this station; give the station its "
                 "new file");

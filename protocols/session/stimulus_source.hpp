@@ -18,8 +18,7 @@ class StimulusSource {
  public:
   /// \param rendering  of the study; gains come from the pack
   /// \throws FileError if a field is missing, truncated, malformed or of another rendering model,
-  /// or
-  ///   the pack is empty
+  ///   or the pack is empty
   StimulusSource(const engine::Pack& pack, const engine::RenderingOptions& rendering);
 
   /// The model of a field.

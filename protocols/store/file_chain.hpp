@@ -63,9 +63,8 @@ struct SessionOnFile {
   std::optional<std::int64_t> closed_at;
   std::optional<std::int64_t> excluded_at;
   std::optional<std::int64_t> withdrawn_at;
-  std::optional<std::int64_t> erased_at;
-  std::chrono::nanoseconds erased_time{};        ///< UTC, if erased_at is there         ///< the
-                                                 ///< participant's key was destroyed
+  std::optional<std::int64_t> erased_at;         ///< the participant's key was destroyed
+  std::chrono::nanoseconds erased_time{};        ///< UTC, if erased_at is there
   std::optional<std::int64_t> safety_erased_at;  ///< the safety key was destroyed
   std::optional<std::int64_t> replaced_at;
 
@@ -111,7 +110,7 @@ class FileChain {
   UniquePlaces unique_;
   std::optional<StudyCommitment> commitment_;
   std::map<int, SessionOnFile> sessions_;
-  /// Of sessions that nobody has replaced.
+  /// Only of sessions that nobody has replaced.
   std::set<std::string> participants_;
   std::set<int> enrolments_;
   std::vector<Event> seen_by_;  ///< what decides whose outcomes were seen: ends and looks

@@ -36,6 +36,10 @@ struct SessionRow {
   int own_session = 0;
   int station = 0;  ///< the station that it was collected from, from 1; 0: recorded in this file
 
+  /// Whether it may still go on, as far as the session itself is concerned.
+  [[nodiscard]] bool may_go_on() const noexcept {
+    return state == SessionState::open && !withdrawn && replaced_by.empty();
+  }
   friend bool operator==(const SessionRow&, const SessionRow&) = default;
 };
 
@@ -93,8 +97,8 @@ struct FoldScope {
 
 /// Brings `rows` up to date with one more event, stored or opened. Sessions may be folded in any
 /// order, the events of each session in theirs, and the file's chain after the sessions that it
-/// names. \throws EventFault if the event's body cannot be read, or the event cannot follow those
-/// before;
+/// names.
+/// \throws EventFault if the event's body cannot be read, or the event cannot follow those before;
 ///   `rows` are then as they were
 void fold(DerivedRows& rows, const Event& event);
 

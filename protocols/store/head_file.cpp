@@ -2,20 +2,19 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "core/strict_json.hpp"
+#include "core/text.hpp"
+#include "protocols/store/head_copy.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <limits>
 #include <system_error>
 #include <thread>
 #include <utility>
 
 #include <fcntl.h>
-#include <nlohmann/json.hpp>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -23,145 +22,10 @@
 namespace touchtrial::store {
 namespace {
 
-/// A slot holds one copy of the record: its text, its signature, and spaces up to this size.
-constexpr std::size_t kSlotBytes = 12288;
-constexpr std::size_t kSignatureDigits = 128;
-constexpr std::int64_t kHeadVersion = 1;
-constexpr std::int64_t kMostEvents = std::numeric_limits<std::int64_t>::max() - 1;
-
-[[noreturn]] void refuse_head(const std::filesystem::path& path, const std::string& why) {
-  throw FileError(one_line(path.string() + ": " + why));
-}
-
-[[noreturn]] void refuse_head(const std::filesystem::path& path, const std::string& what, int error,
-                              const std::string& remedy) {
+/// \param error  the system's
+[[noreturn]] void refuse_with_reason(const std::filesystem::path& path, const std::string& what,
+                                     int error, const std::string& remedy) {
   refuse_head(path, what + " (" + std::generic_category().message(error) + "); " + remedy);
-}
-
-/// What is signed: nobody can pass another signed text off as a head.
-std::string head_statement(std::string_view text) {
-  return "touchtrial head file 1\n" + std::string(text);
-}
-
-nlohmann::json json_of(const ChainHead& end) {
-  return {{"hash", to_hex(end.hash)}, {"length", end.length}};
-}
-
-std::string json_text_of(const HeadRecord& record, const std::filesystem::path& path) {
-  nlohmann::json sessions = nlohmann::json::array();
-  for (const auto& [session, end] : record.sessions) {
-    sessions.push_back(json_of(end));
-    sessions.back()["session"] = session;
-  }
-  const nlohmann::json object = {{"acknowledged", record.acknowledged},
-                                 {"also", record.also},
-                                 {"count", record.count},
-                                 {"database", to_hex(record.database)},
-                                 {"file", json_of(record.file)},
-                                 {"format", "touchtrial-head"},
-                                 {"sessions", std::move(sessions)},
-                                 {"station", record.station},
-                                 {"study_id", record.study_id},
-                                 {"version", kHeadVersion}};
-  try {
-    return object.dump();
-  } catch (const nlohmann::json::exception&) {
-    refuse_head(path, "cannot name a folder or station that is not UTF-8; choose another name");
-  }
-}
-
-Digest digest_at(const JsonObject& object, std::string_view key) {
-  const JsonValue value = object.at(key);
-  const std::optional<Digest> digest = digest_from_hex(value.text());
-  if (!digest) value.refuse("must be 64 hexadecimal digits");
-  return *digest;
-}
-
-ChainHead end_from(const JsonObject& object) {
-  return {.length = object.at("length").integer(0, kMostEvents), .hash = digest_at(object, "hash")};
-}
-
-/// \throws StudyError if the text is no record
-HeadRecord record_from(std::string_view text, const std::string& source) {
-  const JsonValue document = parse_strict_json(text, source);
-  const JsonObject object =
-      document.object({"acknowledged", "also", "count", "database", "file", "format", "sessions",
-                       "station", "study_id", "version"});
-  constexpr std::array<std::string_view, 1> kFormats = {"touchtrial-head"};
-  static_cast<void>(object.at("format").choice(kFormats));
-  static_cast<void>(object.at("version").integer(kHeadVersion, kHeadVersion));
-  HeadRecord record{.study_id = object.at("study_id").text(),
-                    .station = object.at("station").text(),
-                    .database = digest_at(object, "database"),
-                    .count = object.at("count").integer(1, kMostEvents),
-                    .file = end_from(object.at("file").object({"hash", "length"})),
-                    .sessions = {},
-                    .acknowledged = object.at("acknowledged").integer(0, kMostEvents),
-                    .also = object.at("also").text()};
-  for (const JsonValue& item : object.at("sessions").items(0, kMostHeadSessions)) {
-    const JsonObject session = item.object({"hash", "length", "session"});
-    const auto number = session.at("session").integer(1, std::numeric_limits<int>::max());
-    record.sessions[static_cast<int>(number)] = end_from(session);
-  }
-  return record;
-}
-
-/// \pre record.sessions are no more than kMostHeadSessions
-std::string slot_of(const HeadRecord& record, const Signer& signer,
-                    const std::filesystem::path& path) {
-  std::string slot = json_text_of(record, path);
-  const Signature signature = signer.sign(bytes_of(head_statement(slot)));
-  slot += "\n" + to_hex(signature) + "\n";
-  if (slot.size() >= kSlotBytes) {
-    refuse_head(path, "has room for " + std::to_string(kSlotBytes - 1) + " bytes, and needs " +
-                          std::to_string(slot.size()) +
-                          "; choose a second folder with a shorter path");
-  }
-  slot.append(kSlotBytes - 1 - slot.size(), ' ');
-  return slot + '\n';
-}
-
-/// A slot as it was read.
-struct HeadSlot {
-  std::string bytes;
-  std::optional<HeadRecord> record;
-  std::string fault;  ///< why there is no record
-};
-
-/// \return the record's text and its signature; nothing if one byte is not as slot_of writes it
-std::optional<std::pair<std::string_view, Bytes>> parts_of_slot(std::string_view slot) {
-  const std::size_t end = slot.find('\n');
-  if (slot.size() != kSlotBytes || end > kSlotBytes - kSignatureDigits - 2) return std::nullopt;
-  const std::string_view digits = slot.substr(end + 1, kSignatureDigits);
-  std::string_view rest = slot.substr(end + 1 + kSignatureDigits);
-  if (rest.front() != '\n' || rest.back() != '\n') return std::nullopt;
-  rest = rest.substr(1, std::max(rest.size(), std::size_t{2}) - 2);
-  if (rest.find_first_not_of(' ') != std::string_view::npos) return std::nullopt;
-  std::optional<Bytes> signature = from_hex(digits);
-  if (!signature || to_hex(*signature) != digits) return std::nullopt;
-  return std::pair(slot.substr(0, end), std::move(*signature));
-}
-
-HeadSlot read_slot(std::string bytes, std::span<const PublicKey> signers) {
-  HeadSlot slot{.bytes = std::move(bytes), .record = {}, .fault = "is not whole"};
-  const auto parts = parts_of_slot(slot.bytes);
-  if (!parts) return slot;
-  const std::string_view text = parts->first;
-  const Bytes& signature = parts->second;
-  const std::string statement = head_statement(text);
-  slot.fault = "is altered, or signed by none of this study's keys";
-  if (std::ranges::none_of(signers, [&](const PublicKey& signer) {
-        return is_signed_by(signer, bytes_of(statement), signature);
-      })) {
-    return slot;
-  }
-  try {
-    slot.record = record_from(text, "its text");
-    slot.fault.clear();
-  } catch (const StudyError& error) {
-    slot.fault = std::string("is no record of this version (") + error.what() + ")";
-  }
-  return slot;
 }
 
 /// A head file that is open and, if the disk knows locks, locked.
@@ -172,7 +36,7 @@ class LockedHead {
   LockedHead(const std::filesystem::path& path, int access, std::chrono::milliseconds patience)
       : path_(path), file_(::open(path.c_str(), access | O_CLOEXEC | O_NONBLOCK)) {
     if (file_ < 0 && errno == ENOENT) return;
-    if (file_ < 0) refuse_head(path, "cannot be opened", errno, "check its permissions");
+    if (file_ < 0) refuse_with_reason(path, "cannot be opened", errno, "check its permissions");
     try {
       look(access == O_RDWR ? LOCK_EX : LOCK_SH, patience);
     } catch (...) {
@@ -188,17 +52,17 @@ class LockedHead {
 
   [[nodiscard]] bool is_there() const noexcept { return file_ >= 0; }
   /// Whether the file is as long as it should be.
-  [[nodiscard]] bool has_its_size() const noexcept { return size_ == off_t{2 * kSlotBytes}; }
+  [[nodiscard]] bool has_its_size() const noexcept { return size_ == off_t{2 * kHeadCopyBytes}; }
 
   /// The bytes of one slot, as many as there are.
   [[nodiscard]] std::string slot(std::size_t index) const {
-    std::string bytes(kSlotBytes, '\0');
+    std::string bytes(kHeadCopyBytes, '\0');
     std::size_t done = 0;
     while (done < bytes.size()) {
       const ssize_t got = ::pread(file_, bytes.data() + done, bytes.size() - done,
-                                  static_cast<off_t>(index * kSlotBytes + done));
+                                  static_cast<off_t>(index * kHeadCopyBytes + done));
       if (got < 0 && errno == EINTR) continue;
-      if (got < 0) refuse_head(path_, "cannot be read", errno, "check the disk");
+      if (got < 0) refuse_with_reason(path_, "cannot be read", errno, "check the disk");
       if (got == 0) break;
       done += static_cast<std::size_t>(got);
     }
@@ -210,11 +74,13 @@ class LockedHead {
   /// that nobody reads what a power cut may still take away.
   /// \throws FileError
   void write(std::size_t index, const std::string& bytes, const std::string& old) const {
-    const bool cut = size_ <= off_t{2 * kSlotBytes} || ::ftruncate(file_, 2 * kSlotBytes) == 0;
+    const bool cut =
+        size_ <= off_t{2 * kHeadCopyBytes} || ::ftruncate(file_, 2 * kHeadCopyBytes) == 0;
     if (cut && write_at(index, bytes) && ::fdatasync(file_) == 0) return;
     const int error = errno;
     if (write_at(index, old)) static_cast<void>(::fdatasync(file_));
-    refuse_head(path_, "cannot be written", error, "check its disk, and the free space there");
+    refuse_with_reason(path_, "cannot be written", error,
+                       "check its disk, and the free space there");
   }
 
  private:
@@ -235,7 +101,7 @@ class LockedHead {
       if (errno == EINTR) continue;
       if (errno != EWOULDBLOCK) {
         if (lock == LOCK_SH) return;  // the disk knows no locks
-        refuse_head(path_, "cannot be locked", errno, "lay it on a disk of this machine");
+        refuse_with_reason(path_, "cannot be locked", errno, "lay it on a disk of this machine");
       }
       if (std::chrono::steady_clock::now() >= end) {
         refuse_head(path_, "another program keeps it locked; end that program");
@@ -245,7 +111,7 @@ class LockedHead {
   }
 
   [[nodiscard]] bool write_at(std::size_t index, std::string_view bytes) const {
-    auto place = static_cast<off_t>(index * kSlotBytes);
+    auto place = static_cast<off_t>(index * kHeadCopyBytes);
     while (!bytes.empty()) {
       const ssize_t written = ::pwrite(file_, bytes.data(), bytes.size(), place);
       if (written < 0 && errno == EINTR) continue;
@@ -263,26 +129,34 @@ class LockedHead {
 
 /// Both slots of a file, and which of them counts.
 struct HeadSlots {
-  std::array<HeadSlot, 2> slots;
+  std::array<HeadCopy, 2> slots;
   std::size_t latest = 0;
 
-  [[nodiscard]] const HeadSlot& newest() const { return slots.at(latest); }
-  [[nodiscard]] const HeadSlot& other() const { return slots.at(1 - latest); }
+  [[nodiscard]] const HeadCopy& newest() const { return slots.at(latest); }
+  [[nodiscard]] const HeadCopy& other() const { return slots.at(1 - latest); }
 };
+
+[[noreturn]] void refuse_both(const std::filesystem::path& path, const HeadCopy& first,
+                              const HeadCopy& second) {
+  const std::string& claim = first.claim.empty() ? second.claim : first.claim;
+  const std::string whose =
+      claim.empty() ? "; "
+                    : "; it says that it is of " + claim +
+                          ": if this database is of another study or station, name a folder of its "
+                          "own with `run --heads`, or give it another name; else ";
+  refuse_head(path, "of its two copies, the first " + first.fault + ", the second " + second.fault +
+                        whose +
+                        "if there is another head file, copy it over this one, or compare the "
+                        "database with the last day sheet and move this file away");
+}
 
 /// \throws FileError if neither slot can be read
 HeadSlots read_slots(const LockedHead& file, std::span<const PublicKey> signers,
                      const std::filesystem::path& path) {
-  HeadSlots read{.slots = {read_slot(file.slot(0), signers), read_slot(file.slot(1), signers)}};
+  HeadSlots read{
+      .slots = {read_head_copy(file.slot(0), signers), read_head_copy(file.slot(1), signers)}};
   const auto& [first, second] = read.slots;
-  if (!first.record && !second.record) {
-    refuse_head(path, "of its two copies, the first " + first.fault + ", the second " +
-                          second.fault +
-                          "; if it is another study's, name another folder; if there is another "
-                          "head file, copy it over "
-                          "this one, else compare "
-                          "the database with the last day sheet and move this file away");
-  }
+  if (!first.record && !second.record) refuse_both(path, first, second);
   const bool second_is_newer =
       second.record && (!first.record || second.record->count >= first.record->count);
   read.latest = second_is_newer ? 1 : 0;
@@ -308,8 +182,8 @@ void require_second_folder(const std::filesystem::path& folder,
                 "another folder once, with `run --heads`");
   }
   if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    refuse_head(folder, "the folder of the second head file cannot be written", errno,
-                "change its permissions, or name another folder");
+    refuse_with_reason(folder, "the folder of the second head file cannot be written", errno,
+                       "change its permissions, or name another folder");
   }
   const std::filesystem::path own = std::filesystem::absolute(database).parent_path();
   if (std::filesystem::equivalent(folder, own, error)) {
@@ -324,13 +198,8 @@ bool know_one_database(const HeadRecord& one, const HeadRecord& other) {
          one.database == other.database;
 }
 
-std::string counted_events(std::int64_t events) {
-  return std::to_string(events) + (events == 1 ? " event" : " events");
-}
-
 std::string missing_answers(std::int64_t answers) {
-  return answers == 1 ? "1 acknowledged answer is missing"
-                      : std::to_string(answers) + " acknowledged answers are missing";
+  return counted(answers, "acknowledged answer") + (answers == 1 ? " is" : " are") + " missing";
 }
 
 /// \param name  of the chain, for people
@@ -347,12 +216,12 @@ std::optional<Loss> loss_of_chain(const StudyStore& store, int session, const st
   }
   const std::optional<Event> last = store.last_event(session);
   if (!last) {
-    return Loss{
-        .session = session,
-        .what = name + " is gone; the head file knows " + counted_events(known.length) + " of it"};
+    return Loss{.session = session,
+                .what = name + " is gone; the head file knows " + counted(known.length, "event") +
+                        " of it"};
   }
   return Loss{.session = session,
-              .what = name + " has " + counted_events(last->sequence + 1) +
+              .what = name + " has " + counted(last->sequence + 1, "event") +
                       "; the head file knows " + std::to_string(known.length)};
 }
 
@@ -478,7 +347,7 @@ bool HeadFile::overwrite(const Signer& signer, const HeadChange& change,
   change(record);
   record.count = count + 1;
   drop_oldest(record.sessions);
-  file.write(1 - slots.latest, slot_of(record, signer, path_), slots.other().bytes);
+  file.write(1 - slots.latest, head_copy_of(record, signer, path_), slots.other().bytes);
   return true;
 }
 
@@ -488,7 +357,7 @@ bool HeadFile::create(const Signer& signer, const HeadChange& change) const {
   change(record);
   record.count = 1;
   drop_oldest(record.sessions);
-  const std::string slot = slot_of(record, signer, path_);
+  const std::string slot = head_copy_of(record, signer, path_);
   const std::filesystem::path draft = draft_beside(path_);
   replace_file(draft, slot + slot);
   std::error_code ignored;
@@ -577,9 +446,7 @@ std::vector<Loss> losses(const HeadRecord& known, const StudyStore& store) {
 }
 
 std::string spoken_head(const HeadRecord& record) {
-  const std::string digits = to_hex(record.file.hash);
-  return digits.substr(0, 4) + " " + digits.substr(4, 4) + " " + digits.substr(8, 4) + " " +
-         digits.substr(12, 4);
+  return in_fours(to_hex(record.file.hash).substr(0, 16));
 }
 
 }  // namespace touchtrial::store

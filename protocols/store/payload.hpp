@@ -5,6 +5,7 @@
 #include "core/hash.hpp"
 #include "core/public_keys.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -282,6 +283,11 @@ struct AnswerSummary {
 
   friend bool operator==(const AnswerSummary&, const AnswerSummary&) = default;
 };
+
+/// A multiple of 0.1 that has one decimal when it is printed.
+[[nodiscard]] inline double in_tenths(double number) {
+  return std::round(10.0 * number) / 10.0;
+}
 
 /// `closed`.
 struct ClosedBody {

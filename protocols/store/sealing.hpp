@@ -77,9 +77,10 @@ struct OpenedEvent {
 };
 
 /// Seals the time of a session's event, the members of its body that are not in clear, and a secret
-/// text. \return the event as it is stored, with its hash
+/// text.
 /// \param event  with its time, whole body and `previous`
 /// \param padding  bytes, see touchtrial::seal; a multiple of kSealedUnit
+/// \return the event as it is stored, with its hash
 /// \throws StoreError if the body is not a JSON object
 [[nodiscard]] Event sealed_event(Event event, const std::string& secret,
                                  const SecretKey& participant_key, std::size_t padding);

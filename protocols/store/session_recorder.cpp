@@ -47,11 +47,6 @@ double largest_force_in(const Trace& trace) {
   return std::sqrt(largest);
 }
 
-/// A multiple of 0.1 that has one decimal when it is printed.
-double in_tenths(double number) {
-  return std::round(10.0 * number) / 10.0;
-}
-
 }  // namespace
 
 void BufferedEvents::accept(const Event& event, const std::optional<SealedTrace>& trace) {

@@ -68,8 +68,7 @@ class SessionRecorder {
                 const std::optional<TrialEvidence>& evidence = std::nullopt);
   /// \param reason  in clear: must say nothing about the stimulus, and be nobody's words
   /// \param detail  sealed but for the faults' names, with a padding that does not depend on a
-  /// flight
-  ///   record of up to 3,000 ticks, and of a longer one depends on whole thousands
+  ///   flight record of up to 3,000 ticks, and of a longer one depends on whole thousands
   void interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
                    const std::optional<InterruptionDetail>& detail = std::nullopt);
   void timed_out(std::chrono::nanoseconds at, int trial,

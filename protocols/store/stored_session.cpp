@@ -135,7 +135,7 @@ void StoredStudy::empty_log() const {
   try {
     database_.checkpoint();
   } catch (const SQLite::Exception&) {
-    // What was to be stored is stored. SQLite empties the log when the last program leaves the
+    // Everything has been stored. SQLite empties the log when the last program leaves the
     // file.
   }
 }

@@ -36,6 +36,12 @@ void check_tables(const Database& database) {
   }
 }
 
+std::vector<SessionRow> of_participant(std::vector<SessionRow> rows,
+                                       const std::string& participant) {
+  std::erase_if(rows, [&](const SessionRow& row) { return row.participant != participant; });
+  return rows;
+}
+
 /// Skips the stations' own chains, whose content the collected study's chain repeats.
 EventVisitor unless_of_station(const EventVisitor& visit) {
   return [&visit](const Event& event) {
@@ -151,9 +157,7 @@ std::optional<SessionRow> StudyStore::session_of(const std::string& participant)
 }
 
 std::vector<SessionRow> StudyStore::sessions_of(const std::string& participant) const {
-  std::vector<SessionRow> rows = sessions();
-  std::erase_if(rows, [&](const SessionRow& row) { return row.participant != participant; });
-  return rows;
+  return of_participant(sessions(), participant);
 }
 
 std::optional<Event> StudyStore::last_event(int session) const {
@@ -303,8 +307,9 @@ void StudyStore::unblind(std::chrono::nanoseconds at, const std::string& reason,
 
 void StudyStore::look_at(const std::string& participant, std::chrono::nanoseconds at,
                          const std::string& reason) {
-  const std::vector<SessionRow> rows = sessions_of(participant);
   impl_->change([&] {
+    const std::vector<SessionRow> rows =
+        of_participant(read_sessions(impl_->database()), participant);
     const std::string whose = "participant " + participant;
     impl_->study.require_reason(reason, "a look at outcomes");
     if (rows.empty()) impl_->study.refuse(whose + " has no session; check the participant id");
@@ -313,7 +318,7 @@ void StudyStore::look_at(const std::string& participant, std::chrono::nanosecond
                           " has withdrawn, and the data are erased; there is nothing to see");
     }
     for (const SessionRow& row : rows) {
-      if (row.state != SessionState::open || row.withdrawn || !row.replaced_by.empty()) continue;
+      if (!row.may_go_on()) continue;
       impl_->study.refuse("session " + std::to_string(row.session) + " (" + whose +
                           ") may still go on; look at it when it has ended");
     }

@@ -21,7 +21,8 @@
 namespace touchtrial::store {
 
 /// How much of a database is checked. `skip` leaves out the file's pages and the traces, which are
-/// nearly all of a file.
+/// nearly all of a file, and most signatures: of each file's chain it checks those of the last
+/// event, which vouches for the events before it, and of unblindings.
 enum class TraceCheck { full, skip };
 
 /// A fault of the evidence, and its place.
@@ -145,8 +146,7 @@ class StudyStore {
   /// A look at one participant's outcomes, while the study is open or after. It shows the sessions
   /// that the participant has had so far.
   /// \throws StoreError if the participant has none, one of them may still go on, all are erased,
-  /// or
-  ///   `reason` is empty
+  ///   or `reason` is empty
   void look_at(const std::string& participant, std::chrono::nanoseconds at,
                const std::string& reason);
 
@@ -157,9 +157,9 @@ class StudyStore {
   void exclude(int session, std::chrono::nanoseconds at, const std::string& reason);
   /// The participant takes no further part: a session that is open cannot go on. Destroys the keys
   /// of what is not kept, so that nobody can ever read it again. The chain, which hashes
-  /// ciphertext, still holds. Copies of the file keep the keys: destroy those yourself. \param
-  /// not_erased  what this cannot reach; recorded in clear \throws StoreError if there is no such
-  /// session, no more is kept already, or the safety record
+  /// ciphertext, still holds. Copies of the file keep the keys: destroy those yourself.
+  /// \param not_erased  what this cannot reach; recorded in clear
+  /// \throws StoreError if there is no such session, no more is kept already, or the safety record
   ///   is to be erased before the data or before the study's years have passed; also, after the
   ///   withdrawal, if another program keeps a page with a key in the write-ahead log
   void withdraw(int session, std::chrono::nanoseconds at, const std::string& reason,
@@ -186,8 +186,8 @@ class StudyStore {
 
   /// Records that the study goes on without what the database lost, and notes it as a deviation
   /// "answers-lost" of the sessions concerned.
-  /// \throws StoreError if there is no such session, or the reason is empty
   /// \param sessions  what each of them lost, sealed
+  /// \throws StoreError if there is no such session, or the reason is empty
   void accept_loss(const LossBody& loss, const std::map<int, std::string>& sessions,
                    std::chrono::nanoseconds at);
 

@@ -168,9 +168,18 @@ void FakeStudy::add(const FakeSession& session) {
     }
   }
   if (again != nullptr) record_trial(recorder, session, schedule, *again, ++place);
+  const store::NewKeys keys = store::wrap_participant_key(key_.investigator_box, number, own);
+  if (!session.ends) {
+    const auto sink = store_.begin_session(number, keys, [=] { return milliseconds(number); });
+    auto trace = buffer.traces.begin();
+    for (const store::Event& event : buffer.events) {
+      const bool has_trace = event.kind == store::EventKind::trace_stored;
+      sink->accept(event, has_trace ? std::optional(*trace++) : std::nullopt);
+    }
+    return;
+  }
   recorder.closed(milliseconds(10'000'000), session.complete, session.summary, session.saturated);
-  store_.add_session(buffer, store::wrap_participant_key(key_.investigator_box, number, own),
-                     milliseconds(number));
+  store_.add_session(buffer, keys, milliseconds(number));
 }
 
 void FakeStudy::close_and_unblind() {

@@ -37,6 +37,7 @@ struct FakeSession {
   FakeTraces traces{};                            ///< empty: a touch too short to feel anything
   store::HandWindows hand{};                      ///< of every second trial
   int saturated = 0;                              ///< that the session ends with
+  bool ends = true;  ///< false: it is left open after its last presentation
 };
 
 struct FakeOptions {

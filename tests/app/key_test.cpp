@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <SQLiteCpp/Database.h>
 #include <pty.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -162,10 +163,24 @@ TEST_CASE("key check counts the sessions of a database that the key opens") {
               .run({"withdraw", study.in("a.db"), "--participant", "P002", "--reason", "asked",
                     "--erase"})
               .exit_code == 0);
+  REQUIRE(study
+              .run({"withdraw", study.in("a.db"), "--participant", "P003", "--reason", "asked",
+                    "--keep-data"})
+              .exit_code == 0);
   const ProgramResult checked = study.key({"check", study.in("a.db")});
   INFO(checked.output << checked.errors);
   CHECK(checked.exit_code == 0);
-  CHECK_THAT(checked.output, holds_text("opens 3 sessions; 1 withdrawn"));
+  CHECK_THAT(checked.output,
+             holds_text("opens 3 sessions (1 of people who withdrew and left their data) and 4 "
+                        "safety records; 1 erased, which nothing opens"));
+  {
+    SQLite::Database database(study.in("a.db"), SQLite::OPEN_READWRITE);
+    database.exec("UPDATE safety_keys SET wrapped = zeroblob(length(wrapped)) WHERE session = 1");
+  }
+  const ProgramResult torn = study.key({"check", study.in("a.db"), "--json"});
+  CHECK(torn.exit_code == 3);
+  CHECK(json::parse(torn.output).at("safety") == 3);
+  CHECK_THAT(torn.output, holds_text("session 1: the safety key does not open"));
   check_key_refused(study.key({"check", study.in("a.db"), "--key", study.in("cloths.key")}), 3,
                     {"is not the key of"});
 }
@@ -216,7 +231,7 @@ TEST_CASE("a key that was lost is made again from its printed sheet") {
   const ProgramResult opened =
       study.key({"check", study.in("study.db"), "--key", study.in("cloths.key")});
   CHECK(opened.exit_code == 0);
-  CHECK_THAT(opened.output, holds_text("opens 1 session;"));
+  CHECK_THAT(opened.output, holds_text("opens 1 session ("));
   REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
   CHECK(content(study.path() / "cloths.station") == station);
 }
@@ -310,6 +325,33 @@ TEST_CASE("run and prepare open a station's file with its passphrase") {
   CHECK(study.run({"prepare", study.in("cloths.json"), "--passphrase-file", study.in("two.txt")})
             .exit_code == 0);
   CHECK(design::is_protected(station));
+}
+
+TEST_CASE("a protected file of another station is refused before its passphrase is asked for") {
+  const KeyedStudy study;
+  REQUIRE(study.run({"plan", study.in("cloths.json"), "--participants", "4", "--stations", "2"})
+              .exit_code == 0);
+  const std::string other = study.in("cloths.2.station");
+  const auto session = [&](const std::string& participant, const std::string& station) {
+    return study.run({"run", study.in("cloths.json"), "--participant", participant, "--db",
+                      study.in("study.db"), "--subject", study.in("quick.json"), "--headless",
+                      "--station", station});
+  };
+  REQUIRE(session("P01", "1").exit_code == 0);
+  REQUIRE(study.key({"protect", other, "--new-passphrase-file", study.in("two.txt")}).exit_code ==
+          0);
+  check_key_refused(session("P02", "2"), 1,
+                    {"cloths.2.station: is not the file of station 1", "study.db"});
+  const std::vector<std::string> note = {
+      "note", study.in("study.db"), "--participant", "P01", "came late", "--station-file", other};
+  check_key_refused(study.run(note), 1, {"cloths.2.station: is not the file of station 1"});
+  // Without a name, the file of the database's own station is found, whatever lies beside it.
+  REQUIRE(study.run({"note", study.in("study.db"), "--participant", "P01", "late"}).exit_code == 0);
+  fs::copy_file(other, study.path() / "cloths.1.station", fs::copy_options::overwrite_existing);
+  const ProgramResult checked = study.key({"check", study.in("cloths.json"), "--station", "1"});
+  CHECK(checked.exit_code == 3);
+  CHECK_THAT(checked.output,
+             holds_text("cloths.1.station: DOES NOT HOLD: is the file of station 2"));
 }
 
 TEST_CASE("a terminal asks for passphrases and shows nothing of them") {

@@ -528,6 +528,41 @@ TEST_CASE("notes and deviations are on the file's chain, before and after closin
   check_verified(study);
 }
 
+TEST_CASE("every command that records prints the head for the day sheet") {
+  const PeopleStudy study;
+  const auto check_head = [&](const ProgramResult& done) {
+    INFO(done.output << done.errors);
+    CHECK(done.exit_code == 0);
+    const std::size_t begin = done.output.rfind("head ");
+    REQUIRE(begin != std::string::npos);
+    CHECK(done.output.find("acknowledged; write it on the day sheet\n") != std::string::npos);
+    const std::string head = done.output.substr(begin + 5, 19);
+    const ProgramResult verified = study.run({"verify", study.in("study.db"), "--head", head});
+    INFO(verified.output << verified.errors);
+    CHECK(verified.exit_code == 0);
+  };
+  const std::vector<std::string> reason = {"--reason", "asked to"};
+  const auto withdraw = [&](const std::string& participant, const std::string& how) {
+    return study.people("withdraw", participant, {how, "--reason", "asked to"});
+  };
+  check_head(study.people("note", "P001", {"came late"}));
+  check_head(withdraw("P001", "--keep-data"));
+  check_head(withdraw("P002", "--erase"));
+  check_head(study.people("withdraw", "P002", {"--erase-safety"}));
+  check_head(study.people("unblind", "P003", reason));
+  check_head(study.people("exclude", "P004", reason));
+  check_head(study.run({"close", study.in("study.db")}));
+  check_head(study.run({"unblind", study.in("study.db"), "--reason", "the planned test"}));
+}
+
+TEST_CASE("what is recorded is signed with a station's file or with a key, not with both") {
+  const PeopleStudy study;
+  check_refused(study.people("note", "P001",
+                             {"late", "--key", study.in("study.db.key"), "--station-file",
+                              study.in("cloths.station")}),
+                2, {"--key excludes --station-file"});
+}
+
 TEST_CASE("migrate does not change a current database, and refuses an unknown one") {
   const PeopleStudy study;
   const Bytes before = read_file(study.database());

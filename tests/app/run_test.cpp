@@ -183,6 +183,15 @@ TEST_CASE("an unfinished session can be restarted, and the first one does not co
   check_balanced(study, 1);
 }
 
+TEST_CASE("a mistyped --on-existing names the words that there are") {
+  const StudyFolder study;
+  const ProgramResult refused = run(study, "P01", {"--on-existing", "resum"});
+  CHECK(refused.exit_code == 2);
+  CHECK(line_count(refused.errors) == 1);
+  CHECK(refused.errors.find("--on-existing: 'resum' is unknown; give refuse, resume or restart") !=
+        std::string::npos);
+}
+
 TEST_CASE("pilot sessions and changed studies are refused") {
   const StudyFolder study;
   REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);

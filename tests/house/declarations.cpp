@@ -222,7 +222,8 @@ class Reader {
     if (!is_unneeded) words.push_back(group);
   }
 
-  /// Goes to the end of a pair of brackets. \return all of it, with spaces between the tokens
+  /// Goes to the end of a pair of brackets.
+  /// \return all of it, with spaces between the tokens
   std::string skip_group() {
     const std::size_t end = closing(tokens_, at_);
     std::string all = tokens_[at_++];

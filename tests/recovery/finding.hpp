@@ -11,7 +11,7 @@ namespace touchtrial::recovery {
 
 /// A share or a mean over many simulated studies.
 struct Finding {
-  std::string group;       ///< "coverage", "type-I error", "bias", "recovered"
+  std::string group;       ///< "coverage", "type-I error", "power", "bias", "recovered"
   std::string what;        ///< the statistic
   std::string population;  ///< whose studies
   double nominal = 0.0;    ///< the true or promised value
@@ -44,9 +44,13 @@ struct Average {
 [[nodiscard]] std::vector<Finding> estimate_findings(int repetitions);
 /// Lines of several groups about the registered question.
 [[nodiscard]] std::vector<Finding> registered_findings(int repetitions);
+/// Of several groups, on two methods, one after the other.
+[[nodiscard]] std::vector<Finding> crossover_findings(int repetitions);
 /// Of every group, on observers of single cues.
 [[nodiscard]] std::vector<Finding> cue_findings(int repetitions);
 /// Of every group, on differences between people.
 [[nodiscard]] std::vector<Finding> people_findings(int repetitions);
+/// Of every group, on unbiased hit rates, order, confidence and stations.
+[[nodiscard]] std::vector<Finding> measures_findings(int repetitions);
 
 }  // namespace touchtrial::recovery

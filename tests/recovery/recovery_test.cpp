@@ -37,6 +37,10 @@ TEST_CASE("the registered question keeps its levels, with looks and among people
   check_all(registered_findings(kRepetitions));
 }
 
+TEST_CASE("two methods in blocks are compared apart from the period, with full power") {
+  check_all(crossover_findings(kRepetitions));
+}
+
 TEST_CASE("known sensitivity, bias, lapses and swaps are found again") {
   check_all(estimate_findings(kRepetitions));
 }
@@ -47,6 +51,10 @@ TEST_CASE("divergences cover the truth, and equal observers are seldom told apar
 
 TEST_CASE("the spread between people is found, and people alike are seldom told from it") {
   check_all(people_findings(kFewRepetitions));
+}
+
+TEST_CASE("unbiased hit rates, order, confidence and stations keep their levels") {
+  check_all(measures_findings(kRepetitions));
 }
 
 TEST_CASE("simulated participants answer with their stated probabilities") {

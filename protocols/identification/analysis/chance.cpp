@@ -1,13 +1,11 @@
 #include "protocols/identification/analysis/chance.hpp"
 
 #include "analysis/statistics/common.hpp"
-#include "core/random.hpp"
+#include "protocols/identification/analysis/order_draws.hpp"
 
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -15,10 +13,6 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-/// The number of orders that the study's rule can produce. Every rule treats all classes alike, so
-/// each order also stands for its renamings.
-constexpr int kOrders = 300;
-constexpr int kRenamings = 120;
 constexpr int kFewestDeals = 999;
 constexpr int kMostBlockDeals = 1'000'000;  ///< takes at most one second
 
@@ -52,61 +46,6 @@ std::vector<PlacedBlock> blocks_of(const Outcomes& outcomes, int method) {
   return all;
 }
 
-/// The classes of the scored presentations of one method, in the order of a schedule.
-std::vector<int> order_in(const design::Schedule& schedule, int method) {
-  std::vector<int> order;
-  for (const design::Presentation& shown : schedule.presentations) {
-    if (shown.kind == design::PresentationKind::scored && shown.stimulus.method == method) {
-      order.push_back(shown.stimulus.class_index);
-    }
-  }
-  return order;
-}
-
-/// Draws orders of a block by the study's rule: takes one of kOrders orders from the study's
-/// schedules and one of kRenamings renamings of the classes.
-class OrderDraws {
- public:
-  OrderDraws(const design::Study& study, int method, std::size_t blocks, int deals)
-      : blocks_(blocks), random_(0, "chance test", static_cast<std::uint64_t>(method)) {
-    // A seed of its own keeps the participants' own orders out of the draws.
-    SeededEntropy entropy(study.seed);
-    for (int i = 1; i <= kOrders; ++i) {
-      const design::ScheduleDraw draw{entropy.secret("chance test: order " + std::to_string(i)), i};
-      orders_.push_back(order_in(design::make_schedule(study, draw), method));
-    }
-    std::vector<int> names(study.classes.size());
-    std::iota(names.begin(), names.end(), 0);
-    for (int i = 0; i < kRenamings; ++i) {
-      shuffle(std::span(names), random_);
-      renamings_.push_back(names);
-    }
-    picks_.resize(blocks * static_cast<std::size_t>(deals));
-    for (auto& pick : picks_) pick = static_cast<int>(random_.below(kOrders * kRenamings));
-  }
-
-  [[nodiscard]] std::size_t length() const { return orders_.front().size(); }
-
-  /// \param places  the places in the order whose classes are returned, ascending
-  [[nodiscard]] std::vector<int> drawn(std::size_t block, int deal,
-                                       const std::vector<int>& places) const {
-    const int pick = picks_[static_cast<std::size_t>(deal) * blocks_ + block];
-    const std::vector<int>& order = orders_[pick / kRenamings];
-    const std::vector<int>& names = renamings_[pick % kRenamings];
-    std::vector<int> classes;
-    classes.reserve(places.size());
-    for (const int place : places) classes.push_back(names[order[place]]);
-    return classes;
-  }
-
- private:
-  std::size_t blocks_;
-  RandomStream random_;
-  std::vector<std::vector<int>> orders_;
-  std::vector<std::vector<int>> renamings_;
-  std::vector<int> picks_;
-};
-
 /// The number of draws. Large studies need fewer, because the sum over many blocks varies little.
 int deals_for(std::size_t blocks, int most_deals) {
   const auto affordable = kMostBlockDeals / static_cast<int>(std::max<std::size_t>(1, blocks));
@@ -122,18 +61,6 @@ int own_deals_for(std::size_t blocks) {
   return 99;
 }
 
-}  // namespace
-
-DealtOrder dealt_order(const design::Study& study) {
-  const design::TrialOptions& trials = study.trials;
-  const bool limited = trials.max_run > 0;
-  if (!limited && trials.order == design::TrialOrder::shuffled) return DealtOrder::permuted;
-  if (!limited && trials.order == design::TrialOrder::uniform) return DealtOrder::independent;
-  return DealtOrder::redrawn;
-}
-
-namespace {
-
 /// The chance tests of some of a study's blocks, over the same drawn orders.
 class BlockTests {
  public:
@@ -146,7 +73,7 @@ class BlockTests {
         deals_(deals),
         known_(known) {
     if (order_ != DealtOrder::redrawn || placed.empty()) return;
-    draws_.emplace(outcomes.design, method, placed.size(), deals);
+    draws_.emplace(outcomes.design, method, placed.size(), deals, "chance test");
     const auto fits = [&](const PlacedBlock& block) {
       return static_cast<std::size_t>(block.places.back()) < draws_->length();
     };

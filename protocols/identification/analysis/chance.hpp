@@ -12,9 +12,6 @@ namespace touchtrial::analysis::identification {
 
 inline constexpr int kMostChanceDeals = 9999;
 
-/// How the study's rule draws the order of classes in a block.
-[[nodiscard]] DealtOrder dealt_order(const design::Study& study);
-
 /// The chance test of one method's counted trials. If the study's rule is neither a plain shuffle
 /// nor independent draws, the orders are drawn from schedules that the rule makes. In each block,
 /// only the places whose trials count are compared.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 namespace touchtrial::analysis::identification {
 
@@ -46,6 +47,17 @@ OwnTrials of_class(const OwnTrials& trials, int class_index) {
     return trial->stimulus.class_index == class_index;
   });
   return own;
+}
+
+std::vector<const TrialOutcome*> as_felt(const Outcomes& outcomes) {
+  std::vector<const TrialOutcome*> felt;
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (trial.row.state != store::TrialState::voided) felt.push_back(&trial);
+  }
+  std::ranges::stable_sort(felt, {}, [](const TrialOutcome* trial) {
+    return std::tuple(trial->row.session, trial->row.presented_at, trial->row.trial);
+  });
+  return felt;
 }
 
 bool has_ended(const TrialOutcome& trial) noexcept {

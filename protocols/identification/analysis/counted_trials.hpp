@@ -30,6 +30,10 @@ struct CountedTrials {
 /// The trials that presented one class.
 [[nodiscard]] OwnTrials of_class(const OwnTrials& trials, int class_index);
 
+/// All presentations that are not void, in the order in which they were felt. An interrupted trial
+/// stands where it was repeated; what the participant felt before the interruption does not appear.
+[[nodiscard]] std::vector<const TrialOutcome*> as_felt(const Outcomes& outcomes);
+
 /// Tells whether a trial ended in a way that counts: with an answer, or by a time-out.
 [[nodiscard]] bool has_ended(const TrialOutcome& trial) noexcept;
 

@@ -208,6 +208,9 @@ nlohmann::ordered_json method_object(const MethodReport& method,
   object["reaction_time_s"] = reaction_array(method.reaction, classes);
   object["breakdowns"] = breakdowns_object(method.breakdowns);
   object["robustness"] = robustness_array(method.robustness);
+  object["unbiased_hits"] = unbiased_object(method, classes);
+  object["order"] = order_object(method.order);
+  object["confidence"] = confidence_object(method.confidence);
   return object;
 }
 

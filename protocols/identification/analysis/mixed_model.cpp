@@ -3,6 +3,7 @@
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/trial_tables.hpp"
 #include "core/text.hpp"
+#include "protocols/identification/analysis/hierarchical_choice.hpp"
 
 #include <algorithm>
 #include <map>
@@ -97,6 +98,13 @@ std::string what_of_images(const Outcomes& outcomes) {
       kFewestRandomImages, images);
 }
 
+/// Debian's Boost is not where rstan looks for it.
+constexpr const char* kStanCommand =
+    "    Rscript -e 'library(rstan); if (!file.exists(rstan_options(\"boost_lib\"))) "
+    "rstan_options(boost_lib = \"/usr/include\");\n"
+    "      fit <- stan(\"choice_model.stan\", data = jsonlite::fromJSON(\"choice_model.json\"));\n"
+    "      print(fit, c(\"similarity\", \"bias\", \"distance_sd\", \"preference_sd\"))'";
+
 std::string notes(const Outcomes& outcomes) {
   return fmt::format(
       "# Mixed model of {}\n\n{}`mixed_model.csv` has one row a trial that counts. `Rscript "
@@ -113,9 +121,14 @@ std::string notes(const Outcomes& outcomes) {
       "trial without a response is wrong. `period` is the place of a trial's block among its "
       "participant's blocks; `place` the trial's place among its participant's trials of the "
       "method; `previous_class` and `previous_response` are those of the previous presentation in "
-      "the same block.\n",
+      "the same block.\n\n## Choice model in Stan\n\n`choice_model.stan` is the similarity choice "
+      "model with partial pooling over participants, `choice_model.json` its data (trials with a "
+      "response). With rstan:\n\n{}\n\n`similarity` and `bias` are those of the median "
+      "participant, one row a method; similarities of classes (1, 2), (1, 3), and so on. Quote "
+      "them "
+      "only with R-hat below 1.01 and without divergent transitions.\n",
       outcomes.study, outcomes.simulated ? "SIMULATED: every participant is a program.\n\n" : "",
-      mixed_model_formula(outcomes), what_of_images(outcomes));
+      mixed_model_formula(outcomes), what_of_images(outcomes), kStanCommand);
 }
 
 }  // namespace
@@ -157,6 +170,8 @@ std::vector<std::filesystem::path> export_mixed_model(const store::StudyStore& s
   return write_export(folder, {commitment.study, commitment.study_id, "r"},
                       {text_file("mixed_model.csv", csv_text(mixed_model_table(outcomes))),
                        text_file("mixed_model.R", mixed_model_script(outcomes)),
+                       text_file("choice_model.stan", choice_model_script(outcomes)),
+                       text_file("choice_model.json", choice_model_data(outcomes)),
                        text_file("mixed_model.md", notes(outcomes))});
 }
 

@@ -27,7 +27,7 @@ namespace touchtrial::analysis::identification {
 /// The text of mixed_model.R.
 [[nodiscard]] std::string mixed_model_script(const Outcomes& outcomes);
 
-/// Writes mixed_model.csv, mixed_model.R and mixed_model.md.
+/// Writes mixed_model.csv, mixed_model.R, choice_model.stan, choice_model.json and mixed_model.md.
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written, or the folder holds files of
 /// something else

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -36,6 +37,7 @@ PrimaryQuestion registered_question(const design::Study& study) {
   question.sides = registered.one_sided ? Sides::one : Sides::two;
   question.alpha = registered.alpha;
   question.smallest_effect = registered.smallest_effect;
+  question.margin = registered.margin;
   return question;
 }
 
@@ -83,39 +85,58 @@ std::vector<Selection> selections(const Outcomes& outcomes) {
           {"answered", "exclusions as made, trials with a response alone", taken, false, true}};
 }
 
-struct SelectedValues {
-  std::vector<double> values;  ///< one per participant
+struct SelectedPeople {
+  std::vector<CrossoverPerson> people;
+  std::vector<int> sessions;  ///< of each of them
   int trials = 0;
 };
 
+/// One participant's trials with one of the question's methods.
+struct OwnShare {
+  Proportion right;
+  int first_block = std::numeric_limits<int>::max();
+};
+
 /// The selected trials of each session with each method.
-std::map<int, std::pair<Proportion, Proportion>> proportions_of(const PrimaryQuestion& question,
-                                                                const Outcomes& outcomes,
-                                                                const Selection& selection) {
-  std::map<int, std::pair<Proportion, Proportion>> sessions;
+std::map<int, std::pair<OwnShare, OwnShare>> shares_of(const PrimaryQuestion& question,
+                                                       const Outcomes& outcomes,
+                                                       const Selection& selection) {
+  std::map<int, std::pair<OwnShare, OwnShare>> sessions;
   for (const TrialOutcome& trial : outcomes.trials) {
     if (!selection.has(trial)) continue;
     const bool first = trial.stimulus.method == question.first;
     const bool second = is_difference(question) && trial.stimulus.method == question.second;
     if (!first && !second) continue;
     auto& [of_first, of_second] = sessions[trial.row.session];
-    Proportion& own = first ? of_first : of_second;
-    ++own.n;
-    if (trial.correct()) ++own.correct;
+    OwnShare& own = first ? of_first : of_second;
+    ++own.right.n;
+    if (trial.correct()) ++own.right.correct;
+    own.first_block = std::min(own.first_block, trial.row.block);
   }
   return sessions;
 }
 
-SelectedValues values_of(const PrimaryQuestion& question, const Outcomes& outcomes,
+std::map<int, int> order_blocks_of(const Outcomes& outcomes) {
+  std::map<int, int> blocks;
+  for (const SessionOutcome& one : outcomes.sessions) blocks[one.row.session] = one.order_block;
+  return blocks;
+}
+
+SelectedPeople people_of(const PrimaryQuestion& question, const Outcomes& outcomes,
                          const Selection& selection) {
-  SelectedValues selected;
-  for (const auto& [session, own] : proportions_of(question, outcomes, selection)) {
+  const std::map<int, int> blocks = order_blocks_of(outcomes);
+  SelectedPeople selected;
+  for (const auto& [session, own] : shares_of(question, outcomes, selection)) {
     const auto& [first, second] = own;
-    if (is_difference(question) && (first.n == 0 || second.n == 0)) continue;
-    selected.trials += first.n + second.n;
-    selected.values.push_back(is_difference(question) ? without_noise(first.share().value_or(0.0) -
-                                                                      second.share().value_or(0.0))
-                                                      : first.share().value_or(0.0));
+    if (is_difference(question) && (first.right.n == 0 || second.right.n == 0)) continue;
+    selected.trials += first.right.n + second.right.n;
+    const double with_first = first.right.share().value_or(0.0);
+    const double difference = without_noise(with_first - second.right.share().value_or(0.0));
+    selected.sessions.push_back(session);
+    const auto block = blocks.find(session);
+    selected.people.push_back({is_difference(question) ? difference : with_first,
+                               first.first_block < second.first_block,
+                               block == blocks.end() ? -1 : block->second});
   }
   return selected;
 }
@@ -124,30 +145,54 @@ Interval range_of(const PrimaryQuestion& question) {
   return is_difference(question) ? Interval{-1.0, 1.0} : Interval{0.0, 1.0};
 }
 
-PrimaryChoice primary_choice(const PrimaryQuestion& question, const Selection& selection,
-                             const SelectedValues& selected) {
-  const MeanEstimate mean =
-      participant_mean(selected.values, range_of(question), 1.0 - question.alpha);
-  return {selection.name,  selection.words, mean.participants,
-          selected.trials, mean.mean,       mean.known_interval()};
+/// The lower limit that goes with a one-sided test: the lower end of the interval at 1 - 2 alpha.
+std::optional<double> bound_of(const PrimaryQuestion& question,
+                               std::span<const CrossoverPerson> people) {
+  if (question.sides == Sides::two || question.alpha >= 0.5) return std::nullopt;
+  const auto interval = primary_estimate(question, people, 1.0 - 2.0 * question.alpha).interval;
+  return interval ? std::optional(interval->low) : std::nullopt;
 }
 
-/// The lower limit that goes with a one-sided test: the lower end of the interval at 1 - 2 alpha.
-std::optional<double> bound_of(const PrimaryQuestion& question, const std::vector<double>& values) {
-  if (question.sides == Sides::two || question.alpha >= 0.5) return std::nullopt;
-  const auto interval =
-      participant_mean(values, range_of(question), 1.0 - 2.0 * question.alpha).known_interval();
-  return interval ? std::optional(interval->low) : std::nullopt;
+/// What belongs to the registered choice alone.
+void put_registered_choice(const PrimaryQuestion& question, int classes,
+                           std::span<const CrossoverPerson> people, PrimaryResult& result) {
+  result.p = primary_p(question, classes, people);
+  result.bound = bound_of(question, people);
+  if (question.test != design::RegisteredTest::crossover) return;
+  result.crossover =
+      crossover_estimate(people, result.null, question.sides, question.interval_level());
+  result.permutation = crossover_permutation(people, result.null, question.sides);
+}
+
+/// With stations as strata, if there are several.
+std::optional<StratifiedMean> over_stations(const PrimaryQuestion& question,
+                                            const Outcomes& outcomes,
+                                            const SelectedPeople& selected) {
+  // Periods are told apart within all stations together.
+  if (question.test == design::RegisteredTest::crossover) return std::nullopt;
+  std::map<int, int> station_of;
+  for (const SessionOutcome& session : outcomes.sessions) {
+    station_of[session.row.session] = session.row.station;
+  }
+  std::map<int, std::vector<double>> by_station;
+  for (std::size_t i = 0; i < selected.people.size(); ++i) {
+    by_station[station_of.at(selected.sessions[i])].push_back(selected.people[i].difference);
+  }
+  std::vector<std::vector<double>> strata;
+  for (auto& [station, values] : by_station) strata.push_back(std::move(values));
+  return stratified_mean(strata, range_of(question), question.interval_level());
 }
 
 std::string question_words(const PrimaryQuestion& question, const Outcomes& outcomes) {
   const std::string& first = outcomes.methods[question.first];
-  if (is_difference(question)) {
-    return fmt::format("mean over participants of the accuracy with {} less that with {}", first,
-                       outcomes.methods[question.second]);
+  if (!is_difference(question)) {
+    return fmt::format("mean over participants of the accuracy with {}, against chance ({:.1f}%)",
+                       first, 100.0 / static_cast<double>(outcomes.classes.size()));
   }
-  return fmt::format("mean over participants of the accuracy with {}, against chance ({:.1f}%)",
-                     first, 100.0 / static_cast<double>(outcomes.classes.size()));
+  const std::string against =
+      question.margin ? fmt::format(", against {:.3g} points", -100.0 * *question.margin) : "";
+  return fmt::format("mean over participants of the accuracy with {} less that with {}{}", first,
+                     outcomes.methods[question.second], against);
 }
 
 }  // namespace
@@ -158,38 +203,69 @@ std::optional<PrimaryQuestion> primary_question(const design::Study& study, int 
   PrimaryQuestion question;
   if (methods == 2) {
     question.estimand = Estimand::difference;
-    question.test = design::RegisteredTest::sign_flip;
+    question.test = design::usual_test_of(study);
     question.sides = Sides::two;
   }
   return question;
 }
 
 double null_of(const PrimaryQuestion& question, int classes) {
-  return is_difference(question) ? 0.0 : 1.0 / classes;
+  return is_difference(question) ? -question.margin.value_or(0.0) : 1.0 / classes;
 }
 
 std::string test_words(const PrimaryQuestion& question) {
-  const char* const test = question.test == design::RegisteredTest::sign_flip
-                               ? "sign flips over participants"
-                           : is_difference(question) ? "paired t test over participants"
-                                                     : "one-sample t test over participants";
-  return fmt::format("{}, {}", test, question.sides == Sides::one ? "one-sided" : "two-sided");
+  const auto test = [&]() -> std::string {
+    switch (question.test) {
+      case design::RegisteredTest::sign_flip:
+        return "sign flips over participants";
+      case design::RegisteredTest::crossover:
+        return "period-adjusted t test over participants";
+      case design::RegisteredTest::t:
+        break;
+    }
+    return is_difference(question) ? "paired t test over participants"
+                                   : "one-sample t test over participants";
+  };
+  return fmt::format("{}, {}", test(), question.sides == Sides::one ? "one-sided" : "two-sided");
+}
+
+std::vector<double> differences_of(std::span<const CrossoverPerson> people) {
+  std::vector<double> differences;
+  for (const CrossoverPerson& one : people) differences.push_back(one.difference);
+  return differences;
+}
+
+PrimaryEstimate primary_estimate(const PrimaryQuestion& question,
+                                 std::span<const CrossoverPerson> people, double level) {
+  if (question.test == design::RegisteredTest::crossover) {
+    const CrossoverEstimate found = crossover_estimate(people, 0.0, question.sides, level);
+    return {found.effect, found.interval};
+  }
+  const MeanEstimate mean = participant_mean(differences_of(people), range_of(question), level);
+  return {mean.mean, mean.known_interval()};
 }
 
 std::optional<double> primary_p(const PrimaryQuestion& question, int classes,
-                                std::span<const double> values) {
-  if (question.test == design::RegisteredTest::sign_flip) {
-    return sign_flip_p(values, question.sides);
+                                std::span<const CrossoverPerson> people) {
+  const double null = null_of(question, classes);
+  switch (question.test) {
+    case design::RegisteredTest::crossover:
+      return crossover_estimate(people, null, question.sides).p;
+    case design::RegisteredTest::sign_flip:
+      return sign_flip_p(differences_of(people), question.sides);
+    case design::RegisteredTest::t:
+      break;
   }
-  return t_test_p(values, null_of(question, classes), question.sides);
+  return t_test_p(differences_of(people), null, question.sides);
 }
 
-std::vector<double> primary_values(const PrimaryQuestion& question, const Outcomes& outcomes) {
+std::vector<CrossoverPerson> primary_values(const PrimaryQuestion& question,
+                                            const Outcomes& outcomes) {
   Selection counted;
   for (const SessionOutcome& session : outcomes.sessions) {
     if (session.counted) counted.sessions.insert(session.row.session);
   }
-  return values_of(question, outcomes, counted).values;
+  return people_of(question, outcomes, counted).people;
 }
 
 std::optional<PrimaryResult> primary_result(const Outcomes& outcomes) {
@@ -197,6 +273,7 @@ std::optional<PrimaryResult> primary_result(const Outcomes& outcomes) {
       primary_question(outcomes.design, static_cast<int>(outcomes.methods.size()));
   if (!question) return std::nullopt;
   const auto classes = static_cast<int>(outcomes.classes.size());
+  const double level = question->interval_level();
   PrimaryResult result{.estimand = question->estimand,
                        .words = question_words(*question, outcomes),
                        .test = test_words(*question),
@@ -204,14 +281,19 @@ std::optional<PrimaryResult> primary_result(const Outcomes& outcomes) {
                        .sides = question->sides,
                        .alpha = question->alpha,
                        .level = question->alpha,
-                       .smallest_effect = question->smallest_effect};
+                       .interval_level = level,
+                       .smallest_effect = question->smallest_effect,
+                       .margin = question->margin};
   for (const Selection& selection : selections(outcomes)) {
-    const SelectedValues selected = values_of(*question, outcomes, selection);
+    const SelectedPeople selected = people_of(*question, outcomes, selection);
     if (result.choices.empty()) {
-      result.p = primary_p(*question, classes, selected.values);
-      result.bound = bound_of(*question, selected.values);
+      put_registered_choice(*question, classes, selected.people, result);
+      result.stations = over_stations(*question, outcomes, selected);
     }
-    result.choices.push_back(primary_choice(*question, selection, selected));
+    const PrimaryEstimate found = primary_estimate(*question, selected.people, level);
+    result.choices.push_back({selection.name, selection.words,
+                              static_cast<int>(selected.people.size()), selected.trials,
+                              found.estimate, found.interval});
   }
   const StudyCourse course = course_of(outcomes, result.registered().participants);
   if (const auto& registered = outcomes.design.registration.analysis) {

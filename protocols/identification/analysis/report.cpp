@@ -4,6 +4,7 @@
 #include "analysis/statistics/paired_tests.hpp"
 #include "protocols/identification/analysis/chance.hpp"
 #include "protocols/identification/analysis/counted_trials.hpp"
+#include "protocols/identification/analysis/order.hpp"
 #include "protocols/identification/analysis/primary.hpp"
 #include "protocols/identification/analysis/report_parts.hpp"
 
@@ -27,6 +28,14 @@ void adjust_swaps(std::vector<MethodReport>& methods) {
   }
 }
 
+/// A public report lists participants by their names, which are ranks, and so not in the order of
+/// sessions.
+void order_by_name(std::vector<MethodReport>& methods) {
+  for (MethodReport& method : methods) {
+    std::ranges::sort(method.per_participant, {}, &ParticipantAccuracy::participant);
+  }
+}
+
 }  // namespace
 
 StudyReport make_report(const Outcomes& outcomes) {
@@ -38,6 +47,7 @@ StudyReport make_report(const Outcomes& outcomes) {
     report.methods.push_back(method_report(outcomes, i, counted));
   }
   adjust_swaps(report.methods);
+  if (outcomes.collection.is_public) order_by_name(report.methods);
   report.pairs = method_pairs(classes, counted);
   if (report.methods.size() == 2) report.comparison = report.pairs.front().overall;
   report.together = methods_together(classes, counted);
@@ -86,6 +96,47 @@ void add_class_accuracies(const std::vector<OwnTrials>& by_participant, MethodRe
                                clopper_pearson_interval(accuracy), jeffreys_interval(accuracy),
                                participant_mean(shares_of_class(by_participant, i))});
   }
+}
+
+/// What each participant answered.
+std::vector<ConfusionMatrix> own_confusions(int classes,
+                                            const std::vector<OwnTrials>& by_participant) {
+  std::vector<ConfusionMatrix> own;
+  for (const OwnTrials& trials : by_participant) {
+    if (!trials.empty()) own.emplace_back(classes, choices_of(trials));
+  }
+  return own;
+}
+
+/// Of participants' means over the classes from `first` to `last`.
+UnbiasedHits unbiased_hits(const std::vector<ConfusionMatrix>& participants, int first, int last) {
+  std::vector<double> rates;
+  double by_chance = 0.0;
+  for (const ConfusionMatrix& own : participants) {
+    double rate = 0.0;
+    double chance = 0.0;
+    int presented = 0;
+    for (int i = first; i <= last; ++i) {
+      const auto one = unbiased_hit_rate(own, i);
+      if (!one) continue;
+      ++presented;
+      rate += *one;
+      chance += unbiased_hit_rate_by_chance(own, i).value_or(0.0);
+    }
+    if (presented == 0) continue;
+    rates.push_back(rate / presented);
+    by_chance += chance / presented;
+  }
+  UnbiasedHits hits{participant_mean(rates)};
+  if (!rates.empty()) hits.by_chance = by_chance / static_cast<double>(rates.size());
+  return hits;
+}
+
+void add_unbiased_hits(int classes, const std::vector<OwnTrials>& by_participant,
+                       MethodReport& report) {
+  const std::vector<ConfusionMatrix> own = own_confusions(classes, by_participant);
+  for (int i = 0; i < classes; ++i) report.unbiased.push_back(unbiased_hits(own, i, i));
+  report.unbiased.push_back(unbiased_hits(own, 0, classes - 1));
 }
 
 ParticipantAccuracy participant_accuracy(int classes, const std::string& name,
@@ -151,11 +202,14 @@ MethodReport method_report(const Outcomes& outcomes, int method, const CountedTr
   add_confusions(outcomes, counted, method, report);
   add_class_accuracies(counted.trials[method], report);
   add_participants(classes, counted, method, report);
+  add_unbiased_hits(classes, counted.trials[method], report);
   KnownMatches known;
   report.chance = chance_of(outcomes, method, kMostChanceDeals, &known);
   report.prevalence = own_prevalence(outcomes, method, &known);
   report.reaction = reaction_times(outcomes, method);
   report.breakdowns = breakdowns(outcomes, method);
+  report.order = order_of(outcomes, method);
+  report.confidence = confidence_of(outcomes, method);
   report.robustness = robustness(outcomes, method);
   return report;
 }

@@ -8,11 +8,13 @@
 #include "analysis/statistics/d_prime.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/information_transfer.hpp"
+#include "analysis/statistics/order_effects.hpp"
 #include "analysis/statistics/paired_tests.hpp"
 #include "analysis/statistics/prevalence.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "analysis/study_head.hpp"
+#include "protocols/identification/analysis/confidence.hpp"
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 #include "protocols/identification/analysis/subsets.hpp"
 
@@ -34,6 +36,12 @@ struct ClassAccuracy {
   [[nodiscard]] bool has_interval_over_participants() const noexcept {
     return mean.participants > 1 && mean.interval.low < mean.interval.high;
   }
+};
+
+/// unbiased_hit_rate of each participant's own answers.
+struct UnbiasedHits {
+  MeanEstimate rate;                  ///< mean over participants
+  std::optional<double> by_chance{};  ///< mean of unbiased_hit_rate_by_chance
 };
 
 struct ParticipantAccuracy {
@@ -65,7 +73,10 @@ struct MethodReport {
   std::optional<ChoiceModel> choice{};
   LabelMatching matching{};             ///< of the pooled trials
   std::vector<ReactionTimes> reaction;  ///< by class, then of all classes together
+  std::vector<UnbiasedHits> unbiased;   ///< by class, then of participants' means over classes
   std::vector<Breakdown> breakdowns;
+  std::optional<OrderEffects> order{};
+  std::optional<ConfidenceReport> confidence{};
   std::vector<SubsetAccuracy> robustness;
 };
 

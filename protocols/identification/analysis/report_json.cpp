@@ -9,13 +9,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json quartiles_json(const Quartiles& quartiles) {
-  return {{"n", quartiles.n},
-          {"lower_quartile", figure_json(quartiles.lower)},
-          {"median", figure_json(quartiles.median)},
-          {"upper_quartile", figure_json(quartiles.upper)}};
-}
-
 Json groups_json(const Breakdown& breakdown) {
   Json groups = Json::array();
   for (const GroupAccuracy& one : breakdown.groups) {
@@ -197,6 +190,7 @@ nlohmann::ordered_json report_object(const StudyReport& report) {
   if (report.cues) object["cues"] = cues_object(*report.cues);
   object["references"] = references_object();
   put_registered(object, report);
+  put_people(object, report);
   return object;
 }
 

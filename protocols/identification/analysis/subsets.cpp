@@ -6,7 +6,6 @@
 #include <chrono>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,31 +14,11 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-constexpr const char* kFirst = "first of its block";
-
 /// A counted trial, and its place among the trials that the participant felt.
 struct PlacedTrial {
   const TrialOutcome* trial = nullptr;
-  const TrialOutcome* previous = nullptr;  ///< in the same block; null: none
   int place = 0;  ///< from 1, among the participant's scored trials with the method
 };
-
-/// All presentations that are not void, in the order in which they were felt. An interrupted trial
-/// stands where it was repeated; what the participant felt before the interruption does not appear.
-std::vector<const TrialOutcome*> as_felt(const Outcomes& outcomes) {
-  std::vector<const TrialOutcome*> felt;
-  for (const TrialOutcome& trial : outcomes.trials) {
-    if (trial.row.state != store::TrialState::voided) felt.push_back(&trial);
-  }
-  std::ranges::stable_sort(felt, {}, [](const TrialOutcome* trial) {
-    return std::tuple(trial->row.session, trial->row.presented_at, trial->row.trial);
-  });
-  return felt;
-}
-
-bool same_block(const TrialOutcome& a, const TrialOutcome& b) {
-  return a.row.session == b.row.session && a.row.block == b.row.block;
-}
 
 std::vector<PlacedTrial> placed_trials(const Outcomes& outcomes, int method) {
   std::vector<PlacedTrial> placed;
@@ -49,8 +28,7 @@ std::vector<PlacedTrial> placed_trials(const Outcomes& outcomes, int method) {
     if (before == nullptr || before->row.session != trial->row.session) place = 0;
     const bool scored = trial->scored && trial->stimulus.method == method;
     if (scored) ++place;
-    const bool follows = before != nullptr && same_block(*before, *trial);
-    if (scored && trial->counted) placed.push_back({trial, follows ? before : nullptr, place});
+    if (scored && trial->counted) placed.push_back({trial, place});
     before = trial;
   }
   return placed;
@@ -95,23 +73,6 @@ Group group_of_order(const Outcomes& outcomes, const std::vector<int>& order) {
   return {place, fmt::format("{}", fmt::join(labels, ", then "))};
 }
 
-Group group_felt_before(const Outcomes& outcomes, const PlacedTrial& placed) {
-  const auto classes = static_cast<int>(outcomes.classes.size());
-  if (placed.previous == nullptr) return {classes + 1, kFirst};
-  if (placed.previous->kind == design::PresentationKind::catch_trial)
-    return {classes, "no texture"};
-  const int before = placed.previous->stimulus.class_index;
-  return {before, outcomes.classes[before]};
-}
-
-Group group_answered_before(const Outcomes& outcomes, const PlacedTrial& placed) {
-  const auto classes = static_cast<int>(outcomes.classes.size());
-  if (placed.previous == nullptr) return {classes + 1, kFirst};
-  const std::optional<int> answered = placed.previous->response;
-  if (!answered) return {classes, "no response"};
-  return {*answered, outcomes.classes[*answered]};
-}
-
 /// Counts trials and correct answers by the group that `group_of` returns.
 template <typename GroupOf>
 Breakdown broken_down(BreakdownKind kind, const std::vector<PlacedTrial>& trials,
@@ -144,13 +105,9 @@ std::string name_of(BreakdownKind kind) {
     case BreakdownKind::trial:
       return "trial";
     case BreakdownKind::order_group:
-      return "order_group";
-    case BreakdownKind::previous_stimulus:
-      return "previous_stimulus";
-    case BreakdownKind::previous_response:
       break;
   }
-  return "previous_response";
+  return "order_group";
 }
 
 std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method) {
@@ -172,10 +129,6 @@ std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method) {
       return group_of_order(outcomes, orders.at(placed.trial->row.session));
     });
   }
-  add(BreakdownKind::previous_stimulus,
-      [&](const PlacedTrial& placed) { return group_felt_before(outcomes, placed); });
-  add(BreakdownKind::previous_response,
-      [&](const PlacedTrial& placed) { return group_answered_before(outcomes, placed); });
   return all;
 }
 
@@ -188,7 +141,8 @@ constexpr TrialSubset kSubsets[] = {TrialSubset::counted, TrialSubset::answered,
 
 std::set<int> excluded_sessions(const Outcomes& outcomes) {
   std::set<int> excluded;
-  for (const auto& [row, counted] : outcomes.sessions) {
+  for (const SessionOutcome& session : outcomes.sessions) {
+    const store::SessionRow& row = session.row;
     const bool left_out = row.excluded && !row.erased && row.replaced_by != row.participant;
     const bool of_study = row.pilot == outcomes.pilot && row.simulated == outcomes.simulated;
     if (left_out && of_study && row.state == store::SessionState::completed)

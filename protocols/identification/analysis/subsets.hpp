@@ -1,4 +1,4 @@
-/// \file Accuracy in subsets of trials: by place, by what came before, with and without trials that
+/// \file Accuracy in subsets of trials: by place, with and without trials that
 /// may be left out; and reaction times.
 #pragma once
 
@@ -13,11 +13,9 @@
 namespace touchtrial::analysis::identification {
 
 enum class BreakdownKind {
-  exemplar,           ///< groups are named "class: image"
-  trial,              ///< the place among a participant's scored trials of the method, from 1
-  order_group,        ///< row of the Williams design of method blocks
-  previous_stimulus,  ///< class of the previous presentation in the same block
-  previous_response,  ///< class that was answered to that presentation
+  exemplar,    ///< groups are named "class: image"
+  trial,       ///< the place among a participant's scored trials of the method, from 1
+  order_group  ///< row of the Williams design of method blocks
 };
 
 struct GroupAccuracy {
@@ -31,7 +29,7 @@ struct Breakdown {
   std::vector<GroupAccuracy> groups;  ///< in the order of the study; none is empty
 };
 
-/// "exemplar", "trial", "order_group", "previous_stimulus", "previous_response"
+/// "exemplar", "trial", "order_group"
 [[nodiscard]] std::string name_of(BreakdownKind kind);
 
 /// The breakdowns of one method's counted trials that have at least two groups.

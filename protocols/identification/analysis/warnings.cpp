@@ -185,6 +185,18 @@ void warn_of_sign_flips(const StudyReport& report, Warnings& warnings) {
   }
 }
 
+/// Methods in blocks: whatever is not adjusted for the period has its effect in its error.
+void warn_of_periods(const Outcomes& outcomes, const StudyReport& report, Warnings& warnings) {
+  if (report.pairs.empty() || outcomes.design.trials.blocks == design::Blocks::mixed) return;
+  const std::string effect = "learning or fatigue widens intervals and raises p.";
+  const bool adjusts = report.primary && report.primary->crossover;
+  warnings.push_back("Methods came one after the other. " +
+                     (adjusts ? "The deciding test adjusts for the period; differences and sign "
+                                "flips in the comparison of methods do not: " +
+                                    effect
+                              : "No test here adjusts for the period: " + effect));
+}
+
 void warn_of_several(const StudyReport& report, Warnings& warnings) {
   if (report.methods.size() < 3) return;
   warnings.push_back(
@@ -222,6 +234,7 @@ std::vector<std::string> comparison_warnings(const Outcomes& outcomes, const Stu
   warn_of_few_participants(report, warnings);
   warn_of_several(report, warnings);
   warn_of_sign_flips(report, warnings);
+  warn_of_periods(outcomes, report, warnings);
   warn_of_images(outcomes, report, warnings);
   return warnings;
 }

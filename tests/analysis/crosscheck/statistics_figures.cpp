@@ -8,16 +8,20 @@
 #include "analysis/statistics/chance_test.hpp"
 #include "analysis/statistics/choice_model.hpp"
 #include "analysis/statistics/cluster_bootstrap.hpp"
+#include "analysis/statistics/confidence.hpp"
 #include "analysis/statistics/confusion.hpp"
+#include "analysis/statistics/crossover.hpp"
 #include "analysis/statistics/d_prime.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/group_sequential.hpp"
 #include "analysis/statistics/information_transfer.hpp"
 #include "analysis/statistics/mean_test.hpp"
+#include "analysis/statistics/order_effects.hpp"
 #include "analysis/statistics/paired_tests.hpp"
 #include "analysis/statistics/prevalence.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/statistics/strata.hpp"
 
 #include <cmath>
 #include <exception>
@@ -87,6 +91,21 @@ analysis::Sides sides(const json& c) {
 
 Numbers t_test(const json& c) {
   return {analysis::t_test_p(numbers(c.at("values")), c.at("null"), sides(c))};
+}
+
+Numbers crossover(const json& c) {
+  std::vector<analysis::CrossoverPerson> people;
+  for (const json& one : c.at("people")) people.push_back({one[0], one[1], one[2]});
+  const auto found = analysis::crossover_estimate(people, c.at("null"), sides(c), c.at("level"));
+  const auto deals = analysis::crossover_permutation(people, c.at("null"), sides(c));
+  Numbers all{found.effect, found.period, found.p};
+  for (const auto& interval : {found.interval, found.period_interval}) {
+    all.push_back(interval ? std::optional(interval->low) : std::nullopt);
+    all.push_back(interval ? std::optional(interval->high) : std::nullopt);
+  }
+  all.push_back(deals ? std::optional(deals->p) : std::nullopt);
+  all.push_back(deals ? std::optional(deals->least) : std::nullopt);
+  return all;
 }
 
 Numbers sequential(const json& c) {
@@ -241,6 +260,52 @@ Numbers mean_bootstrap(const json& c) {
   return both(analysis::bootstrap_mean(numbers(c.at("values")), 0, c.at("draws"), c.at("level")));
 }
 
+/// Of each class, the rate and its mean by chance.
+Numbers unbiased_hits(const json& c) {
+  const analysis::ConfusionMatrix matrix = confusion(c.at("counts"));
+  Numbers rates;
+  for (int i = 0; i < matrix.classes(); ++i) {
+    rates.push_back(analysis::unbiased_hit_rate(matrix, i));
+    rates.push_back(analysis::unbiased_hit_rate_by_chance(matrix, i));
+  }
+  return rates;
+}
+
+Numbers type_2(const json& c) {
+  std::vector<analysis::RatedAnswer> answers;
+  for (std::size_t i = 0; i < c.at("ratings").size(); ++i) {
+    answers.push_back({c.at("ratings")[i], c.at("correct")[i]});
+  }
+  return {analysis::type_2_area(answers)};
+}
+
+Numbers slope_of_places(const json& c) {
+  analysis::FeltBlock block;
+  for (const json& right : c.at("correct")) {
+    analysis::FeltTrial trial{0, right.get<int>() == 1 ? 0 : 1};
+    trial.place = static_cast<double>(block.size()) + 1.0;
+    block.push_back(trial);
+  }
+  const std::vector<std::vector<analysis::FeltBlock>> one = {{block}};
+  return {analysis::order_effects(one, {}, 1)->slope.mean};
+}
+
+Numbers stratified(const json& c) {
+  std::vector<std::vector<double>> strata;
+  for (const json& own : c.at("strata")) strata.push_back(numbers(own));
+  const auto found = analysis::stratified_mean(strata, {-1e9, 1e9}, c.at("level")).value();
+  Numbers all{found.mean};
+  for (const auto& end : both(found.interval)) all.push_back(end);
+  if (!found.random) {
+    all.resize(7);
+    return all;
+  }
+  all.emplace_back(found.random->mean);
+  for (const auto& end : both(found.random->interval)) all.push_back(end);
+  all.emplace_back(found.random->spread);
+  return all;
+}
+
 Numbers numbers_of(const json& one) {
   static const std::map<std::string, Numbers (*)(const json&)> kStatistics{
       {"wilson", wilson},
@@ -249,6 +314,7 @@ Numbers numbers_of(const json& one) {
       {"t_interval", t_interval},
       {"sign_flip", sign_flip},
       {"t_test", t_test},
+      {"crossover", crossover},
       {"nominal_levels", sequential},
       {"spread", spread},
       {"prevalence", prevalence},
@@ -260,6 +326,10 @@ Numbers numbers_of(const json& one) {
       {"information_transfer", transfer},
       {"chance_test", chance},
       {"choice_model", choices},
+      {"unbiased_hits", unbiased_hits},
+      {"type_2_area", type_2},
+      {"slope", slope_of_places},
+      {"strata", stratified},
       {"label_matching", matching},
       {"label_swap", label_swap},
       {"discovery", discovery},

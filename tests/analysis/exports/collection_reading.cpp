@@ -106,7 +106,8 @@ store::StudyCommitment commitment_of(const std::filesystem::path& study) {
 store::SessionRow session_row_of(const CsvRow& row) {
   store::SessionRow session;
   session.session = number_of<int>(row.at("session"));
-  session.own_session = session.session;  // exports do not say where it was collected
+  session.own_session = session.session;  // exports do not say its number at the station
+  session.station = row.at("station").empty() ? 0 : number_of<int>(row.at("station"));
   session.participant = row.at("participant");
   session.enrolment = number_of<int>(row.at("enrolment"));
   session.state = session_state_of(row.at("state"));

@@ -74,7 +74,9 @@ void read_sessions(analysis::Outcomes& outcomes, const std::filesystem::path& fo
     }
     const store::SessionRow session = session_row_of(row);
     if (outcomes.state.interim) outcomes.state.interim->insert(session.session);
-    outcomes.sessions.push_back({session, is_set(row.at("counted"))});
+    const std::string& block = row.at("order_block");
+    outcomes.sessions.push_back(
+        {session, is_set(row.at("counted")), block.empty() ? -1 : number_of<int>(block)});
     const std::string& decided = row.at("after_look");
     const auto note = [&](const char* word, std::set<int>& sessions) {
       if (decided.find(word) != std::string::npos) sessions.insert(session.session);

@@ -115,6 +115,60 @@ TEST_CASE("With the key the safety record has what was typed, also of erased peo
   CHECK(says(after, "asleep"));
 }
 
+TEST_CASE("The safety record says where the largest force of an open session comes from") {
+  FakeStudy study(design::identification::classification(), {.simulated = false});
+  const auto felt = [](const design::Presentation& shown) {
+    store::Trace trace;
+    trace.samples.assign(20, {{0.0, 0.0, -0.5}, {0.0, 0.0, 1.04 + 0.5 * (shown.trial % 2)}});
+    return trace;
+  };
+  const auto add = [&](const std::string& participant, int enrolment, int presentations) {
+    study.add({.participant = participant,
+               .enrolment = enrolment,
+               .answers = FakeStudy::always_right(),
+               .stop_after = presentations,
+               .traces = felt,
+               .ends = false});
+  };
+  add("P01", 1, 2);
+  add("P02", 2, 2);
+  add("P03", 3, 0);
+  study.add(with_a_cramp("P04", 4));
+  study.store().withdraw(2, milliseconds(30), "asked to");
+  const auto forces = [&](const design::StudyKey* key) {
+    std::vector<std::string> found;
+    const auto files = analysis::export_safety(study.store(), key, study.folder() / "safety");
+    for (const CsvRow& row : rows_of(files[0])) {
+      found.push_back(row.at("largest_force_of") + ":" + row.at("largest_force_n"));
+    }
+    return found;
+  };
+  CHECK(forces(nullptr) ==
+        std::vector<std::string>{"not-known:", "not-known:", "not-known:", "none:"});
+  CHECK(forces(&study.key()) ==
+        std::vector<std::string>{"so-far:1.5", "not-known:", "none:", "none:"});
+}
+
+TEST_CASE("Exports of what people said of themselves are their reader's alone") {
+  FakeStudy study(design::identification::classification(), {.simulated = false});
+  add_three(study);
+  const auto is_private = [](const std::filesystem::path& file) {
+    const auto others = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
+    return (std::filesystem::status(file).permissions() & others) == std::filesystem::perms::none;
+  };
+  store::PersonalRecord person;
+  person.participant = "P01";
+  person.contact = "somebody@example.org";
+  const auto folder = study.folder() / "one";
+  const auto files = analysis::export_participant({study.store()}, "P01", person, folder);
+  for (const auto& file : files) CHECK(is_private(file) == (file.filename() == "P01_personal.csv"));
+  const auto export_with = [&](const design::StudyKey* key) {
+    return analysis::export_safety(study.store(), key, study.folder() / "safety");
+  };
+  CHECK_FALSE(is_private(export_with(nullptr)[1]));
+  CHECK(is_private(export_with(&study.key())[1]));
+}
+
 TEST_CASE("A participant's export has that participant alone, and outcomes only where given") {
   FakeStudy study(design::identification::classification(), {.simulated = false});
   study.add({.participant = "P-1", .enrolment = 1, .answers = FakeStudy::always_right()});

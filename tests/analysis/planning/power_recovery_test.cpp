@@ -7,15 +7,16 @@
 namespace touchtrial {
 namespace {
 
-planning::PowerReport report_of(const RehearsedTinyStudy& study, std::vector<int> sizes, int runs) {
+planning::PowerReport report_of(const RehearsedTinyStudy& study, std::vector<int> sizes, int runs,
+                                double first_half_loss = 0.0) {
   const planning::BankedFeelings bank = study.bank(30, 4);
   planning::PowerPlan plan;
   plan.participants = std::move(sizes);
   plan.runs = runs;
   plan.stop_early = false;
   planning::PowerProgress progress = planning::new_progress({}, plan, {});
-  planning::make_runs(study.planned(bank, plan.participants.back()), study.test, {.jobs = 2},
-                      progress);
+  planning::make_runs(study.planned(bank, plan.participants.back(), first_half_loss), study.test,
+                      {.jobs = 2}, progress);
   return planning::make_power_report(progress);
 }
 
@@ -60,9 +61,17 @@ TEST_CASE("the test against chance has its type-I error, and more power with mor
 
 TEST_CASE(
     "two methods that feel alike differ as often as the test's level says, with bias and lapses") {
-  TinyStudyOptions options = briefly(R"({"repeats":2})");
+  TinyStudyOptions options = briefly(R"({"repeats":2,"blocks":"mixed"})");
   options.comparison = true;
   check_type_one(report_of(RehearsedTinyStudy(options), {8, 14}, 500));
+}
+
+TEST_CASE("two methods that feel alike differ as seldom in blocks by method, whoever learns") {
+  TinyStudyOptions options = briefly(R"({"repeats":2})");
+  options.comparison = true;
+  const RehearsedTinyStudy study(options);
+  check_type_one(report_of(study, {8, 14}, 500));
+  check_type_one(report_of(study, {14}, 500, 0.3));
 }
 
 TEST_CASE("the test holds its type-I error with orders that the study's rule draws") {

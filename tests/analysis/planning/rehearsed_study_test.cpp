@@ -91,22 +91,34 @@ TEST_CASE(
 }
 
 TEST_CASE("the servo path agrees with simulate for a comparison of two methods") {
-  TinyStudyOptions options;
-  options.comparison = true;
-  options.side_px = 60;
-  options.trials = R"({"repeats":1})";
-  RehearsedTinyStudy study(options);
-  const planning::RehearsedStudy planned = study.planned(study.servo);
-  const analysis::Outcomes fast = planned.outcomes(3, planning::Hypothesis::population, 8);
-  const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, 8);
-  check_same_answers(fast, whole);
-  const planning::PowerRun run = planning::judged(study.test, fast, true);
-  const analysis::MethodComparison overall =
-      *analysis::identification::make_report(whole).comparison;
-  CHECK(run.p == overall.p);
-  CHECK(run.estimate == overall.difference);
-  CHECK(run.low == overall.interval.low);
-  CHECK(run.high == overall.interval.high);
+  for (const char* trials : {R"({"repeats":1,"blocks":"mixed"})", R"({"repeats":1})"}) {
+    INFO(trials);
+    TinyStudyOptions options;
+    options.comparison = true;
+    options.side_px = 60;
+    options.trials = trials;
+    RehearsedTinyStudy study(options);
+    const planning::RehearsedStudy planned = study.planned(study.servo);
+    const analysis::Outcomes fast = planned.outcomes(3, planning::Hypothesis::population, 8);
+    const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, 8);
+    check_same_answers(fast, whole);
+    const planning::PowerRun run = planning::judged(study.test, fast, true);
+    const analysis::identification::StudyReport report =
+        analysis::identification::make_report(whole);
+    CHECK(run.p == report.primary->p);
+    CHECK(run.estimate == report.primary->registered().estimate);
+    CHECK(run.low == report.primary->registered().interval->low);
+    CHECK(run.high == report.primary->registered().interval->high);
+    if (report.primary->crossover) {
+      CHECK(
+          analysis::crossover_permutation(
+              analysis::identification::primary_values(study.test, fast), 0.0, analysis::Sides::two)
+              ->p == report.primary->permutation->p);
+    } else {
+      CHECK(run.p == report.comparison->p);
+      CHECK(run.low == report.comparison->interval.low);
+    }
+  }
 }
 
 /// Repeats what the servo path felt, without a servo.
@@ -219,6 +231,62 @@ TEST_CASE("under the null nobody feels what is presented") {
   REQUIRE(trials == 20 * 5 * 25);
   // 500 of 2,500 by chance; the standard error is at most 20.
   CHECK(std::abs(correct - 500) < 90);
+}
+
+/// The share of right answers in many simulated studies, by half of the session and by method.
+struct SharesRight {
+  analysis::Proportion half[2];
+  analysis::Proportion method[2];
+
+  SharesRight(const planning::RehearsedStudy& planned, planning::Hypothesis hypothesis) {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      for (const analysis::TrialOutcome& trial : planned.outcomes(12, hypothesis, seed).trials) {
+        for (analysis::Proportion* one : {&half[trial.row.block], &method[trial.stimulus.method]}) {
+          ++one->n;
+          one->correct += trial.correct() ? 1 : 0;
+        }
+      }
+    }
+  }
+};
+
+double share_right(const analysis::Proportion& proportion) {
+  return proportion.share().value();
+}
+
+RehearsedTinyStudy two_methods() {
+  TinyStudyOptions options;
+  options.comparison = true;
+  options.side_px = 60;
+  options.trials = R"({"repeats":2})";
+  return RehearsedTinyStudy(options);
+}
+
+TEST_CASE("people who learn miss right answers in the first half, whichever method it has") {
+  const RehearsedTinyStudy study = two_methods();
+  const planning::BankedFeelings bank = study.bank();
+  const SharesRight still(study.planned(bank), planning::Hypothesis::null);
+  const SharesRight learning(study.planned(bank, 12, 0.3), planning::Hypothesis::null);
+  // 4,800 answers each: standard errors of at most .0072, and .010 of a difference.
+  CHECK(share_right(learning.half[0]) == Approx(0.7 * share_right(still.half[0])).margin(0.03));
+  CHECK(learning.half[1] == still.half[1]);
+  CHECK(share_right(learning.method[0]) == Approx(share_right(learning.method[1])).margin(0.04));
+}
+
+TEST_CASE("with a margin, methods are alike, or the first is worse by the margin") {
+  RehearsedTinyStudy study = two_methods();
+  study.test.margin = 0.1;
+  study.test.sides = analysis::Sides::one;
+  const planning::BankedFeelings bank = study.bank();
+  const planning::RehearsedStudy planned = study.planned(bank);
+  const SharesRight alike(planned, planning::Hypothesis::population);
+  const SharesRight worse(planned, planning::Hypothesis::null);
+  CHECK(share_right(alike.method[0]) - share_right(alike.method[1]) == Approx(0.0).margin(0.04));
+  CHECK(share_right(worse.method[0]) - share_right(worse.method[1]) == Approx(-0.1).margin(0.04));
+  CHECK(planning::judged(study.test, planned.outcomes(12, planning::Hypothesis::null, 1), true)
+            .attainable == 0.05);
+  study.test.margin = 1.0;
+  CHECK_THROWS_WITH(study.planned(bank), Catch::Contains("register a smaller margin"));
 }
 
 TEST_CASE("a study whose participants could never answer is refused") {

@@ -159,4 +159,38 @@ TEST_CASE("The p of swapped labels is that of fair coins, times the exchanges of
   CHECK(p_of({{0, 0}, {0, 0}}) == 1.0);
 }
 
+TEST_CASE("An unbiased hit rate is not raised by giving one answer every time") {
+  const analysis::ConfusionMatrix fair = confusion_of_counts({{4, 1}, {2, 3}});
+  CHECK(*analysis::unbiased_hit_rate(fair, 0) == Approx(4.0 / 5.0 * 4.0 / 6.0));
+  CHECK(*analysis::unbiased_hit_rate(fair, 1) == Approx(3.0 / 5.0 * 3.0 / 4.0));
+  const analysis::ConfusionMatrix stubborn = confusion_of_counts({{5, 0}, {5, 0}});
+  CHECK(*analysis::unbiased_hit_rate(stubborn, 0) == Approx(0.5));
+  CHECK(analysis::unbiased_hit_rate(stubborn, 1) == 0.0);
+  analysis::ConfusionMatrix silent(3);
+  silent.add({0, std::nullopt});
+  CHECK(analysis::unbiased_hit_rate(silent, 0) == 0.0);
+  CHECK(analysis::unbiased_hit_rate_by_chance(silent, 0) == 0.0);
+  CHECK_FALSE(analysis::unbiased_hit_rate(silent, 1));
+  CHECK_FALSE(analysis::unbiased_hit_rate_by_chance(silent, 1));
+}
+
+TEST_CASE("By chance an unbiased hit rate is its mean over all orders of the presentations") {
+  std::vector<int> presented = {0, 0, 1, 1, 1, 2};
+  const std::vector<std::optional<int>> answered = {0, 1, 0, std::nullopt, 1, 0};
+  analysis::ConfusionMatrix first(3);
+  for (std::size_t i = 0; i < presented.size(); ++i) first.add({presented[i], answered[i]});
+  for (int of = 0; of < 3; ++of) {
+    double sum = 0.0;
+    int orders = 0;
+    std::ranges::sort(presented);
+    do {
+      analysis::ConfusionMatrix one(3);
+      for (std::size_t i = 0; i < presented.size(); ++i) one.add({presented[i], answered[i]});
+      sum += *analysis::unbiased_hit_rate(one, of);
+      ++orders;
+    } while (std::ranges::next_permutation(presented).found);
+    CHECK(*analysis::unbiased_hit_rate_by_chance(first, of) == Approx(sum / orders));
+  }
+}
+
 }  // namespace touchtrial

@@ -3,6 +3,7 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/hash.hpp"
 #include "protocols/design/refusal.hpp"
 #include "protocols/design/study_examples.hpp"
 #include "support/catch.hpp"
@@ -49,6 +50,18 @@ bool is_refused(const std::string& line, int number) {
 }
 
 }  // namespace
+
+TEST_CASE("a line of too few digits is refused, even if its check fits") {
+  for (const int number : {3, 5, 6}) {
+    const std::string check = to_hex(FieldHasher()
+                                         .add("touchtrial recovery sheet 1")
+                                         .add(std::int64_t{number})
+                                         .add("7")
+                                         .finish())
+                                  .substr(0, 4);
+    CHECK(is_refused(std::to_string(number) + ": 7 " + check, number));
+  }
+}
 
 TEST_CASE("a key made again from its lines is the same file, and so are its stations'") {
   const TempFolder folder;

@@ -38,9 +38,56 @@ TEST_CASE("a registration has the usual test of its estimand unless it says othe
   study = comparison_of(3);
   study["registration"] = {{"estimand", "difference"}, {"alpha", 0.01}};
   const design::RegisteredAnalysis difference = parsed(study).registration.analysis.value();
-  CHECK(difference.test == design::RegisteredTest::sign_flip);
+  CHECK(difference.test == design::RegisteredTest::crossover);
   CHECK_FALSE(difference.one_sided);
   CHECK(difference.alpha == 0.01);
+  study["trials"] = {{"blocks", "mixed"}};
+  CHECK(parsed(study).registration.analysis->test == design::RegisteredTest::sign_flip);
+  json three = controls();
+  three["registration"] = {{"estimand", "difference"}, {"methods", {"edge", "adaptive"}}};
+  CHECK(parsed(three).registration.analysis->test == design::RegisteredTest::sign_flip);
+}
+
+TEST_CASE("a crossover needs two methods, one after the other") {
+  const json crossover = {{"estimand", "difference"}, {"test", "crossover"}};
+  CHECK(refusal_of(crossover, comparison_of(3)).empty());
+  json mixed = comparison_of(3);
+  mixed["trials"] = {{"blocks", "mixed"}};
+  CHECK_THAT(refusal_of(crossover, mixed), holds_text("/registration/test: adjusts for periods"));
+  CHECK_THAT(
+      refusal_of(
+          {{"estimand", "difference"}, {"test", "crossover"}, {"methods", {"edge", "adaptive"}}},
+          controls()),
+      holds_text("the study presents 3"));
+  CHECK_THAT(refusal_of({{"estimand", "mean-accuracy"}, {"test", "crossover"}}),
+             holds_text("/registration/test: is about differences"));
+}
+
+TEST_CASE("a margin is one-sided, decided by a t test, and in place of a smallest effect") {
+  const auto with = [](const json& more) {
+    json registration = {{"estimand", "difference"}, {"margin", 0.07}};
+    registration.update(more);
+    return refusal_of(registration, comparison_of(3));
+  };
+  json study = comparison_of(3);
+  study["registration"] = {{"estimand", "difference"}, {"margin", 0.07}};
+  design::RegisteredAnalysis analysis = parsed(study).registration.analysis.value();
+  CHECK(analysis.margin == 0.07);
+  CHECK(analysis.one_sided);
+  CHECK(analysis.test == design::RegisteredTest::crossover);
+  study["trials"] = {{"blocks", "mixed"}};
+  CHECK(parsed(study).registration.analysis->test == design::RegisteredTest::t);
+  CHECK(design::fields_of(parsed(study).registration)[3].second ==
+        "as good if worse by less than 7 points; decided by the 90 % t interval");
+  CHECK_THAT(with({{"smallest_effect", 0.1}}), holds_text("register one question"));
+  CHECK_THAT(with({{"sides", "two"}}), holds_text("/registration/sides: must be \"one\""));
+  CHECK_THAT(with({{"test", "sign-flip"}}), holds_text("flips signs about 0"));
+  CHECK_THAT(with({{"alpha", 0.5}}), holds_text("less than 0.5"));
+  CHECK_THAT(with({{"margin", 0.0}}), holds_text("/registration/margin"));
+  CHECK_THAT(with({{"margin", 1.01}}), holds_text("/registration/margin"));
+  CHECK_THAT(refusal_of({{"estimand", "mean-accuracy"}, {"margin", 0.07}}),
+             holds_text("/registration/margin: belongs to a difference"));
+  CHECK_THAT(refusal_of({{"margin", 0.07}}), holds_text("is given without \"estimand\""));
 }
 
 TEST_CASE("a registration must be one of this study") {
@@ -50,7 +97,7 @@ TEST_CASE("a registration must be one of this study") {
   CHECK_THAT(refusal_of({{"estimand", "mean-accuracy"}}, comparison_of(3)),
              holds_text("use \"difference\""));
   CHECK_THAT(refusal_of({{"estimand", "mean-accuracy"}, {"test", "sign-flip"}}),
-             holds_text("/registration/test: flips the signs"));
+             holds_text("/registration/test: is about differences"));
   CHECK_THAT(refusal_of({{"estimand", "mean-accuracy"}, {"smallest_effect", 0.2}}),
              holds_text("is 0.2, not above chance, which is 0.2"));
   CHECK_THAT(refusal_of({{"estimand", "mean-accuracy"}, {"methods", {"adaptive"}}}),

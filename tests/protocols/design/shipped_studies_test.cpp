@@ -41,8 +41,16 @@ TEST_CASE("the comparison study has four objects and both methods at the same rm
   CHECK(study.methods[1].method == engine::Method::tv_gabor);
   CHECK(study.methods[1].tv_gabor == engine::TvGaborOptions{});
   CHECK(study.rendering.equalise == engine::Equalise::rms);
-  CHECK(study.trials.blocks == design::Blocks::by_method);
+  CHECK(study.trials.blocks == design::Blocks::mixed);
   CHECK(study.scored_trials() == 40);
+}
+
+TEST_CASE("studies that compare methods mix them, so that their test needs no periods") {
+  for (const char* name : {"comparison.json", "comparison-textures.json", "controls.json"}) {
+    CHECK(design::load_study(kConfig / name).trials.blocks == design::Blocks::mixed);
+  }
+  const design::Study study = design::load_study(kConfig / "comparison.json");
+  CHECK(study.registration.analysis.value().test == design::RegisteredTest::sign_flip);
 }
 
 TEST_CASE("the surface study is the classification study under the other model") {

@@ -127,18 +127,25 @@ TEST_CASE("each station has every order of methods equally often, in blocks that
     const int rows = methods % 2 == 0 ? methods : 2 * methods;
     const design::StudyKey key = divided_key(study_with_methods(methods), 12 * rows, 3);
     std::set<std::vector<int>> blocks;
+    std::set<int> numbers_of_blocks;
     for (const Station& station : key.stations) {
       int number = station.ranges.front().first;
       for (int block = 0; block < 4; ++block) {
         std::vector<int> orders;
+        std::set<int> dealt_together;
         for (int i = 0; i < rows; ++i) {
+          dealt_together.insert(design::order_block_of(key.study, key.stations, number));
           orders.push_back(key.draw_of(number++, Draws::people).method_order);
         }
+        CHECK(dealt_together.size() == 1);
+        CHECK(numbers_of_blocks.insert(*dealt_together.begin()).second);
         blocks.insert(orders);
         std::ranges::sort(orders);
         for (int row = 0; row < rows; ++row) CHECK(orders[static_cast<std::size_t>(row)] == row);
       }
     }
+    CHECK(*numbers_of_blocks.begin() >= 0);
+    CHECK(design::order_block_of(key.study, key.stations, 12 * rows + 1) == -1);
     CHECK(blocks.size() > 1);  // 12 blocks in one and the same order: once in 2048 at most
   }
 }

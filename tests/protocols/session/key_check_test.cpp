@@ -48,6 +48,7 @@ TEST_CASE("every station of a divided study is proved, and an older file of one 
   design::hand_out_enrolments(stations, 10);
   design::divide(key, stations);
   const design::StationKey older = design::station_key(key, "cellar");
+  const design::StudyKey older_key = key;
   for (const std::string& name : names) {
     CHECK_NOTHROW(session::require_opens(key, design::station_key(key, name), study.pack()));
   }
@@ -56,7 +57,14 @@ TEST_CASE("every station of a divided study is proved, and an older file of one 
   CHECK_THROWS_WITH(session::require_opens(key, older, study.pack()),
                     holds_text("other enrolment numbers"));
   CHECK_THROWS_WITH(session::require_opens(key, station_of(study.key()), study.pack()),
-                    holds_text("a station that the key does not know"));
+                    holds_text("a station that the key does not know; give the station the file"));
+  const design::StationKey newer = design::station_key(key, "cellar");
+  CHECK_THROWS_WITH(session::require_opens(older_key, newer, study.pack()),
+                    holds_text("enrolment numbers that the key does not know: the key, or the "
+                               "recovery sheet that it was restored from, is from before"));
+  CHECK_THROWS_WITH(session::require_opens(study.key(), newer, study.pack()),
+                    holds_text("a station that the key does not know: the key, or the recovery "
+                               "sheet"));
 }
 
 TEST_CASE("a station's file that differs from the key in anything is refused") {

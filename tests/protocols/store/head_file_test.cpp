@@ -541,6 +541,31 @@ TEST_CASE("two databases do not share a second head file") {
   REQUIRE(one.read().at(1).record.acknowledged == 75);
 }
 
+TEST_CASE("one disk with heads of two studies whose databases have one name says whose it has") {
+  const TempFolder folder;
+  const std::filesystem::path disk = folder.path() / "disk";
+  for (const char* const name : {"disk", "one", "two"}) {
+    std::filesystem::create_directory(folder.path() / name);
+  }
+  HeadRecord record = some_record();
+  record.station = "attic";
+  const HeadFiles one(folder.path() / "one" / "study.db", known_signers(), disk);
+  one.update(station_signer(), becomes(record));
+  const std::string before = text_of(read_file(disk / "study.db.head"));
+  const Signer other(digest_of("another study's station"));
+  const HeadFiles two(folder.path() / "two" / "study.db", {other.public_half()}, disk);
+  const std::string whose = std::string("it says that it is of station attic of study ") +
+                            commitment().study_id + ": if this database is of another study";
+  for (const std::string& line : {unreadable([&] { static_cast<void>(two.read()); }),
+                                  refusal_of([&] { two.update(other, becomes(some_record())); })}) {
+    INFO(line);
+    REQUIRE(contains(line, (disk / "study.db.head").string()));
+    REQUIRE(contains(line, whose));
+    REQUIRE(contains(line, "name a folder of its own with `run --heads`"));
+  }
+  REQUIRE(text_of(read_file(disk / "study.db.head")) == before);
+}
+
 TEST_CASE("a record of a database has its chains' ends, its open sessions and all answers") {
   StoredFixture study(2);  // each with two answers
   OpenSession third(*study.store, 3);

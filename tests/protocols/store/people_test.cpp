@@ -6,6 +6,7 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <thread>
 
 using namespace touchtrial;
 using namespace touchtrial::store;
@@ -351,6 +352,23 @@ TEST_CASE(
   const Bytes file = read_file(study.path);
   REQUIRE(std::search(file.begin(), file.end(), wrapped.begin(), wrapped.begin() + 16) ==
           file.end());
+}
+
+TEST_CASE("a look sees the session that begins while it waits for the database") {
+  StoredFixture study(2);
+  StudyStore other = writable(study.path);
+  std::string said;
+  std::thread look;
+  // The clock is asked inside the transaction that stores the opening.
+  const auto sink = study.store->begin_session(3, wrapped_key_of(3), [&] {
+    look = std::thread([&] { said = refusal_of([&] { other.look_at("P3", kUtc, "asked"); }); });
+    std::this_thread::sleep_for(milliseconds(200));  // enough to read too early
+    return kUtc;
+  });
+  SessionRecorder recorder(3, participant_key(3), *sink);
+  recorder.opened(nanoseconds(0), opening(3), "{}");
+  look.join();
+  REQUIRE(contains(said, "may still go on"));
 }
 
 TEST_CASE("a look at one participant shows the sessions of that participant so far") {

@@ -2,6 +2,9 @@
 
 #include "analysis/json_figures.hpp"
 
+#include <map>
+#include <string>
+
 namespace touchtrial::analysis::identification {
 
 namespace {
@@ -17,11 +20,14 @@ Json mean_json(const MeanEstimate& mean) {
 }
 
 Json participants_json(const MethodCues& cues) {
+  // By name, because the order of sessions would tell who a participant of a public report is.
+  std::map<std::string, std::size_t> places;
+  for (std::size_t i = 0; i < cues.participants.size(); ++i) places[cues.participants[i]] = i;
   Json all = Json::array();
-  for (std::size_t i = 0; i < cues.participants.size(); ++i) {
+  for (const auto& [name, i] : places) {
     Json available;
     for (const ObserverFigures& one : cues.observers) available[name_of(one.cue)] = one.accuracy[i];
-    all.push_back({{"participant", cues.participants[i]},
+    all.push_back({{"participant", name},
                    {"n", cues.participant_trials[i]},
                    {"accuracy", cues.human_accuracy[i]},
                    {"available", std::move(available)}});

@@ -132,9 +132,10 @@ ExplorationPath exploration_path(const store::StudyStore& store, const design::S
   const store::Trace trace = trace_of(store, key, felt);
   ExplorationPath path;
   path.simulated = outcomes.simulated;
-  path.session = session;
-  path.trial = trial;
-  path.participant = felt.participant;
+  const bool is_public = outcomes.collection.is_public;
+  path.session = is_public ? 0 : session;
+  path.trial = is_public ? felt.stimulus.method + 1 : trial;
+  path.participant = is_public ? "" : felt.participant;
   path.class_label = outcomes.classes[felt.stimulus.class_index];
   path.exemplar = outcomes.exemplars[felt.stimulus.class_index][felt.stimulus.exemplar];
   path.method = outcomes.methods[felt.stimulus.method];

@@ -34,6 +34,8 @@ struct PathTexture {
   std::string source;  ///< in words: "the field in the study's pack", "the study's image"
 };
 
+/// In a public report it names neither participant (empty) nor session (0) nor trial (the number of
+/// the method, from 1).
 struct ExplorationPath {
   bool simulated = false;  ///< the figure needs the stamp
   int session = 0;

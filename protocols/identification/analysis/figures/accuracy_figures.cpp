@@ -1,8 +1,8 @@
 #include "analysis/figures/style.hpp"
+#include "analysis/paper/published.hpp"
 #include "protocols/identification/analysis/figures/figure_kinds.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <map>
@@ -187,17 +187,10 @@ std::string alt_of_methods(const StudyReport& report) {
   return alt;
 }
 
-/// The accuracies of Fig. 6 of the source paper, in per cent, with the paper's names for its
-/// images.
-struct PaperValue {
-  std::string_view image;
-  double percent;
-};
-constexpr std::array<PaperValue, 5> kPaper = {{{"image 1", 87.0},
-                                               {"image 2", 72.0},
-                                               {"image 3", 81.0},
-                                               {"image 4", 91.0},
-                                               {"image 5", 83.0}}};
+/// The paper's name for an image of its Fig. 6.
+std::string paper_image(std::size_t i) {
+  return fmt::format("image {}", i + 1);
+}
 
 /// The label in lower case, with spaces instead of hyphens and underscores.
 std::string plain_name(std::string_view label) {
@@ -214,13 +207,13 @@ std::string plain_name(std::string_view label) {
 std::vector<std::vector<double>> paper_rows(std::span<const std::string> classes) {
   std::vector<std::vector<double>> rows;
   const auto column = static_cast<double>(classes.size()) + 1.0;
-  for (std::size_t i = 0; i < kPaper.size(); ++i) {
+  for (std::size_t i = 0; i < kPublishedPercents.size(); ++i) {
     const auto found = std::find_if(classes.begin(), classes.end(), [i](const std::string& label) {
-      return plain_name(label) == kPaper[i].image;
+      return plain_name(label) == paper_image(i);
     });
     const double x = found == classes.end() ? column + 0.15 * (static_cast<double>(i) - 2.0)
                                             : static_cast<double>(found - classes.begin()) + 1.25;
-    rows.push_back({x, kPaper[i].percent});
+    rows.push_back({x, static_cast<double>(kPublishedPercents[i])});
   }
   return rows;
 }

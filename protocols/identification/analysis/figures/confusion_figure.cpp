@@ -3,7 +3,6 @@
 #include "protocols/identification/analysis/figures/figure_kinds.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -19,44 +18,18 @@ constexpr double kNames_cm = 3.4;
 constexpr double kUsualWidth_cm = 16.0;
 constexpr double kGap = 0.25;  ///< before the column of missing answers, in widths of a cell
 
-struct Rgb {
-  int red;
-  int green;
-  int blue;
-};
-
-/// A colour from white to dark blue. A darker cell has a larger share, in colour and in grey.
-Rgb colour_of(double share) {
-  const auto between = [share](double from, double to) {
-    return static_cast<int>(std::lround(from + (to - from) * share));
-  };
-  return {between(255.0, 0.0), between(255.0, 62.0), between(255.0, 110.0)};
-}
-
-double linear(int channel) {
-  const double c = channel / 255.0;
-  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
-/// Black or white, whichever has more contrast (WCAG 2.1, relative luminance).
-const char* ink_on(Rgb colour) {
-  const double luminance =
-      0.2126 * linear(colour.red) + 0.7152 * linear(colour.green) + 0.0722 * linear(colour.blue);
-  return (1.05 / (luminance + 0.05)) > ((luminance + 0.05) / 0.05) ? "#ffffff" : "#000000";
-}
-
 /// One cell at column x and row y, counted from 0 at the top left.
 std::string cell(double x, int y, int count, int whole, bool right) {
   const double share = whole > 0 ? static_cast<double>(count) / whole : 0.0;
-  const Rgb colour = colour_of(share);
+  const Rgb colour = shade_of(share);
   const std::string border =
       right ? fmt::format("border lc rgb '{}' lw 1.6", kInk) : "border lc rgb '#c8c8c8' lw 0.7";
   std::string script = fmt::format(
       "set object rectangle from first {}, {} to {}, {} fs solid 1 {} fc rgb "
-      "'#{:02x}{:02x}{:02x}' {}\n",
-      x, y, x + 1.0, y + 1.0, border, colour.red, colour.green, colour.blue,
-      right ? "front" : "behind");
-  const std::string ink = fmt::format("center front textcolor rgb '{}'", ink_on(colour));
+      "'{}' {}\n",
+      x, y, x + 1.0, y + 1.0, border, hexadecimal(colour), right ? "front" : "behind");
+  const std::string ink =
+      fmt::format("center front textcolor rgb '{}'", hexadecimal(ink_on(colour)));
   const bool bare = count == 0;  // a count of 0 stands without its share
   script += text_at(std::to_string(count),
                     fmt::format("first {}, {} {}", x + 0.5, y + (bare ? 0.5 : 0.32), ink));

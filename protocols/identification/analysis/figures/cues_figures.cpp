@@ -184,12 +184,16 @@ std::string axes(const PlaneGeometry& geometry, double force_n) {
 }
 
 std::string caption_of(const ExplorationPath& path) {
+  const std::string who =
+      path.participant.empty()
+          ? "a trial of one participant"
+          : fmt::format("by {}, session {}, trial {}", path.participant, path.session, path.trial);
   std::string caption = fmt::format(
-      "exploration of {} ({}) by {}, session {}, trial {}. Colour is the tangential force, rms "
+      "exploration of {} ({}), {}. Colour is the tangential force, rms "
       "until "
       "the next point; the circle is first contact; where the hand was off the plane nothing is "
       "drawn.",
-      path.class_label, path.method, path.participant, path.session, path.trial);
+      path.class_label, path.method, who);
   if (!path.texture.grey.empty())
     caption += " Beneath it, brightened: " + path.texture.source + ".";
   return stamped(path.simulated, caption);

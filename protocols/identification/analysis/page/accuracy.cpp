@@ -170,6 +170,27 @@ Table confusion_table(const StudyReport& report, std::size_t index) {
   return table;
 }
 
+Table unbiased_table(const StudyReport& report, std::size_t index) {
+  const MethodReport& method = report.methods[index];
+  Table table{"unbiased-hits-" + method_slug(report, index),
+              method_prefix(report, index) +
+                  "unbiased hit rates, which answering one texture often does not raise",
+              {{"texture", Align::left}, {"mean"}, {"t 95% (%)"}, {"at random"}}};
+  for (std::size_t i = 0; i < method.unbiased.size(); ++i) {
+    const UnbiasedHits& hits = method.unbiased[i];
+    const bool all = i >= report.classes.size();
+    table.rows.push_back({all ? "mean of all" : report.classes[i],
+                          Cell(share_figure(hits.rate.mean), all),
+                          share_range(hits.rate.known_interval()), share_figure(hits.by_chance)});
+  }
+  table.notes = {
+      {"The share of a texture's presentations that were answered right, times the share of its "
+       "answers that were right: mean over participants with Student's t interval. At random: its "
+       "mean if the same answers had nothing to do with the order of presentations.",
+       {Source::wagner, Source::student}}};
+  return table;
+}
+
 /// The groups of classes, for example "{basket, leaf} and {log}".
 std::string groups_of(const ChoiceModel& model, const std::vector<std::string>& classes) {
   std::vector<std::string> groups(static_cast<std::size_t>(model.groups));
@@ -286,7 +307,7 @@ Table information_table(const StudyReport& report) {
     table.notes.push_back(
         {"* From Clopper and Pearson's interval, which treats trials as "
          "independent: there are fewer than six participants, or they do "
-                           "not differ."});
+         "not differ."});
   }
   return table;
 }
@@ -298,6 +319,9 @@ Section confusions_section(const StudyReport& report) {
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     add_method_heading(report, i, section);
     section.blocks.emplace_back(confusion_table(report, i));
+    if (!report.methods[i].unbiased.empty()) {
+      section.blocks.emplace_back(unbiased_table(report, i));
+    }
     if (report.methods[i].choice) section.blocks.emplace_back(choice_table(report, i));
   }
   if (report.methods.size() > 1) {

@@ -44,8 +44,9 @@ std::string prevalence_phrase(const MethodReport& method) {
   if (!method.prevalence || method.prevalence->participants < 2) return "";
   const Prevalence& found = *method.prevalence;
   return fmt::format(
-      " {} of {} passed this test on their own trials, which chance alone would let {} of them "
-      "pass: {} of people {} would pass in as many trials, a lower bound of those who can.",
+      " {} of {} passed this test on their own trials; somebody who guesses passes with a "
+      "probability of {}. Estimated share of people who would pass in as many trials: {} {}, a "
+      "lower bound of those who can.",
       found.passed, counted(found.participants, "participant"), share_figure(found.level),
       share_figure(found.estimate), share_range(found.interval));
 }
@@ -152,6 +153,14 @@ Table ability_table(const StudyReport& report) {
 }  // namespace
 
 void add_headline(const StudyReport& report, Section& section) {
+  const bool differs =
+      report.primary && report.primary->registered().participants != report.participants;
+  if (differs) {
+    section.blocks.emplace_back(Cited{fmt::format(
+        "From here on the numbers are of the {} who are left after all exclusions; the "
+        "result above is about {}.",
+        counted(report.participants, "participant"), report.primary->registered().participants)});
+  }
   for (const MethodReport& method : report.methods) {
     section.blocks.emplace_back(
         Cited{headline_of(report, method), {Source::student, Source::phipson_smyth}});
@@ -173,13 +182,9 @@ KindWords words_of(BreakdownKind kind) {
     case BreakdownKind::exemplar:
       return {"exemplar", "by exemplar: which picture of a texture", "exemplar"};
     case BreakdownKind::trial:
-      return {"trial", "by trial: its place among a participant's scored trials", "trial"};
+      break;
     case BreakdownKind::order_group:
       return {"order-group", "by order group: in which order methods came", "order group"};
-    case BreakdownKind::previous_stimulus:
-      return {"previous-texture", "by the texture presented just before", "before it"};
-    case BreakdownKind::previous_response:
-      return {"previous-answer", "by the answer given just before", "answered before it"};
   }
   return {"", "", ""};
 }
@@ -203,12 +208,54 @@ Table breakdown_table(const StudyReport& report, std::size_t index, const Breakd
 
 }  // namespace
 
+namespace {
+
+std::vector<Cell> dependence_row(const char* what, const SerialDependence& found) {
+  return {what, fmt::format("{} of {}", found.same, found.wrong), kNoFigure,
+          plain_figure(found.expected, 1), p_figure(found.p)};
+}
+
+/// A slope in percentage points per ten trials.
+std::string slope_figure(std::optional<double> slope) {
+  return slope ? points_figure(10.0 * *slope) : kNoFigure;
+}
+
+Table order_table(const StudyReport& report, std::size_t index, const OrderEffects& order) {
+  Table table{"order-" + method_slug(report, index),
+              method_prefix(report, index) +
+                  "whether answers depend on when a texture came, and on what came just before",
+              {{"question", Align::left}, {"found"}, {"t 95%"}, {"at random"}, {"p"}}};
+  const auto interval = order.slope.known_interval();
+  table.rows = {
+      {"learning: change of accuracy over ten trials (points)", slope_figure(order.slope.mean),
+       interval ? share_range(Interval{10.0 * interval->low, 10.0 * interval->high}) : kNoFigure,
+       "0.0", p_figure(order.slope_p)},
+      dependence_row("wrong answers that name the texture presented before", order.class_before),
+      dependence_row("wrong answers that repeat the answer before", order.answer_before)};
+  table.notes = {
+      {fmt::format("p two-sided, of {} orders that the design could have produced, in which each "
+                   "answer stays with its presentation. More than at random: drawn to what came "
+                   "before; less: driven from it. Three tests, not adjusted for each other.",
+                   order.draws),
+       {Source::phipson_smyth, Source::fischer_whitney}},
+      {"Learning: least squares within blocks, mean of participants' own slopes with Student's t "
+       "interval.",
+       {Source::student}}};
+  return table;
+}
+
+}  // namespace
+
 Section order_section(const StudyReport& report) {
   Section section{"order", "Order and carry-over", {}, true};
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    if (report.methods[i].breakdowns.empty()) continue;
+    const MethodReport& method = report.methods[i];
+    if (method.breakdowns.empty() && !method.order) continue;
     add_method_heading(report, i, section);
-    for (const Breakdown& one : report.methods[i].breakdowns) {
+    if (method.order) section.blocks.emplace_back(order_table(report, i, *method.order));
+    for (const Breakdown& one : method.breakdowns) {
+      // A figure shows accuracy by trial; the table above tests it.
+      if (one.kind == BreakdownKind::trial) continue;
       section.blocks.emplace_back(breakdown_table(report, i, one));
     }
   }
@@ -282,7 +329,7 @@ const char* words_of(TrialSubset subset) {
 
 Table robustness_table(const StudyReport& report, std::size_t index) {
   Table table{"with-and-without-" + method_slug(report, index),
-              method_prefix(report, index) + "the headline with other choices of trials",
+              method_prefix(report, index) + "the mean accuracy with other choices of trials",
               {{"trials", Align::left},
                {"n"},
                {"right"},
@@ -298,7 +345,7 @@ Table robustness_table(const StudyReport& report, std::size_t index) {
   }
   table.notes = {
       {"Mean over participants with Student's t interval. If a row's conclusion differs "
-       "from the first's, say so beside the headline.",
+       "from the first's, say so beside the result.",
        {Source::student}}};
   return table;
 }

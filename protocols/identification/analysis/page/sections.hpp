@@ -21,6 +21,9 @@ void add_headline(const StudyReport& report, Section& section);
 /// \return a section without blocks if there is one method
 [[nodiscard]] Section comparison_section(const StudyReport& report);
 [[nodiscard]] Section order_section(const StudyReport& report);
+/// How sure participants were.
+/// \return a section without blocks if they were not asked
+[[nodiscard]] Section confidence_section(const StudyReport& report);
 [[nodiscard]] Section times_section(const StudyReport& report);
 [[nodiscard]] Section cues_section(const StudyReport& report);
 /// The servo and the validity of trials, and the results with and without invalid trials.

@@ -1,6 +1,8 @@
 #include "analysis/fake_study.hpp"
 #include "core/random.hpp"
 #include "protocols/identification/analysis/chance.hpp"
+#include "protocols/identification/analysis/order.hpp"
+#include "protocols/identification/analysis/order_draws.hpp"
 #include "support/catch.hpp"
 
 #include <nlohmann/json.hpp>
@@ -61,6 +63,20 @@ TEST_CASE("The order of a study says how chance is dealt") {
         analysis::DealtOrder::independent);
   for (const char* rule : kRules)
     CHECK(analysis::identification::dealt_order(study_with(rule)) == analysis::DealtOrder::redrawn);
+}
+
+TEST_CASE("What came before is expected by the study's own rule") {
+  // Without repetitions the class before is one of the two that a wrong answer can name.
+  const analysis::Outcomes limited =
+      outcomes_of(study_with(R"({"max_run": 1, "repeats": 4})"), Sense::nothing, 40, 0);
+  const auto found = analysis::identification::order_of(limited, 0);
+  REQUIRE(found);
+  REQUIRE(found->class_before.wrong > 250);
+  CHECK(found->class_before.expected / found->class_before.wrong == Approx(0.5).margin(0.03));
+  // Of any order, 4 of the 11 other presentations are of that class.
+  const auto free = analysis::identification::order_of(
+      outcomes_of(study_with(R"({"repeats": 4})"), Sense::nothing, 40, 0), 0);
+  CHECK(free->class_before.expected / free->class_before.wrong == Approx(4.0 / 11.0).margin(0.03));
 }
 
 TEST_CASE("Guesses are above chance no more often than p says, whatever the order") {

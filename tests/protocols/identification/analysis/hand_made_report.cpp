@@ -71,9 +71,15 @@ analysis::identification::MethodReport method_of(const std::string& name,
   add_participants(method);
   for (const double median : {4.0, 5.5, 6.25, 5.0}) method.reaction.push_back(times_of(median));
   method.breakdowns = {{analysis::identification::BreakdownKind::trial,
-                        {{"1", {6, 4}, {0.3, 0.9}}, {"2", {6, 5}, {0.4, 1}}}},
-                       {analysis::identification::BreakdownKind::previous_response,
-                        {{"cloth", {9, 6}, {0.35, 0.88}}}}};
+                        {{"1", {6, 4}, {0.3, 0.9}}, {"2", {6, 5}, {0.4, 1}}}}};
+  method.unbiased = std::vector<analysis::identification::UnbiasedHits>(
+      4, {{6, 0.62, {0.5, 0.74}, 0.114}, 0.131});
+  method.order = analysis::OrderEffects{
+      {6, 0.0123, {-0.002, 0.0266}, 0.0136}, 0.082, {18, 9, 6.25, 0.31}, {17, 4, 6.0, 0.5}, 1999};
+  method.confidence = analysis::identification::ConfidenceReport{
+      {{1, {30, 18}, {6, 0.6, {0.4, 0.8}, 0.19}}, {2, {42, 39}, {5, 0.93, {0.8, 1.0}, 0.1}}},
+      {5, 0.71, {0.6, 0.82}, 0.09},
+      1};
   method.robustness = {{analysis::identification::TrialSubset::counted, {75, 57}, method.mean},
                        {analysis::identification::TrialSubset::answered, {72, 57}, method.mean}};
   return method;
@@ -182,6 +188,14 @@ analysis::identification::StudyReport hand_made_report(const std::string& label)
   report.collection = collection_of();
   report.registration.primary_test = "sign-flip permutation of adaptive less tv-gabor";
   report.primary = primary_of();
+  report.demographics = {{"age", {{"20-29", 6}}, 0}};
+  analysis::Explorations felt;
+  felt.method = "adaptive";
+  felt.trials = 75;
+  felt.without_response = 3;
+  felt.answer_s = {72, 4.0, 5.5, 7.0};
+  felt.speed_mm_s = {75, 60.0, 80.0, 95.0};
+  report.explorations = {felt};
   report.course.planned = 20;
   report.course.completed = 7;
   report.departures = {"7 of 20 participants.", kHostile};

@@ -7,6 +7,7 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -90,9 +91,9 @@ TEST_CASE("a study with looks, late exclusions and too few participants says all
   CHECK(choice_of(report, "registered").participants == 14);
   CHECK(choice_of(report, "taken").participants == 11);
   const std::string text = terminal_text(report);
-  const std::string screen = on_one_line(text.substr(0, text.find("What to bear in mind")));
+  const std::string screen = on_one_line(text.substr(0, text.find("How many people took part")));
   for (const char* part :
-       {"Undecided. Collecting ended with 14 of 20 planned participants.",
+       {"Undecided. Mean over participants", "Collecting ended with 14 of 20 planned participants.",
         "Outcomes were looked at on 2026-01-31 12:00 UTC, with 5 of 20 planned participants",
         "Outcomes were looked at on 2026-02-01 12:00 UTC, with 9 of 20 planned participants",
         "curious", "a grant report",
@@ -139,7 +140,7 @@ TEST_CASE("the primary result is the t test of participants' accuracies against 
   CHECK(primary.verdict == Verdict::supported);
   CHECK(primary.bound.value() > primary.registered().interval->low);
   CHECK(report.departures.empty());
-  CHECK(contains(terminal_text(report), "Supported. p is at most 0.05."));
+  CHECK(contains(terminal_text(report), "Supported by the registered test."));
   CHECK(contains(terminal_text(report), "No departure from what was registered is recorded."));
 }
 
@@ -241,7 +242,8 @@ TEST_CASE("a registered look has Lan and DeMets's level, and so has the end afte
 TEST_CASE("a registered difference is the first method less the second") {
   FakeStudy study(design::identification::comparison(),
                   {.registration = R"({"participants": 3, "estimand": "difference",
-                                       "methods": ["tv-gabor", "adaptive"], "sides": "one"})"});
+                                       "methods": ["tv-gabor", "adaptive"], "sides": "one",
+                                       "test": "sign-flip"})"});
   for (int i = 1; i <= 3; ++i) {
     study.add({.participant = "P" + std::to_string(i),
                .enrolment = i,
@@ -255,6 +257,147 @@ TEST_CASE("a registered difference is the first method less the second") {
   CHECK(report.primary->registered().estimate.value() == Approx(1.0 / 3.0));
   CHECK(report.primary->p == 0.125);
   CHECK(report.primary->verdict == Verdict::not_supported);
+}
+
+namespace {
+
+/// Two methods, one after the other: in the first block `early` of 12 trials are right, in the
+/// second `late`, whichever the method.
+FakeAnswers right_by_block(int early, int late) {
+  return [early, late](const design::Presentation& shown) {
+    const int place = shown.block == 0 ? shown.trial : shown.trial - 12;
+    const bool right = place <= (shown.block == 0 ? early : late);
+    return std::optional(right ? shown.stimulus.class_index : (shown.stimulus.class_index + 1) % 3);
+  };
+}
+
+void add_learners(FakeStudy& study, const std::vector<int>& enrolments) {
+  for (const int enrolment : enrolments) {
+    study.add({.participant = "P" + std::to_string(enrolment),
+               .enrolment = enrolment,
+               .answers = right_by_block(6 + enrolment % 3, 8 + enrolment % 2)});
+  }
+}
+
+}  // namespace
+
+TEST_CASE("in blocks by method an effect of the period is not one of the methods") {
+  FakeStudy study(design::identification::comparison(),
+                  {.registration = R"({"participants": 8, "estimand": "difference"})"});
+  add_learners(study, {1, 2, 3, 4, 5, 6, 7, 8});
+  study.close_and_unblind();
+  const StudyReport report = report_of(study);
+  const analysis::PrimaryResult& primary = *report.primary;
+  REQUIRE(primary.crossover.has_value());
+  CHECK(primary.crossover->first_first == 4);
+  CHECK(primary.crossover->second_first == 4);
+  // 1, 2, 0, 1, .. more than six, and 1, 0, 1, 0, .. more than eight, of twelve.
+  CHECK(primary.crossover->period.value() == Approx(1.5 / 12.0).margin(0.05));
+  // At most that, whoever of a pair was dealt which order.
+  CHECK(std::abs(primary.registered().estimate.value()) < 0.08);
+  CHECK(primary.registered().interval->high < 0.15);
+  CHECK(primary.permutation->least == 2.0 / 16.0);
+  CHECK(primary.permutation->p > 0.1);
+  CHECK(primary.verdict == Verdict::not_supported);
+  const std::string text = on_one_line(terminal_text(report));
+  CHECK(contains(text, "Period-adjusted t test over participants, two-sided: p = "));
+  CHECK(contains(text, "4 had the first method first, 4 had it last."));
+  CHECK(contains(text, "the least p that they could give is 0.125"));
+  CHECK(contains(text, "it is not tested, and never chooses the analysis"));
+  CHECK(contains(text, "The deciding test adjusts for the period"));
+  const nlohmann::json json = json_of(report);
+  CHECK(json["registered"]["test"] == "crossover");
+  CHECK(json["primary"]["crossover"]["first_first"] == 4);
+  CHECK(json["primary"]["crossover"]["least_p"] == 0.125);
+  CHECK(json["primary"]["interval_level"] == 0.95);
+}
+
+TEST_CASE("with one order of methods alone nothing tells the method from the period") {
+  FakeStudy study(design::identification::comparison(),
+                  {.registration = R"({"participants": 3, "estimand": "difference"})"});
+  std::vector<int> same_order;
+  for (int enrolment = 1; enrolment <= 8 && same_order.size() < 3; ++enrolment) {
+    if (study.key().draw_of(enrolment, design::Draws::rehearsal).method_order == 0) {
+      same_order.push_back(enrolment);
+    }
+  }
+  add_learners(study, same_order);
+  study.close_and_unblind();
+  const StudyReport report = report_of(study);
+  CHECK(report.primary->verdict == Verdict::undecided);
+  CHECK_FALSE(report.primary->p);
+  CHECK_FALSE(report.primary->registered().estimate);
+  CHECK_THAT(report.primary->because,
+             holds_text("an effect of the method and one of the period cannot be told apart"));
+}
+
+TEST_CASE("a study of mixed blocks, and a registered test, have no period-adjusted one") {
+  FakeStudy mixed(design::identification::comparison(),
+                  {.trials = R"({"blocks": "mixed"})",
+                   .registration = R"({"participants": 4, "estimand": "difference"})"});
+  FakeStudy flips(design::identification::comparison(),
+                  {.registration = R"({"participants": 4, "estimand": "difference",
+                                       "test": "sign-flip"})"});
+  for (FakeStudy* study : {&mixed, &flips}) {
+    for (int i = 1; i <= 4; ++i) {
+      study->add({.participant = "P" + std::to_string(i),
+                  .enrolment = i,
+                  .answers = FakeStudy::always_right()});
+    }
+    study->close_and_unblind();
+    CHECK_FALSE(report_of(*study).primary->crossover);
+    CHECK(report_of(*study).primary->test == "sign flips over participants, two-sided");
+  }
+  CHECK_FALSE(contains(terminal_text(report_of(mixed)), "Methods came one after the other"));
+  CHECK(contains(on_one_line(terminal_text(report_of(flips))),
+                 "No test here adjusts for the period"));
+}
+
+TEST_CASE("as good by a margin is judged by the interval above minus the margin") {
+  analysis::PrimaryResult result;
+  result.estimand = design::Estimand::difference;
+  result.null = -0.07;
+  result.margin = 0.07;
+  result.interval_level = 0.9;
+  const analysis::StudyCourse course{
+      .planned = 20, .completed = 20, .analysed = 20, .closed = true, .has_registration = true};
+  const auto verdict = [&](analysis::Interval interval, double p) {
+    const double middle = 0.5 * (interval.low + interval.high);
+    result.choices = {{"registered", "", 20, 800, middle, interval}};
+    result.p = p;
+    judge(result, course);
+    return result.verdict;
+  };
+  CHECK(verdict({-0.05, 0.03}, 0.02) == Verdict::supported);
+  CHECK_THAT(result.because, holds_text("The 90% interval lies above -7.0 points"));
+  CHECK_THAT(result.because, holds_text("and contains 0"));
+  CHECK(verdict({0.01, 0.09}, 0.001) == Verdict::supported);
+  CHECK_THAT(result.because, holds_text("the first method is better"));
+  CHECK(verdict({-0.06, -0.01}, 0.01) == Verdict::supported);
+  CHECK_THAT(result.because, holds_text("worse, but by less than the margin"));
+  CHECK(verdict({-0.1, 0.02}, 0.2) == Verdict::undecided);
+  CHECK_THAT(result.because, holds_text("contains -7.0 points"));
+  CHECK(verdict({-0.2, -0.1}, 0.99) == Verdict::not_supported);
+  CHECK_THAT(result.because, holds_text("worse by more than that"));
+}
+
+TEST_CASE("a registered margin has the one-sided test and the 90 % interval") {
+  FakeStudy study(design::identification::comparison(),
+                  {.registration = R"({"participants": 8, "estimand": "difference",
+                                       "methods": ["tv-gabor", "adaptive"], "margin": 0.2})"});
+  add_learners(study, {1, 2, 3, 4, 5, 6, 7, 8});
+  study.close_and_unblind();
+  const StudyReport report = report_of(study);
+  const analysis::PrimaryResult& primary = *report.primary;
+  CHECK(primary.null == -0.2);
+  CHECK(primary.interval_level == Approx(0.9));
+  CHECK(primary.bound == primary.registered().interval->low);
+  CHECK((primary.p.value() <= 0.05) == (primary.bound.value() > -0.2));
+  CHECK(primary.verdict == Verdict::supported);
+  const nlohmann::json json = json_of(report);
+  CHECK(json["registered"]["margin"] == 0.2);
+  CHECK(json["primary"]["margin"] == 0.2);
+  CHECK(contains(on_one_line(terminal_text(report)), "against -20 points"));
 }
 
 }  // namespace touchtrial

@@ -1,6 +1,7 @@
 #include "analysis/text_matching.hpp"
 #include "protocols/design/random_orders.hpp"
 #include "protocols/identification/analysis/hand_made_outcomes.hpp"
+#include "protocols/identification/analysis/order.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 #include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
@@ -65,14 +66,10 @@ analysis::identification::StudyReport three_methods() {
 
 }  // namespace
 
-TEST_CASE("Accuracy is broken down by a trial's place and by what came before") {
+TEST_CASE("Accuracy is broken down by a trial's place") {
   const analysis::Outcomes outcomes = five_trials().outcomes;
   CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::trial) ==
         Groups{{"1", {1, 1}}, {"2", {1, 0}}, {"3", {1, 0}}, {"4", {1, 1}}});
-  CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::previous_stimulus) ==
-        Groups{{"bark", {2, 1}}, {"cloth", {1, 0}}, {"first of its block", {1, 1}}});
-  CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::previous_response) ==
-        Groups{{"bark", {2, 0}}, {"no response", {1, 1}}, {"first of its block", {1, 1}}});
   CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::exemplar).empty());
   CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::order_group).empty());
 }
@@ -84,10 +81,96 @@ TEST_CASE("A catch trial and a lead-in come before, but have no accuracy") {
   made.trial({.felt = kBark, .answered = kBark});
   made.trial({.answered = kBark, .kind = design::PresentationKind::catch_trial});
   made.trial({.felt = kCloth, .answered = kBark});
-  CHECK(groups_of(made.outcomes, analysis::identification::BreakdownKind::previous_stimulus) ==
-        Groups{{"cloth", {1, 1}}, {"no texture", {1, 0}}});
+  made.trial({.felt = kCloth, .answered = kBark});
+  // The last of four trials alone is wrong after a texture, and after an answer: it names neither
+  // cloth nor anything but that answer, bark.
+  const auto order = analysis::identification::order_of(made.outcomes, 0);
+  REQUIRE(order.has_value());
+  CHECK(order->class_before.wrong == 1);
+  CHECK(order->class_before.same == 0);
+  CHECK(order->answer_before.wrong == 1);
+  CHECK(order->answer_before.same == 1);
+  CHECK(order->draws == 1999);
   CHECK(groups_of(made.outcomes, analysis::identification::BreakdownKind::trial) ==
-        Groups{{"1", {1, 1}}, {"2", {1, 0}}});
+        Groups{{"1", {1, 1}}, {"2", {1, 0}}, {"3", {1, 0}}});
+}
+
+TEST_CASE("Unbiased hit rates are of participants, and their mean of classes comes last") {
+  HandMadeOutcomes made;
+  for (int session = 1; session <= 2; ++session) {
+    made.session();
+    made.trial({.session = session, .felt = kBark, .answered = kBark});
+    made.trial({.session = session, .felt = kCloth, .answered = session == 1 ? kCloth : kBark});
+  }
+  const auto report = analysis::identification::make_report(made.outcomes);
+  const auto& unbiased = report.methods[0].unbiased;
+  REQUIRE(unbiased.size() == 3);
+  CHECK(unbiased[kBark].rate.mean == 0.75);  // 1, and 1 of 1 presented times 1 of 2 answered
+  CHECK(unbiased[kCloth].rate.mean == 0.5);
+  CHECK(unbiased[2].rate.mean == 0.625);
+  CHECK(unbiased[kBark].by_chance == 0.5);  // always right or wrong together; and always 1/2
+  const auto json = nlohmann::json::parse(analysis::identification::report_json(report));
+  CHECK(json["methods"][0]["unbiased_hits"]["mean"] == 0.625);
+  CHECK(json["methods"][0]["unbiased_hits"]["classes"][kCloth]["mean"] == 0.5);
+}
+
+TEST_CASE("Confidence is reported by rating and as type-2 areas, if the study asks for it") {
+  HandMadeOutcomes made;
+  made.session();
+  made.session();
+  const auto rated = [&](int session, int answered, int confidence) {
+    made.trial({.session = session, .felt = kBark, .answered = answered});
+    made.outcomes.trials.back().row.confidence = confidence;
+  };
+  rated(1, kBark, 3);
+  rated(1, kCloth, 1);
+  rated(1, kBark, 1);
+  rated(2, kBark, 3);
+  CHECK_FALSE(analysis::identification::confidence_of(made.outcomes, 0).has_value());
+  made.outcomes.design.session.confidence_levels = 3;
+  const auto report = analysis::identification::make_report(made.outcomes);
+  const auto& confidence = report.methods[0].confidence;
+  REQUIRE(confidence.has_value());
+  REQUIRE(confidence->ratings.size() == 3);
+  CHECK(confidence->ratings[0].accuracy == analysis::Proportion{2, 1});
+  CHECK(confidence->ratings[0].mean.participants == 1);
+  CHECK(confidence->ratings[1].accuracy.n == 0);
+  CHECK(confidence->ratings[2].mean.participants == 2);
+  CHECK(confidence->area.participants == 1);
+  CHECK(confidence->area.mean == 0.75);
+  CHECK(confidence->without_area == 1);
+  const auto json = nlohmann::json::parse(analysis::identification::report_json(report));
+  CHECK(json["methods"][0]["confidence"]["type_2_area"]["mean"] == 0.75);
+  CHECK(json["methods"][0]["confidence"]["ratings"][2]["rating"] == 3);
+}
+
+TEST_CASE("Stations are strata of the deciding question in a collected study") {
+  HandMadeOutcomes made;
+  made.outcomes.design.classes.resize(2);
+  const int right_of[] = {1, 2, 3, 4};  // of four trials
+  for (int session = 1; session <= 4; ++session) {
+    made.session().row.station = session <= 2 ? 1 : 2;
+    for (int i = 0; i < 4; ++i) {
+      made.trial({.session = session,
+                  .felt = kBark,
+                  .answered = i < right_of[session - 1] ? kBark : kCloth});
+    }
+  }
+  const auto report = analysis::identification::make_report(made.outcomes);
+  REQUIRE(report.primary.has_value());
+  REQUIRE(report.primary->stations.has_value());
+  CHECK(report.primary->stations->strata == 2);
+  CHECK(report.primary->stations->mean == 0.625);
+  // Narrower than over participants, because the stations differ.
+  CHECK(report.primary->stations->interval->low > report.primary->registered().interval->low);
+  CHECK_FALSE(report.primary->stations->random.has_value());
+  const auto json = nlohmann::json::parse(analysis::identification::report_json(report));
+  CHECK(json["primary"]["stations"]["stations"] == 2);
+  CHECK(json["primary"]["stations"]["random"].is_null());
+  CHECK(contains(analysis::tables_markdown(analysis::identification::study_document(report, {})),
+                 "first row, 2 stations as fixed strata"));
+  for (analysis::SessionOutcome& one : made.outcomes.sessions) one.row.station = 0;
+  CHECK_FALSE(analysis::identification::make_report(made.outcomes).primary->stations.has_value());
 }
 
 TEST_CASE("Images of a class are groups where a class has several") {

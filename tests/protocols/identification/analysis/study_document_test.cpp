@@ -37,9 +37,10 @@ Document hand_made() {
 TEST_CASE("document: sections come in the order of a results section") {
   std::vector<std::string> ids;
   for (const Section& section : hand_made().sections) ids.push_back(section.id);
-  CHECK(ids == std::vector<std::string>{"result", "to-bear-in-mind", "participants", "registration",
-                                        "accuracy", "confusions", "methods-compared", "order",
-                                        "reaction-times", "cues", "servo-and-validity", "methods"});
+  CHECK(ids == std::vector<std::string>{"result", "participants", "exploration", "to-bear-in-mind",
+                                        "registration", "accuracy", "confusions",
+                                        "methods-compared", "order", "confidence", "reaction-times",
+                                        "cues", "servo-and-validity", "methods"});
 }
 
 TEST_CASE("document: every table has a unique name and as many cells as columns") {
@@ -67,6 +68,25 @@ TEST_CASE("document: confusions hold counts, row percentages, marginals and miss
   CHECK_FALSE(table.rows[1][1].strong);
 }
 
+TEST_CASE("document: order, confidence and unbiased hit rates stand in tables of their own") {
+  const Document document = hand_made();
+  const Table order = table_named(document, "order-adaptive");
+  CHECK(texts_of(order.rows[0]) ==
+        std::vector<std::string>{"learning: change of accuracy over ten trials (points)", "+12.3",
+                                 "[−2.0, 26.6]", "0.0", "0.082"});
+  CHECK(texts_of(order.rows[1]) ==
+        std::vector<std::string>{"wrong answers that name the texture presented before", "9 of 18",
+                                 "–", "6.2", "0.310"});
+  const Table confidence = table_named(document, "confidence-adaptive");
+  CHECK(texts_of(confidence.rows[1]) == std::vector<std::string>{"2 (certain)", "42", "39", "92.9%",
+                                                                 "5", "93.0%", "[80.0, 100.0]"});
+  CHECK_THAT(document_text(document),
+             holds_text("type-2 ROC curve 0.71, 95% t interval [0.60, 0.82]"));
+  const Table unbiased = table_named(document, "unbiased-hits-adaptive");
+  CHECK(texts_of(unbiased.rows[3]) ==
+        std::vector<std::string>{"mean of all", "62.0%", "[50.0, 74.0]", "13.1%"});
+}
+
 TEST_CASE(
     "document: the headline is the mean over participants, with both intervals and the spread") {
   const Table table = table_named(hand_made(), "headline");
@@ -84,14 +104,14 @@ TEST_CASE("document: the result is the verdict, the departures and one table of 
   const Document document = hand_made();
   const Section& result = document.sections.front();
   CHECK(result.id == "result");
-  CHECK(std::get<Cited>(result.blocks.at(0)).text ==
-        "Undecided. Collecting ended with 7 of 20 planned participants.");
+  CHECK(std::get<Cited>(result.blocks.at(0)).lead == "Undecided.");
   CHECK_THAT(
-      std::get<Cited>(result.blocks.at(1)).text,
+      std::get<Cited>(result.blocks.at(0)).text,
       holds_text("−8.3 points, 95% t interval [−20.0, 3.4] (6 participants analysed; 20 "
                  "planned, 7 completed). Sign flips over participants, two-sided: p = 0.125, "
-                 "alpha 0.05."));
-  CHECK(std::get<Warnings>(result.blocks.at(3)).sentences.front() == "7 of 20 participants.");
+                 "alpha 0.05. Collecting ended with 7 of 20 planned participants."));
+  CHECK(std::get<Warnings>(result.blocks.at(1)).sentences.front() == "7 of 20 participants.");
+  CHECK(std::get<Warnings>(result.blocks.at(1)).title == "Departures from the plan:");
   const Table table = table_named(document, "primary");
   CHECK(texts_of(table.rows[0]) ==
         std::vector<std::string>{"as registered", "6", "150", "−8.3", "[−20.0, 3.4]", "0.125"});
@@ -227,7 +247,7 @@ TEST_CASE("document: figures that were not drawn are described, without their ca
   CHECK_THAT(page(), holds_text("A picture."));
   picture.svg.clear();
   CHECK_THAT(page(), holds_text("Figures were not drawn: gnuplot"));
-  CHECK_THAT(page(), holds_text("not drawn.</b> Three bars: 80, 76 and 72%."));
+  CHECK_THAT(page(), holds_text("Not drawn.</b> Three bars: 80, 76 and 72%."));
   CHECK_THAT(page(), !holds_text("A picture."));
 }
 

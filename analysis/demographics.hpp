@@ -1,0 +1,55 @@
+/// \file What participants said about themselves, in bands: for tables of people, never single
+/// ages.
+#pragma once
+
+#include "protocols/design/study_key.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// One participant's answers.
+struct Demographics {
+  std::optional<std::string> age_band;     ///< for example "20-29", "under 18" or "70 or more"
+  std::optional<std::string> sex;          ///< the text of the chosen option, in lower case
+  std::optional<double> handedness_score;  ///< -100 to 100
+};
+
+/// "right", "left" or "ambidextrous", with the bounds of 60 and -60 of Veale (2014).
+[[nodiscard]] std::string handedness_of(double score);
+
+/// Demographics by session. They come from sealed answers to questions with the id "age" (a
+/// number), "sex" or "gender", and from the handedness inventory. Texts are never read, because
+/// they may name people.
+/// \throws VerificationError if an answer does not open
+/// \throws StoreError if an answer is not in the form that this program writes
+[[nodiscard]] std::map<int, Demographics> demographics_of(const store::StudyStore& store,
+                                                          const design::StudyKey& key);
+
+/// The least number of people that a band shows. Fewer could be recognised.
+inline constexpr int kFewestOfBand = 5;
+
+/// People in one band.
+struct Band {
+  std::string name;
+  int people = 0;
+};
+
+/// How a group of people divides by one characteristic.
+struct Characteristic {
+  std::string name;         ///< "age", "sex", "handedness"
+  std::vector<Band> bands;  ///< each of kFewestOfBand people or more; empty: nothing can be shown
+  /// People in smaller bands and people who did not say, together: 0, or kFewestOfBand and more.
+  /// The smallest band goes in with them if they are too few by themselves.
+  int others = 0;
+};
+
+/// The characteristics of a group, without those that nobody told.
+/// \param people  one entry for each person, empty if the person said nothing
+[[nodiscard]] std::vector<Characteristic> in_bands(const std::vector<Demographics>& people);
+
+}  // namespace touchtrial::analysis

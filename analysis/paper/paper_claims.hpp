@@ -1,0 +1,88 @@
+/// \file Statements of the source paper held against measures of pictures. Whether ours agree is
+/// always counted from the measures.
+#pragma once
+
+#include "analysis/paper/paper_measures.hpp"
+#include "analysis/paper/published.hpp"
+#include "analysis/statistics/proportion.hpp"
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// A statement of the paper, and how many of our pictures or cells agree with it.
+struct PaperClaim {
+  std::string id;
+  std::string where;  ///< "Fig. 3"
+  std::string says;   ///< the statement, in our words
+  std::string ours;   ///< what was measured
+  int agreeing = 0;
+  int of = 0;  ///< 0 if nothing here can test the statement
+};
+
+/// "agrees", "agrees in 3 of 5", "differs" or "cannot be tested"
+[[nodiscard]] std::string verdict_of(const PaperClaim& claim);
+
+/// A statistic of Table 1, in the paper and here.
+struct PaperStatistic {
+  std::string_view name;
+  PublishedRow PublishedPicture::*published = nullptr;  ///< null: the paper does not have it
+  double engine::GlcmStatistics::*ours = nullptr;
+  int decimals = 0;
+};
+
+inline constexpr std::array<PaperStatistic, 5> kPaperStatistics = {
+    {{"ASM", &PublishedPicture::asm_, &engine::GlcmStatistics::angular_second_moment, 5},
+     {"\"Entropy\", sqrt(ASM)", &PublishedPicture::entropy, &engine::GlcmStatistics::energy, 4},
+     {"contrast", &PublishedPicture::contrast, &engine::GlcmStatistics::contrast, 2},
+     {"correlation", &PublishedPicture::correlation, &engine::GlcmStatistics::correlation, 3},
+     {"true entropy, nats", nullptr, &engine::GlcmStatistics::entropy, 3}}};
+
+/// How a statistic changes by extraction, over the cells of a table.
+struct CellChanges {
+  int rising = 0;
+  int falling = 0;
+  int of = 0;
+};
+
+/// \return no cells if the paper does not have the statistic
+[[nodiscard]] CellChanges published_changes(const PaperStatistic& statistic);
+[[nodiscard]] CellChanges measured_changes(const PaperMeasures& measures,
+                                           const PaperStatistic& statistic);
+
+/// Cells of the paper's "Entropy" that equal the root of its ASM, within the rounding of both.
+[[nodiscard]] Proportion published_roots();
+
+/// One picture of Table 1 in four numbers, means over the directions.
+struct TableSummary {
+  double deviation_before = 0.0;  ///< of the grey levels, implied by contrast and correlation
+  double deviation_after = 0.0;
+  /// The largest relative difference, in percent, between the deviations that the four directions
+  /// imply, before or after; small if the cells of contrast and correlation agree.
+  double disagreement_percent = 0.0;
+  double contrast_ratio = 0.0;  ///< after over before; NaN if there was no contrast
+  double correlation_after = 0.0;
+  bool contrast_rises = false;  ///< in every direction
+  bool asm_rises = false;       ///< in any direction
+  /// ASM rises, contrast falls and correlation falls, in every direction.
+  bool as_text_says = false;
+};
+
+[[nodiscard]] TableSummary summary_of(const PublishedPicture& picture);
+[[nodiscard]] TableSummary summary_of(const engine::GlcmTable& original,
+                                      const engine::GlcmTable& texture);
+
+/// The smallest mean correlation over directions of a texture in the paper's table.
+[[nodiscard]] double published_least_correlation();
+
+/// Whether a texture's table is like the paper's contradicting picture: contrast rises in every
+/// direction, ASM in none, and the mean correlation is at least the paper's smallest.
+[[nodiscard]] bool is_like_contradiction(const TableSummary& summary);
+
+/// Every statement, in the order of the paper.
+[[nodiscard]] std::vector<PaperClaim> paper_claims(const PaperMeasures& measures);
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,23 @@
+/// \file The source paper's figures and tables beside ours, as a document and as JSON. Every
+/// statement about agreement follows from the measures. docs/paper.md is this document for the
+/// program's own pictures.
+#pragma once
+
+#include "analysis/page/document.hpp"
+#include "analysis/paper/paper_measures.hpp"
+#include "analysis/paper/paper_pictures.hpp"
+
+#include <string>
+
+namespace touchtrial::analysis {
+
+/// \param measures  of at least one picture
+/// \param sweep  Fig. 3, drawn or without an SVG
+/// \param source  where the pictures are from, in words
+[[nodiscard]] Document paper_document(const PaperMeasures& measures, const PaperPictures& pictures,
+                                      const Picture& sweep, const std::string& source);
+
+/// docs/data-dictionary.md, "Paper", explains the members.
+[[nodiscard]] std::string paper_json(const PaperMeasures& measures);
+
+}  // namespace touchtrial::analysis

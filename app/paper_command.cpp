@@ -1,0 +1,167 @@
+// paper: the source paper's figures and tables beside those of given pictures.
+#include "analysis/figures/gnuplot.hpp"
+#include "analysis/paper/paper_document.hpp"
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "engine/image_file.hpp"
+#include "engine/metrics/ssim.hpp"
+#include "stimuli/generator.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNumbers = "paper.json";
+
+struct PaperArguments {
+  std::vector<fs::path> images;
+  fs::path folder;
+};
+
+using PaperImages = std::vector<analysis::PaperPicture>;
+
+GreyImage readable_picture(const fs::path& path) {
+  GreyImage image = engine::read_grey_image(path);
+  if (std::min(image.height(), image.width()) >= engine::kMsSsimSmallestSide) return image;
+  throw FileError(fmt::format(
+      "{}: has {} x {} px; MS-SSIM needs at least {} px on each side; give "
+      "a larger image",
+      one_line(path.string()), image.width(), image.height(), engine::kMsSsimSmallestSide));
+}
+
+/// The given pictures, named by their files' names without ending, or by their whole paths if two
+/// files have one name.
+PaperImages pictures_in(const std::vector<fs::path>& paths) {
+  std::map<std::string, int> uses;
+  for (const fs::path& path : paths) ++uses[path.stem().string()];
+  PaperImages pictures;
+  for (const fs::path& path : paths) {
+    const std::string stem = path.stem().string();
+    pictures.push_back({uses[stem] == 1 ? stem : path.string(), readable_picture(path)});
+  }
+  return pictures;
+}
+
+/// The program's own pictures of one kind, as `stimuli generate` makes them.
+PaperImages generated_pictures(stimuli::StimulusKind kind) {
+  PaperImages pictures;
+  for (const stimuli::StimulusRecipe& recipe : stimuli::stimulus_recipes()) {
+    if (recipe.kind != kind) continue;
+    pictures.push_back({std::string(recipe.label),
+                        stimuli::generate_stimulus(recipe.label, stimuli::kDefaultStimuliSeed)});
+  }
+  return pictures;
+}
+
+/// Whether the folder's numbers are an earlier output of this command.
+bool is_own_output(const fs::path& folder) {
+  if (!is_there(folder / kNumbers)) return false;
+  const Bytes bytes = read_file(folder / kNumbers);
+  const auto json = nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  return json.is_object() && json.contains("command") && json["command"] == "paper";
+}
+
+/// The names of all files that the command writes, drawn or not.
+std::vector<std::string> names_of_output() {
+  return {"paper.md",
+          "paper.html",
+          kNumbers,
+          "images/paper-orders.svg",
+          "images/paper-sweep.svg",
+          "images/paper-forces.svg",
+          "images/paper-methods.svg"};
+}
+
+void refuse_files_of_others(const fs::path& folder) {
+  if (is_there(folder) && !fs::is_directory(folder)) {
+    throw FileError(one_line(folder.string()) + ": is no folder; choose another with --out");
+  }
+  if (is_own_output(folder)) return;
+  for (const std::string& name : names_of_output()) {
+    if (!is_there(folder / name)) continue;
+    throw FileError(one_line((folder / name).string()) +
+                    ": exists already, and `touchtrial paper` did not write it; choose another "
+                    "folder with --out, or move the file");
+  }
+}
+
+/// Fig. 3, without an SVG if gnuplot cannot draw it.
+analysis::Picture drawn_sweep(const analysis::PaperMeasures& measures) {
+  const analysis::Figure figure = analysis::order_figure(measures.pictures);
+  analysis::Picture picture{figure.id, figure.caption, figure.alt, ""};
+  try {
+    analysis::require_gnuplot();
+  } catch (const Error& error) {
+    std::fputs(
+        ("touchtrial: warning: without the figure of orders: " + one_line(error.what()) + "\n")
+            .c_str(),
+        stderr);
+    return picture;
+  }
+  picture.svg = analysis::drawn(figure, analysis::FigureFormat::svg);
+  return picture;
+}
+
+void write_paper(const fs::path& folder, const analysis::Document& document,
+                 const std::vector<analysis::Picture>& pictures, const std::string& numbers) {
+  make_folder(folder / "images");
+  replace_file(folder / kNumbers, numbers);
+  for (const analysis::Picture& one : pictures) {
+    if (!one.svg.empty()) replace_file(folder / "images" / (one.id + ".svg"), one.svg);
+  }
+  replace_file(folder / "paper.md", analysis::document_markdown(document, "images"));
+  replace_file(folder / "paper.html", analysis::page_html(document));
+}
+
+int make_paper(const PaperArguments& arguments) {
+  refuse_files_of_others(arguments.folder);
+  const bool own = arguments.images.empty();
+  const PaperImages pictures =
+      own ? generated_pictures(stimuli::StimulusKind::texture) : pictures_in(arguments.images);
+  const PaperImages compared = own ? generated_pictures(stimuli::StimulusKind::object) : pictures;
+  const analysis::PaperMeasures measures =
+      analysis::measure_for_paper(pictures, compared, progress_bar("measuring"));
+  const analysis::PaperPictures drawn = analysis::paper_pictures(pictures, compared);
+  const analysis::Picture sweep = drawn_sweep(measures);
+  const analysis::Document document = analysis::paper_document(
+      measures, drawn, sweep,
+      own ? "the textures and objects that this program draws itself (docs/stimuli.md)"
+          : "the given pictures");
+  write_paper(arguments.folder, document, {drawn.orders, sweep, drawn.forces, drawn.methods},
+              analysis::paper_json(measures));
+  print((arguments.folder / "paper.html").string() + "\n" +
+        (arguments.folder / "paper.md").string() + "\n");
+  return 0;
+}
+
+}  // namespace
+
+void add_paper_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<PaperArguments>();
+  CLI::App* command = program.add_subcommand(
+      "paper", "The source paper's figures and tables beside those of pictures");
+  command->add_option("IMAGE", arguments->images,
+                      "PNG, JPEG, TIFF, BMP or PGM (default: the program's own textures, and its "
+                      "objects for the comparison with TV-Gabor)");
+  command
+      ->add_option("-o,--out", arguments->folder,
+                   "Folder for paper.html, paper.md, the pictures and paper.json")
+      ->required();
+  command->callback([=, &action] { action = [=] { return make_paper(*arguments); }; });
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,182 @@
+#include "app/touchtrial_process.hpp"
+#include "core/files.hpp"
+#include "core/random.hpp"
+#include "engine/image_file.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+using namespace touchtrial;
+using namespace touchtrial::engine;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string noisy_picture(const fs::path& path, int side) {
+  RandomStream random(4, "paper test");
+  GreyImage image(side, side);
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      image.at(y, x) =
+          static_cast<std::uint8_t>(40 + 60 * ((x / 7 + y / 5) % 3) + random.below(40));
+    }
+  }
+  make_folder(path.parent_path());
+  write_png(path, image);
+  return path.string();
+}
+
+std::string text_in(const fs::path& path) {
+  return text_of(read_file(path));
+}
+
+/// The number at a place of a text, and moves the place behind it.
+struct PrintedNumber {
+  double value = 0.0;
+  int decimals = 0;
+};
+PrintedNumber number_at(const std::string& text, std::size_t& at) {
+  const std::size_t begin = at;
+  std::size_t point = std::string::npos;
+  while (at < text.size() &&
+         (std::isdigit(static_cast<unsigned char>(text[at])) != 0 ||
+          (text[at] == '.' && point == std::string::npos && at + 1 < text.size() &&
+           std::isdigit(static_cast<unsigned char>(text[at + 1])) != 0))) {
+    if (text[at] == '.') point = at;
+    ++at;
+  }
+  const int decimals = point == std::string::npos ? 0 : static_cast<int>(at - point) - 1;
+  return {std::strtod(text.substr(begin, at - begin).c_str(), nullptr), decimals};
+}
+
+/// Where two texts differ by more than a unit in the last digit of a number with decimals; the
+/// length of the longer if nowhere.
+std::size_t first_difference(const std::string& a, const std::string& b) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() && j < b.size()) {
+    const bool digits = std::isdigit(static_cast<unsigned char>(a[i])) != 0 &&
+                        std::isdigit(static_cast<unsigned char>(b[j])) != 0;
+    if (!digits) {
+      if (a[i++] != b[j++]) return i - 1;
+      continue;
+    }
+    const std::size_t begin = i;
+    const PrintedNumber one = number_at(a, i);
+    const PrintedNumber other = number_at(b, j);
+    const double unit = one.decimals == 0 ? 0.0 : 1.01 * std::pow(10.0, -one.decimals);
+    if (one.decimals != other.decimals || std::abs(one.value - other.value) > unit) return begin;
+  }
+  return i == a.size() && j == b.size() ? std::max(a.size(), b.size()) : i;
+}
+
+/// While it lives, programs that are started find no other program.
+class NoOtherPrograms {
+ public:
+  explicit NoOtherPrograms(const fs::path& folder) : before_(std::getenv("PATH")) {
+    setenv("PATH", folder.c_str(), 1);
+  }
+  ~NoOtherPrograms() { setenv("PATH", before_.c_str(), 1); }
+  NoOtherPrograms(const NoOtherPrograms&) = delete;
+  NoOtherPrograms& operator=(const NoOtherPrograms&) = delete;
+
+ private:
+  std::string before_;
+};
+
+}  // namespace
+
+TEST_CASE("docs/paper.md is what paper prints for the program's own pictures") {
+  const TempFolder folder;
+  const fs::path out = folder.path() / "paper";
+  const ProgramResult result = run_touchtrial(folder.path(), {"paper", "--out", out.string()});
+  INFO(result.errors);
+  REQUIRE(result.exit_code == 0);
+  const fs::path docs = fs::path(TOUCHTRIAL_SOURCE_DIR) / "docs";
+  const std::string printed = text_in(out / "paper.md");
+  const std::string kept = text_in(docs / "paper.md");
+  const std::size_t same = first_difference(printed, kept);
+  INFO("printed: " << printed.substr(same, 200)
+                   << "\nin docs: " << kept.substr(std::min(same, kept.size()), 200)
+                   << "\nrun touchtrial paper --out DIR and copy paper.md and images into docs");
+  CHECK(same == std::max(printed.size(), kept.size()));
+  for (const fs::directory_entry& one : fs::directory_iterator(out / "images")) {
+    INFO(one.path());
+    CHECK(fs::exists(docs / "images" / one.path().filename()));
+    CHECK_THAT(kept, holds_text("(images/" + one.path().filename().string() + ")"));
+  }
+}
+
+TEST_CASE("paper measures given pictures, twice into one folder with the same result") {
+  const TempFolder folder;
+  const std::string first = noisy_picture(folder.path() / "a" / "wall.png", 170);
+  const std::string second = noisy_picture(folder.path() / "b" / "wall.png", 161);
+  const fs::path out = folder.path() / "out";
+  const std::vector<std::string> arguments = {"paper", first, second, "--out", out.string()};
+  const ProgramResult result = run_touchtrial(folder.path(), arguments);
+  INFO(result.errors);
+  REQUIRE(result.exit_code == 0);
+  const std::string page = text_in(out / "paper.html");
+  const json numbers = json::parse(text_in(out / "paper.json"));
+  REQUIRE(numbers["pictures"].size() == 2);
+  CHECK(numbers["pictures"][0]["picture"] == first);
+  CHECK(numbers["pictures"][1]["picture"] == second);
+  CHECK(numbers["pictures"][1]["orders"].size() == 19);
+  CHECK(numbers["compared"].size() == 2);
+  CHECK_THAT(page, holds_text("data:image/png;base64,"));
+  CHECK(run_touchtrial(folder.path(), arguments).exit_code == 0);
+  CHECK(text_in(out / "paper.html") == page);
+}
+
+TEST_CASE("paper without gnuplot warns and describes the figure that it cannot draw") {
+  const TempFolder folder;
+  const std::string picture = noisy_picture(folder.path() / "wall.png", 161);
+  const fs::path out = folder.path() / "out";
+  const NoOtherPrograms none(folder.path());
+  const ProgramResult result =
+      run_touchtrial(folder.path(), {"paper", picture, "--out", out.string()});
+  CHECK(result.exit_code == 0);
+  CHECK(line_count(result.errors) == 1);
+  CHECK_THAT(result.errors, holds_text("gnuplot"));
+  CHECK_THAT(text_in(out / "paper.md"), holds_text("Not drawn: Entropy and MS-SSIM"));
+}
+
+TEST_CASE("paper refuses bad pictures and folders in one line, and writes nothing") {
+  const TempFolder folder;
+  const std::string good = noisy_picture(folder.path() / "good.png", 161);
+  write_png(folder.path() / "pixel.png", GreyImage(1, 1, 9));
+  replace_file(folder.path() / "text.png", "no picture");
+  const auto refusal = [&](std::vector<std::string> arguments, int code) {
+    arguments.insert(arguments.begin(), "paper");
+    const ProgramResult result = run_touchtrial(folder.path(), arguments);
+    CHECK(result.exit_code == code);
+    CHECK(line_count(result.errors) == 1);
+    CHECK(result.output.empty());
+    return result.errors;
+  };
+  const std::string out = (folder.path() / "out").string();
+  const auto picture = [&](const char* name) { return (folder.path() / name).string(); };
+  CHECK_THAT(refusal({good, picture("none.png"), "--out", out}, 1), holds_text("none.png"));
+  CHECK_THAT(refusal({picture("text.png"), "--out", out}, 1), holds_text("text.png"));
+  CHECK_THAT(refusal({picture("pixel.png"), "--out", out}, 1),
+             holds_text("pixel.png: has 1 x 1 px; MS-SSIM needs at least 161"));
+  CHECK_THAT(refusal({good}, 2), holds_text("--out"));
+  CHECK_FALSE(fs::exists(out));
+  CHECK_THAT(refusal({good, "--out", picture("text.png")}, 1), holds_text("is no folder"));
+  make_folder(folder.path() / "mine");
+  replace_file(folder.path() / "mine" / "paper.md", "my own paper");
+  CHECK_THAT(refusal({good, "--out", picture("mine")}, 1), holds_text("paper.md: exists already"));
+  CHECK(text_in(folder.path() / "mine" / "paper.md") == "my own paper");
+  replace_file(folder.path() / "mine" / "paper.json", "[\"not ours\"]");
+  CHECK_THAT(refusal({good, "--out", picture("mine")}, 1), holds_text("exists already"));
+}

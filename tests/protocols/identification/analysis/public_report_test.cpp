@@ -1,0 +1,125 @@
+// A report for everybody holds nobody's name and nothing that a person wrote.
+#include "analysis/fake_study.hpp"
+#include "analysis/identities.hpp"
+#include "analysis/text_matching.hpp"
+#include "protocols/identification/analysis/figures/figures.hpp"
+#include "protocols/identification/analysis/page/sections.hpp"
+#include "support/catch.hpp"
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using analysis::identification::StudyReport;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+const std::vector<std::string> kPlanted = {
+    "qqanna",    "qqbert",     "qqcarl",    "qqdora",      "qqemil",   "qqfritz",
+    "qqlook",    "qqexcluded", "qqstopped", "qqdeviation", "qqcode",   "qqnote",
+    "qqreplace", "qqwithdrew", "qqperson",  "qqunblind",   "qqremark", "qqafter"};
+
+/// Six people, and a planted text wherever a person can write one.
+void add_people_and_texts(FakeStudy& study) {
+  for (int i = 0; i < 6; ++i) {
+    FakeSession session{.participant = kPlanted[static_cast<std::size_t>(i)],
+                        .enrolment = i + 1,
+                        .answers = [i](const design::Presentation& shown) {
+                          const bool wrong = shown.trial <= 2 + i;
+                          return std::optional((shown.stimulus.class_index + (wrong ? 1 : 0)) % 3);
+                        }};
+    session.before_trials = [i](store::SessionRecorder& recorder) {
+      if (i == 0) recorder.deviated(milliseconds(10), {"no-curtain", "qqdeviation"});
+      if (i == 1) recorder.deviated(milliseconds(10), {"qqcode", "qqdeviation"});
+      recorder.remarked(milliseconds(20), store::EventKind::noted, "qqremark");
+      recorder.questioned(milliseconds(30), "closing", R"({"age": 34, "words": "qqremark"})");
+      if (i == 5) recorder.remarked(milliseconds(40), store::EventKind::stopped, "qqstopped");
+    };
+    session.complete = i != 5;
+    study.add(session);
+  }
+  store::StudyStore& store = study.store();
+  store.unblind(seconds(1'769'860'800), "qqlook", true);
+  store.look_at("qqbert", seconds(1'769'860'900), "qqperson");
+  store.exclude(3, seconds(1'769'861'000), "qqexcluded");
+  store.note(1, seconds(1'769'861'100), "qqcode", "qqnote");
+  store.withdraw(4, seconds(1'769'861'200), "qqwithdrew", store::Kept::data);
+  store.replace(6, "qqafter", seconds(1'769'861'300), "qqreplace");
+  store.close_study(seconds(1'769'861'400));
+  store.unblind(seconds(1'769'861'500), "qqunblind", false);
+}
+
+/// Everything that a report writes, except what gnuplot draws from the scripts.
+std::string everything(const StudyReport& report, const analysis::Provenance& provenance) {
+  const analysis::Document document = analysis::identification::study_document(report, provenance);
+  std::string all = analysis::document_text(document) + analysis::page_html(document) +
+                    analysis::tables_markdown(document) + analysis::tables_latex(document) +
+                    analysis::identification::report_json(report);
+  for (const analysis::Figure& figure : analysis::identification::report_figures(report)) {
+    all += figure.id + figure.caption + figure.alt + figure.script;
+  }
+  return all;
+}
+
+std::size_t found_in(const std::string& text) {
+  std::size_t found = 0;
+  for (const std::string& planted : kPlanted) found += contains(text, planted) ? 1 : 0;
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("a public report names nobody and holds nothing that a person wrote") {
+  FakeStudy study(design::identification::classification(), {.simulated = false});
+  add_people_and_texts(study);
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  analysis::Provenance provenance = analysis::provenance_of(study.store(), "study.db");
+  const std::string whole = everything(analysis::identification::make_report(outcomes), provenance);
+  CHECK(found_in(whole) >= 12);  // a report that hides nothing has most of them
+
+  const analysis::Outcomes bare = analysis::without_identities(outcomes);
+  provenance.state = bare.state;
+  const std::string text = everything(analysis::identification::make_report(bare), provenance);
+  for (const std::string& planted : kPlanted) {
+    INFO(planted);
+    CHECK_FALSE(contains(text, planted));
+  }
+  // The codes that the program gives stay, the experimenter's own do not.
+  CHECK_THAT(text, holds_text("no-curtain"));
+  CHECK_THAT(text, holds_text("other (2)"));
+  CHECK_THAT(text, holds_text("1 session excluded after outcomes were seen."));
+}
+
+TEST_CASE("a public report has the numbers of the other one, by rank of accuracy") {
+  FakeStudy study(design::identification::comparison(), {.simulated = false});
+  add_people_and_texts(study);
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  const auto json_of = [](const analysis::Outcomes& of) {
+    return nlohmann::json::parse(
+        analysis::identification::report_json(analysis::identification::make_report(of)));
+  };
+  nlohmann::json whole = json_of(outcomes);
+  nlohmann::json open = json_of(analysis::without_identities(outcomes));
+  CHECK(whole["public"] == false);
+  CHECK(open["public"] == true);
+  CHECK(open["collection"]["sessions"].empty());
+  const nlohmann::json& people = open["methods"][0]["per_participant"];
+  REQUIRE(people.size() == whole["methods"][0]["per_participant"].size());
+  CHECK(people.front()["participant"] == "1");
+  for (nlohmann::json* json : {&whole, &open}) {
+    for (nlohmann::json& method : (*json)["methods"]) method.erase("per_participant");
+  }
+  for (const char* part :
+       {"methods", "pairs", "comparison", "participants", "trials", "exploration"}) {
+    INFO(part);
+    CHECK(open[part] == whole[part]);
+  }
+  CHECK(open["primary"]["choices"] == whole["primary"]["choices"]);
+  CHECK(open["primary"]["p"] == whole["primary"]["p"]);
+}
+
+}  // namespace touchtrial
