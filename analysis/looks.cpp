@@ -44,6 +44,9 @@ class ChainReading {
         return leave_out(event, record.erased_afterwards);
       case EventKind::participant_replaced:
         return leave_out(event, record.replaced_afterwards);
+      case EventKind::study_closed:
+        closed = event.at;
+        return;
       case EventKind::study_unblinded:
         return look(event);
       default:
@@ -56,6 +59,7 @@ class ChainReading {
 
   LookRecord record;
   nanoseconds last_opened = nanoseconds::min();  ///< the last session
+  nanoseconds closed = nanoseconds::max();
 
  private:
   void leave_out(const store::Event& event, std::set<int>& afterwards) {
@@ -107,6 +111,19 @@ bool is_of_stations(const store::Event& event, const std::vector<Look>& looks) {
   return std::ranges::any_of(looks, [&](const Look& look) { return look.at == event.at; });
 }
 
+/// Marks looks at single participants that were made at several of them before the study was
+/// closed.
+void mark_persons(nanoseconds closed, std::vector<Look>& looks) {
+  const auto is_early = [&](const Look& look) {
+    return look.kind == LookKind::person && look.at < closed;
+  };
+  std::set<std::string> persons;
+  for (const Look& look : looks) {
+    if (is_early(look)) persons.insert(look.participant);
+  }
+  for (Look& look : looks) look.is_one_of_several = persons.size() > 1 && is_early(look);
+}
+
 }  // namespace
 
 std::string name_of(LookKind kind) {
@@ -148,6 +165,7 @@ LookRecord look_record(const store::StudyStore& store, const design::Registratio
   }
   LookRecord record = std::move(whole.record);
   record.looks.insert(record.looks.begin(), of_stations.begin(), of_stations.end());
+  mark_persons(whole.closed, record.looks);
   return record;
 }
 

@@ -29,16 +29,22 @@ struct Look {
   std::string participant{};  ///< of LookKind::person
   int station = 0;            ///< of a collected study: whose look it was, from 1; 0: at the whole
 
+  /// Of LookKind::person: looks at two participants or more, before the study was closed, tell how
+  /// it goes.
+  bool is_one_of_several = false;
+
   /// Whether it could have decided when collecting ends, without having been registered. A look at
-  /// one participant tells too little of the study for that.
-  [[nodiscard]] bool is_unregistered() const noexcept { return kind == LookKind::unregistered; }
+  /// one participant alone tells too little of the study for that.
+  [[nodiscard]] bool is_unregistered() const noexcept {
+    return kind == LookKind::unregistered || is_one_of_several;
+  }
 };
 
 /// How a study's outcomes were looked at, and which sessions were left out with knowledge of them.
 struct LookRecord {
-  std::vector<Look> looks;             ///< in the order of the chain, those at stations first
-  std::set<int> excluded_afterwards;   ///< sessions excluded after a look at their outcomes
-  std::set<int> replaced_afterwards;   ///< likewise replaced
+  std::vector<Look> looks;            ///< in the order of the chain, those at stations first
+  std::set<int> excluded_afterwards;  ///< sessions excluded after a look at their outcomes
+  std::set<int> replaced_afterwards;  ///< likewise replaced
   std::set<int> erased_afterwards;    ///< likewise erased at the participant's wish
 };
 

@@ -5,6 +5,7 @@
 #include "core/text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string_view>
@@ -85,7 +86,8 @@ double level_of(const PrimaryResult& result, const StudyCourse& course, design::
 namespace {
 
 std::string share_text(double share, bool is_difference) {
-  return fmt::format("{:.1f}{}", 100.0 * share, is_difference ? " points" : "%");
+  return fmt::format("{}{:.1f}{}", share < 0.0 ? "−" : "", 100.0 * std::abs(share),
+                     is_difference ? " points" : "%");
 }
 
 /// What the interval says of the smallest effect that was registered.
@@ -98,8 +100,7 @@ std::string words_on_worth(const PrimaryResult& result) {
     return " The interval lies above " + least + ", the smallest registered as worth having.";
   }
   if (interval->high < worth) {
-    return " The interval lies below " + least +
-           ", the smallest registered as worth having: an effect of that size is excluded.";
+    return " The interval lies below " + least + ", the smallest registered as worth having.";
   }
   return " The interval contains " + least +
          ", the smallest registered as worth having: whether it is reached is undecided.";
@@ -132,6 +133,26 @@ bool has_one_order(const PrimaryResult& result) {
   return groups && (groups->first_first == 0) != (groups->second_first == 0);
 }
 
+bool may_stop_at_look(const PrimaryResult& result, const StudyCourse& course) {
+  return course.at_registered_look && result.p && *result.p <= result.level;
+}
+
+/// What belongs to a result that ends collecting early.
+std::string words_on_early_end(const PrimaryResult& result, const StudyCourse& course) {
+  if (!may_stop_at_look(result, course) || course.completed >= course.planned) return "";
+  const std::string look = fmt::format("the registered look at {}",
+                                       counted(course.registered_looks.back(), "participant"));
+  return (course.closed ? " Collecting ended at " + look : " At " + look + " collecting may end") +
+         "; an estimate that ends it early is too large on average.";
+}
+
+/// "p is above 0.05", or with the digits that tell them apart.
+std::string compared_p(const PrimaryResult& result, const std::string& how) {
+  const bool look_alike = fmt::format("{:.3f}", *result.p) == fmt::format("{:.3f}", result.level);
+  return look_alike ? fmt::format("p = {:.8f} is {} {:.5g}.", *result.p, how, result.level)
+                    : fmt::format("p is {} {:.3g}.", how, result.level);
+}
+
 /// Why the registered test cannot decide yet; empty if it can.
 std::string obstacle(const PrimaryResult& result, const StudyCourse& course) {
   if (has_one_order(result)) {
@@ -140,7 +161,7 @@ std::string obstacle(const PrimaryResult& result, const StudyCourse& course) {
   }
   if (!result.p) return "There are too few participants for the test.";
   const bool reached = course.planned == 0 || course.completed >= course.planned;
-  const bool may_stop = course.at_registered_look && *result.p <= result.level;
+  const bool may_stop = may_stop_at_look(result, course);
   if (!course.closed && !may_stop) return "Collecting is not over.";
   if (!reached && !may_stop) {
     return fmt::format("Collecting ended with {} of {} planned participants.", course.completed,
@@ -149,6 +170,10 @@ std::string obstacle(const PrimaryResult& result, const StudyCourse& course) {
   if (course.unregistered_looks > 0 && *result.p <= result.level) {
     return fmt::format("After {} the error rate of the test is not known.",
                        counted(course.unregistered_looks, "unregistered look"));
+  }
+  if (course.planned == 0 && *result.p <= result.level) {
+    return "No number of participants was registered, so collecting could have ended because of "
+           "the outcomes.";
   }
   return "";
 }
@@ -160,6 +185,8 @@ bool is_against(const PrimaryResult& result) {
 }  // namespace
 
 void judge(PrimaryResult& result, const StudyCourse& course) {
+  result.ended_at_look =
+      course.closed && course.completed < course.planned && may_stop_at_look(result, course);
   const auto decide = [&](Verdict verdict, const std::string& because) {
     result.verdict = verdict;
     result.because = because;
@@ -172,9 +199,8 @@ void judge(PrimaryResult& result, const StudyCourse& course) {
   const std::string worth = words_on_worth(result) + words_on_margin(result);
   const std::string hindered = obstacle(result, course);
   if (!hindered.empty()) return decide(Verdict::undecided, hindered + worth);
-  const std::string level = fmt::format("{:.3g}", result.level);
   if (*result.p > result.level) {
-    const std::string above = "p is above " + level + ".";
+    const std::string above = compared_p(result, "above");
     const std::optional<Interval>& interval = result.registered().interval;
     const std::optional<double> least =
         result.margin ? std::optional(-*result.margin) : result.smallest_effect;
@@ -185,7 +211,8 @@ void judge(PrimaryResult& result, const StudyCourse& course) {
     return decide(Verdict::not_supported,
                   "The test rejects, but in the direction opposite to the hypothesis." + worth);
   }
-  decide(Verdict::supported, "p is at most " + level + "." + worth);
+  decide(Verdict::supported,
+         compared_p(result, "at most") + worth + words_on_early_end(result, course));
 }
 
 namespace {
@@ -276,8 +303,11 @@ void add_looks(const Outcomes& outcomes, Departures& departures) {
     if (look.kind == LookKind::person) {
       const std::string who =
           outcomes.collection.is_public ? "one participant" : "participant " + look.participant;
-      departures.push_back(fmt::format("The outcomes of {} alone were looked at{} on {}{}.", who,
-                                       station, date_text(look.at), after_colon(look.reason)));
+      departures.push_back(fmt::format(
+          "The outcomes of {} alone were looked at{} on {}{}.{}", who, station, date_text(look.at),
+          after_colon(look.reason),
+          look.is_one_of_several ? " With those of others, they told how the study was going."
+                                 : ""));
       continue;
     }
     const std::string of = planned > 0 ? fmt::format(" of {} planned", planned) : "";
@@ -293,6 +323,9 @@ void add_numbers(const Outcomes& outcomes, Departures& departures) {
   const int planned = outcomes.design.registration.participants;
   const int completed = completed_participants(outcomes);
   const auto analysed = std::ranges::count_if(outcomes.sessions, &SessionOutcome::counted);
+  if (planned == 0 && outcomes.design.registration.analysis) {
+    departures.emplace_back("No number of participants was registered.");
+  }
   if (planned == 0 || !outcomes.state.closed || completed == planned) return;
   departures.push_back(
       fmt::format("{} planned; collecting ended with {} complete{}.",
@@ -382,11 +415,11 @@ void add_deviations(const Outcomes& outcomes, Departures& departures) {
 
 }  // namespace
 
-std::vector<std::string> departures_of(const Outcomes& outcomes) {
+std::vector<std::string> departures_of(const Outcomes& outcomes, bool ended_at_look) {
   Departures departures;
   add_looks(outcomes, departures);
   add_late_decisions(outcomes, departures);
-  add_numbers(outcomes, departures);
+  if (!ended_at_look) add_numbers(outcomes, departures);
   add_rules(outcomes, departures);
   add_deviations(outcomes, departures);
   return departures;

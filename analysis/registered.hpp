@@ -54,7 +54,8 @@ struct PrimaryResult {
   std::optional<CrossoverEstimate> crossover{};
   std::optional<CrossoverPermutation> permutation{};
   Verdict verdict = Verdict::not_registered;
-  std::string because{};  ///< why, in one sentence or more
+  std::string because{};       ///< why, in one sentence or more
+  bool ended_at_look = false;  ///< collecting ended at a registered look, as registered
   /// The registered choice with stations as strata, at interval_level; nothing unless the study
   /// was collected from two stations or more.
   std::optional<StratifiedMean> stations{};
@@ -96,7 +97,10 @@ void judge(PrimaryResult& result, const StudyCourse& course);
 [[nodiscard]] std::map<int, std::string> rules_met(const Outcomes& outcomes);
 
 /// Every departure from the plan, one sentence or two each, the gravest first.
-[[nodiscard]] std::vector<std::string> departures_of(const Outcomes& outcomes);
+///
+/// \param ended_at_look  PrimaryResult: then fewer participants than planned are no departure
+[[nodiscard]] std::vector<std::string> departures_of(const Outcomes& outcomes,
+                                                     bool ended_at_look = false);
 
 /// \return "p is not adjusted for 2 unregistered looks at outcomes."; empty without such looks
 [[nodiscard]] std::string unadjusted_words(const std::vector<Look>& looks);

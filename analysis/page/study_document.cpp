@@ -42,9 +42,14 @@ std::vector<std::string> banners_of(const StudyHead& report, const Provenance& p
     banners.emplace_back("PILOT: not to be pooled with the study's data, nor reported as it.");
   }
   if (is_interim(provenance)) {
+    const bool registered =
+        !report.looks.empty() && report.looks.back().kind == LookKind::registered;
     banners.emplace_back(
-        "INTERIM LOOK: the study is still open. What it shows must not decide when the study "
-        "ends.");
+        registered
+            ? "INTERIM LOOK, as registered: the study is still open. The registered question "
+              "alone may decide whether it ends here."
+            : "INTERIM LOOK: the study is still open. What it shows must not decide when the "
+              "study ends.");
   }
   return banners;
 }

@@ -65,7 +65,7 @@ Cited verdict_sentence(const StudyHead& head) {
     text += fmt::format(", nominal level at this look {:.3g}", primary.level);
   }
   if (primary.bound && !primary.margin) {
-    text += fmt::format(", lower {} limit {}", level_words(1.0 - primary.alpha),
+    text += fmt::format(", lower {} limit {}", level_words(1.0 - primary.level),
                         estimand_figure(primary, primary.bound));
   }
   std::vector<Source> sources{Source::student};
@@ -224,10 +224,12 @@ std::vector<Block> verdict_blocks(const StudyHead& head) {
 
 namespace {
 
-/// Whether a column's title announces p values: "p", "sign-flip p", "p, Holm", "McNemar mid-p".
+/// Whether a column's title announces p values: "p", "sign-flip p", "p, Holm", "McNemar mid-p",
+/// "p of the exchange".
 bool is_of_p(const Column& column) {
   const std::string_view title = column.title;
-  return title == "p" || title.starts_with("p, ") || title.ends_with(" p") || title.ends_with("-p");
+  return title == "p" || title.starts_with("p, ") || title.starts_with("p of ") ||
+         title.ends_with(" p") || title.ends_with("-p");
 }
 
 bool tells_p(const std::string& text) {

@@ -61,6 +61,23 @@ TEST_CASE("an exclusion before any look is not one with knowledge of outcomes") 
   CHECK(record_of(study).erased_afterwards == std::set<int>{1});
 }
 
+TEST_CASE("looks at two participants or more, one by one, are an unregistered look") {
+  FakeStudy study(design::identification::classification());
+  add_sessions(study, 1, 3);
+  study.store().look_at("P1", kNoon, "asked for it");
+  CHECK_FALSE(analysis::look_record(study.store(), {}).looks.at(0).is_unregistered());
+  study.store().look_at("P1", kNoon + seconds(1), "asked again");
+  CHECK_FALSE(analysis::look_record(study.store(), {}).looks.at(1).is_unregistered());
+  study.store().look_at("P2", kNoon + seconds(2), "asked too");
+  study.store().close_study(kNoon + seconds(3));
+  study.store().look_at("P3", kNoon + seconds(4), "after the end");
+  const analysis::LookRecord record = analysis::look_record(study.store(), {});
+  REQUIRE(record.looks.size() == 4);
+  CHECK(record.looks[0].is_unregistered());
+  CHECK(record.looks[2].is_unregistered());
+  CHECK_FALSE(record.looks[3].is_unregistered());
+}
+
 TEST_CASE("a look at a registered number of participants is registered") {
   FakeStudy study(
       design::identification::classification(),

@@ -273,7 +273,6 @@ std::optional<PrimaryResult> primary_result(const Outcomes& outcomes) {
       primary_question(outcomes.design, static_cast<int>(outcomes.methods.size()));
   if (!question) return std::nullopt;
   const auto classes = static_cast<int>(outcomes.classes.size());
-  const double level = question->interval_level();
   PrimaryResult result{.estimand = question->estimand,
                        .words = question_words(*question, outcomes),
                        .test = test_words(*question),
@@ -281,23 +280,30 @@ std::optional<PrimaryResult> primary_result(const Outcomes& outcomes) {
                        .sides = question->sides,
                        .alpha = question->alpha,
                        .level = question->alpha,
-                       .interval_level = level,
+                       .interval_level = question->interval_level(),
                        .smallest_effect = question->smallest_effect,
                        .margin = question->margin};
-  for (const Selection& selection : selections(outcomes)) {
-    const SelectedPeople selected = people_of(*question, outcomes, selection);
-    if (result.choices.empty()) {
-      put_registered_choice(*question, classes, selected.people, result);
-      result.stations = over_stations(*question, outcomes, selected);
-    }
-    const PrimaryEstimate found = primary_estimate(*question, selected.people, level);
-    result.choices.push_back({selection.name, selection.words,
-                              static_cast<int>(selected.people.size()), selected.trials,
-                              found.estimate, found.interval});
+  const std::vector<Selection> chosen = selections(outcomes);
+  std::vector<SelectedPeople> people;
+  for (const Selection& selection : chosen) {
+    people.push_back(people_of(*question, outcomes, selection));
   }
-  const StudyCourse course = course_of(outcomes, result.registered().participants);
+  const StudyCourse course = course_of(outcomes, static_cast<int>(people.front().people.size()));
+  // After registered looks, intervals and limits have the level of the test.
+  PrimaryQuestion at_level = *question;
   if (const auto& registered = outcomes.design.registration.analysis) {
-    result.level = level_of(result, course, registered->spending);
+    at_level.alpha = level_of(result, course, registered->spending);
+    result.level = at_level.alpha;
+    result.interval_level = at_level.interval_level();
+  }
+  put_registered_choice(at_level, classes, people.front().people, result);
+  result.stations = over_stations(at_level, outcomes, people.front());
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const PrimaryEstimate found =
+        primary_estimate(at_level, people[i].people, result.interval_level);
+    result.choices.push_back({chosen[i].name, chosen[i].words,
+                              static_cast<int>(people[i].people.size()), people[i].trials,
+                              found.estimate, found.interval});
   }
   judge(result, course);
   return result;

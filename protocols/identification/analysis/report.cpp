@@ -52,6 +52,9 @@ StudyReport make_report(const Outcomes& outcomes) {
   if (report.methods.size() == 2) report.comparison = report.pairs.front().overall;
   report.together = methods_together(classes, counted);
   report.primary = primary_result(outcomes);
+  if (report.primary && report.primary->ended_at_look) {
+    report.departures = departures_of(outcomes, true);
+  }
   if (report.methods.size() == 1) report.prevalence = report.methods.front().prevalence;
   report.warnings = report_warnings(outcomes, report);
   return report;

@@ -192,7 +192,7 @@ TEST_CASE("an effect may be excluded, reached or open") {
   CHECK(verdict(0.6, {0.5, 0.7}, 0.001) == Verdict::supported);
   CHECK_THAT(result.because, holds_text("lies above 40.0%"));
   CHECK(verdict(0.25, {0.21, 0.29}, 0.01) == Verdict::supported);
-  CHECK_THAT(result.because, holds_text("an effect of that size is excluded"));
+  CHECK_THAT(result.because, holds_text("lies below"));
   CHECK(verdict(0.3, {0.15, 0.45}, 0.2) == Verdict::undecided);
   CHECK(verdict(0.2, {0.15, 0.25}, 0.5) == Verdict::not_supported);
   result.sides = analysis::Sides::two;
@@ -237,6 +237,38 @@ TEST_CASE("a registered look has Lan and DeMets's level, and so has the end afte
   const StudyReport report = report_of(study);
   CHECK(report.primary->level == Approx(0.0482457031).epsilon(1e-5));
   CHECK(report.departures.empty());
+}
+
+TEST_CASE("a registered look may end collecting, and its interval has the level of its test") {
+  FakeStudy study(
+      design::identification::classification(),
+      {.registration = R"({"participants": 8, "estimand": "mean-accuracy", "looks": [4]})"});
+  add_people(study, 1, {11, 12, 11, 12});
+  study.store().unblind(seconds(10), "as registered", true);
+  const StudyReport look = report_of(study);
+  CHECK(look.primary->verdict == Verdict::supported);
+  CHECK(look.primary->interval_level == Approx(1.0 - 0.0055745966));
+  CHECK_THAT(look.primary->because, holds_text("At the registered look at 4 participants"));
+  analysis::Provenance provenance;
+  provenance.state.unblinded = true;
+  CHECK_THAT(analysis::document_text(analysis::identification::study_document(look, provenance)),
+             holds_text("INTERIM LOOK, as registered"));
+  study.close_and_unblind();
+  const StudyReport report = report_of(study);
+  CHECK(report.primary->verdict == Verdict::supported);
+  CHECK_THAT(report.primary->because, holds_text("too large on average"));
+  CHECK(report.departures.empty());
+}
+
+TEST_CASE("without a registered number of participants a p within its level decides nothing") {
+  FakeStudy study(design::identification::classification(),
+                  {.registration = R"({"estimand": "mean-accuracy"})"});
+  add_people(study, 1, {11, 12, 11, 12});
+  study.close_and_unblind();
+  const StudyReport report = report_of(study);
+  CHECK(report.primary->p.value() < 0.001);
+  CHECK(report.primary->verdict == Verdict::undecided);
+  CHECK(report.departures == std::vector<std::string>{"No number of participants was registered."});
 }
 
 TEST_CASE("a registered difference is the first method less the second") {
@@ -369,14 +401,14 @@ TEST_CASE("as good by a margin is judged by the interval above minus the margin"
     return result.verdict;
   };
   CHECK(verdict({-0.05, 0.03}, 0.02) == Verdict::supported);
-  CHECK_THAT(result.because, holds_text("The 90% interval lies above -7.0 points"));
+  CHECK_THAT(result.because, holds_text("The 90% interval lies above −7.0 points"));
   CHECK_THAT(result.because, holds_text("and contains 0"));
   CHECK(verdict({0.01, 0.09}, 0.001) == Verdict::supported);
   CHECK_THAT(result.because, holds_text("the first method is better"));
   CHECK(verdict({-0.06, -0.01}, 0.01) == Verdict::supported);
   CHECK_THAT(result.because, holds_text("worse, but by less than the margin"));
   CHECK(verdict({-0.1, 0.02}, 0.2) == Verdict::undecided);
-  CHECK_THAT(result.because, holds_text("contains -7.0 points"));
+  CHECK_THAT(result.because, holds_text("contains −7.0 points"));
   CHECK(verdict({-0.2, -0.1}, 0.99) == Verdict::not_supported);
   CHECK_THAT(result.because, holds_text("worse by more than that"));
 }
