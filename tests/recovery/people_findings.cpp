@@ -75,8 +75,8 @@ void add_spread(double spread, int repetitions, std::vector<Finding>& findings) 
   }
   const Average mean = over_studies([](const planning::PeopleSpread& one) { return one.spread; });
   findings.push_back({"recovered", "spread of noise between people", who, spread, mean.mean,
-                      mean.standard_error, 0.75 * spread, 1.1 * spread,
-                      "maximum likelihood, a little too small"});
+                      mean.standard_error, 0.9 * spread, 1.25 * spread,
+                      "maximum likelihood, too large where answers tell little of it"});
 }
 
 /// Ten who feel nothing and ten who are nearly always right, taken for alike by their sums.
