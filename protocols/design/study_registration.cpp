@@ -333,8 +333,7 @@ std::string rules_words(const ExclusionRules& rules) {
   std::vector<std::string> words = rules.deviations;
   for (std::string& code : words) code = "a deviation " + in_quotes(code);
   if (rules.invalid_trials) {
-    words.push_back("more than " + per_cent_text(*rules.invalid_trials) +
-                    " % of trials not valid");
+    words.push_back("more than " + per_cent_text(*rules.invalid_trials) + " % of trials not valid");
   }
   if (words.empty()) return "none, besides sessions stopped early and participants who withdrew";
   return "a session with " + listed(words, " or ") +
@@ -347,10 +346,9 @@ std::vector<std::pair<std::string, std::string>> fields_of(const Registration& r
   if (!registration.analysis) return {};
   const RegisteredAnalysis& analysis = *registration.analysis;
   const bool accuracy = analysis.estimand == Estimand::mean_accuracy;
-  const std::string worth =
-      analysis.smallest_effect
-          ? per_cent_text(*analysis.smallest_effect) + (accuracy ? " % right" : " points")
-          : "not stated";
+  const std::string worth = analysis.smallest_effect ? per_cent_text(*analysis.smallest_effect) +
+                                                           (accuracy ? " % right" : " points")
+                                                     : "not stated";
   const std::pair<std::string, std::string> size =
       analysis.margin
           ? std::pair<std::string, std::string>(
