@@ -52,6 +52,18 @@ void finish(SessionRecord& record) {
 
 }  // namespace
 
+std::optional<CollectionDates> dates_of(const std::vector<SessionRecord>& sessions) {
+  constexpr std::size_t kDay = 10;  // "2026-01-31"
+  std::optional<CollectionDates> dates;
+  for (const SessionRecord& one : sessions) {
+    if (one.row.erased || one.opened_utc.size() < kDay) continue;
+    const std::string day = one.opened_utc.substr(0, kDay);
+    if (!dates) dates = {day, day};
+    dates = {std::min(dates->first, day), std::max(dates->last, day)};
+  }
+  return dates;
+}
+
 Collection load_collection(const store::StudyStore& store, const design::StudyKey* key) {
   const std::vector<store::SessionRow> rows = store.sessions();
   std::map<int, SessionRecord> records = empty_records(rows);

@@ -6,10 +6,34 @@
 #include "protocols/store/study_store.hpp"
 
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace touchtrial::analysis {
+
+/// Whether a session counts: it is completed and is neither excluded, erased nor replaced. It is
+/// a pilot session exactly if the study is a pilot, and simulated exactly if the study is
+/// simulated.
+[[nodiscard]] inline bool session_counts(const store::SessionRow& session,
+                                         const store::StudyCommitment& commitment) noexcept {
+  return session.state == store::SessionState::completed && !session.excluded && !session.erased &&
+         session.replaced_by.empty() && session.pilot == commitment.pilot &&
+         session.simulated == commitment.simulated;
+}
+
+/// What a session's schedule was drawn from.
+[[nodiscard]] inline design::Draws draws_of(const store::SessionRow& session) noexcept {
+  return session.pilot || session.simulated ? design::Draws::rehearsal : design::Draws::people;
+}
+
+/// The sessions that count: by themselves, and their participants have all visits that the study
+/// needs (design::Study::visits_needed) among them.
+/// \param rows  all sessions that may be shown
+/// \throws StoreError as prescription_from_json
+[[nodiscard]] std::set<int> counted_sessions(std::span<const store::SessionRow> rows,
+                                             const store::StudyCommitment& commitment);
 
 /// A deviation from the protocol: its code (docs/data-dictionary.md) and a description, which is
 /// empty without the key if it was recorded during the session.
@@ -51,11 +75,18 @@ struct SessionRecord {
   std::vector<Deviation> deviations;  ///< including those noted later; duplicates appear once
   // In the words of people; "(sealed)" without the key.
   std::string exclusion_reason;
+  bool after_outcomes = false;  ///< the exclusion, when outcomes had been seen
   std::string replacement_reason;
   std::string stop_reason;  ///< or the program's
   std::string withdrawal_reason;
   std::optional<double> largest_force_n;  ///< sent, to tenths; of a session that has ended
-  int resumed = 0;  ///< how often the session was resumed after the program had ended
+  int resumed = 0;        ///< how often the session was resumed after the program had ended
+  int interruptions = 0;  ///< of presentations, repeated or not
+  int pauses = 0;
+  int notes = 0;  ///< taken during the session
+  /// Laterality quotient, -100 to 100, once outcomes are shown and if it was told.
+  std::optional<double> handedness_score{};
+  std::string group{};  ///< the participant's; empty: there is none, or it is not shown
   /// Of the dealt orders of methods, once outcomes are shown; negative: dealt without a partner.
   std::optional<int> order_block{};
 };
@@ -94,6 +125,11 @@ struct Prescription {
   std::string sight;      ///< "curtain" or "blindfold"
   bool masking_wanted = true;
   double masking_dbfs = 0.0;
+  design::ValidityRule validity{};
+  int visits = 1;         ///< of each participant
+  int visits_needed = 1;  ///< design::Study::visits_needed
+  std::vector<std::string> groups{};
+  std::string draft{};  ///< design::draft_notice of the participants' language
 };
 
 struct Collection {
@@ -105,6 +141,9 @@ struct Collection {
   bool visual = false;     ///< textures were seen on a screen, not felt; the same for all sessions
   bool is_public = false;  ///< without ids and without texts of people: without_identities
 };
+
+/// \return the reason of an exclusion, behind "after outcomes were seen: " if they had been
+[[nodiscard]] std::string exclusion_words(const SessionRecord& session);
 
 /// Reads what a study prescribes.
 /// \param configuration  the configuration in clear from the study's commitment

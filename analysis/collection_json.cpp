@@ -1,3 +1,4 @@
+#include "analysis/collection_records.hpp"
 #include "analysis/json_figures.hpp"
 
 #include <map>
@@ -8,14 +9,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json prescription_json(const Prescription& prescription) {
-  return {{"explore_limit_s", figure_json(prescription.explore_limit_s)},
-          {"on_timeout", prescription.on_timeout},
-          {"order", prescription.order},
-          {"repeats", prescription.repeats},
-          {"sight", prescription.sight},
-          {"masking",
-           {{"wanted", prescription.masking_wanted},
-            {"level_dbfs", figure_json(prescription.masking_dbfs)}}}};
+  Json object{{"explore_limit_s", figure_json(prescription.explore_limit_s)},
+              {"on_timeout", prescription.on_timeout},
+              {"order", prescription.order},
+              {"repeats", prescription.repeats},
+              {"sight", prescription.sight},
+              {"masking",
+               {{"wanted", prescription.masking_wanted},
+                {"level_dbfs", figure_json(prescription.masking_dbfs)}}}};
+  if (prescription.visits > 1) object["visits"] = prescription.visits;
+  if (!prescription.groups.empty()) object["groups"] = prescription.groups;
+  return object;
 }
 
 Json flow_json(const ParticipantFlow& flow) {
@@ -30,18 +34,6 @@ Json flow_json(const ParticipantFlow& flow) {
           {"unseen", flow.unseen},
           {"analysed", flow.analysed},
           {"withdrawn", flow.withdrawn}};
-}
-
-std::string name_of(store::SessionState state) {
-  switch (state) {
-    case store::SessionState::open:
-      return "open";
-    case store::SessionState::completed:
-      return "completed";
-    case store::SessionState::stopped:
-      break;
-  }
-  return "stopped";
 }
 
 Json practice_json(const std::optional<PracticeRecord>& practice) {
@@ -68,24 +60,34 @@ Json session_json(const SessionRecord& session) {
   object["erased"] = session.row.erased;
   if (session.row.erased) return object;
   object["participant"] = session.row.participant;
+  if (session.row.visit > 1) object["visit"] = session.row.visit;
+  if (!session.group.empty()) object["group"] = session.group;
   object["excluded"] = session.row.excluded;
   object["replaced_by"] = session.row.replaced_by;
   object["device"] = session.row.device;
   object["device_serial"] = session.device_serial;
   object["practice"] = practice_json(session.practice);
   object["answers"] = answers_json(session.answers);
-  object["exclusion_reason"] = session.exclusion_reason;
+  object["exclusion_reason"] = exclusion_words(session);
   object["replacement_reason"] = session.replacement_reason;
   object["stop_reason"] = session.stop_reason;
   object["withdrawal_reason"] = session.withdrawal_reason;
   object["largest_force_n"] = nullptr;
   if (session.largest_force_n) object["largest_force_n"] = figure_json(*session.largest_force_n);
   object["resumed"] = session.resumed;
+  object["interruptions"] = session.interruptions;
+  object["pauses"] = session.pauses;
+  object["notes"] = session.notes;
   object["deviations"] = Json::array();
   for (const auto& [code, text] : session.deviations) {
     object["deviations"].push_back({{"code", code}, {"text", text}});
   }
   return object;
+}
+
+Json dates_json(const std::vector<SessionRecord>& sessions) {
+  const auto dates = dates_of(sessions);
+  return dates ? Json{{"first", dates->first}, {"last", dates->last}} : Json(nullptr);
 }
 
 /// The number of sessions with each deviation.
@@ -114,6 +116,7 @@ nlohmann::ordered_json collection_object(const Collection& collection) {
     looks.push_back({{"participant", look.participant}, {"reason", look.reason}});
   }
   return {{"prescription", prescription_json(collection.prescription)},
+          {"dates", dates_json(collection.sessions)},
           {"flow", flow_json(collection.flow)},
           {"looks", std::move(looks)},
           {"deviations", deviations_json(collection)},

@@ -11,14 +11,16 @@ namespace {
 
 constexpr std::array kKinds = {store::EventKind::opened,   store::EventKind::practised,
                                store::EventKind::deviated, store::EventKind::stopped,
-                               store::EventKind::resumed,  store::EventKind::trace_stored,
-                               store::EventKind::closed};
+                               store::EventKind::resumed,  store::EventKind::interrupted,
+                               store::EventKind::paused,   store::EventKind::trace_stored,
+                               store::EventKind::noted,    store::EventKind::closed};
 
 void add_opening(const store::Event& event, SessionRecord& session) {
   store::SessionOpening opening = store::opening_from_json(event.body);
   session.device_serial = std::move(opening.device_serial);
   session.opened_utc = std::move(opening.opened_utc);
   session.station = std::move(opening.station);
+  session.group = std::move(opening.group);
 }
 
 /// What a person wrote, if the event is opened.
@@ -26,9 +28,10 @@ std::string words_of(const store::Event& event, const std::string& text) {
   return event.sealed.empty() ? text : "(sealed)";
 }
 
-std::string exclusion_in(const store::Event& event) {
+void add_exclusion(const store::Event& event, SessionRecord& session) {
   const store::ParticipantBody body = store::participant_from_json(event.body);
-  return (body.after_outcomes ? "after outcomes were seen: " : "") + words_of(event, body.reason);
+  session.exclusion_reason = words_of(event, body.reason);
+  session.after_outcomes = body.after_outcomes;
 }
 
 std::string stop_in(const store::Event& event) {
@@ -95,8 +98,7 @@ void add_to_record(const store::Event& event, SessionRecord& session) {
       return;
     }
     case store::EventKind::participant_excluded:
-      session.exclusion_reason = exclusion_in(event);
-      return;
+      return add_exclusion(event, session);
     case store::EventKind::participant_replaced:
       session.replacement_reason = words_of(event, store::replacement_from_json(event.body).reason);
       return;
@@ -110,11 +112,25 @@ void add_to_record(const store::Event& event, SessionRecord& session) {
       // A session that was only paused does not count as resumed.
       if (store::resumed_from_json(event.body).after == "program-ended") ++session.resumed;
       return;
+    case store::EventKind::interrupted:
+      ++session.interruptions;
+      return;
+    case store::EventKind::paused:
+      ++session.pauses;
+      return;
+    case store::EventKind::noted:
+      ++session.notes;
+      return;
     case store::EventKind::closed:
       return add_end(store::closed_from_json(event.body), session);
     default:
       return;
   }
+}
+
+std::string exclusion_words(const SessionRecord& session) {
+  const bool is_late = session.after_outcomes && !session.exclusion_reason.empty();
+  return (is_late ? "after outcomes were seen: " : "") + session.exclusion_reason;
 }
 
 std::vector<std::string> people_notes(const Collection& collection) {

@@ -3,6 +3,7 @@
 
 #include "analysis/collection.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,11 +24,21 @@ void add_to_record(const store::Event& event, SessionRecord& session);
 /// \return the timing of the trial's servo, or nothing if the trial was not in real time
 [[nodiscard]] std::optional<ServoTrial> servo_trial_of(const store::Event& trace_stored);
 
+/// The days of the first and of the last session in real time: "2026-01-31".
+struct CollectionDates {
+  std::string first;
+  std::string last;
+};
+
+/// \return nothing if no session was in real time
+[[nodiscard]] std::optional<CollectionDates> dates_of(const std::vector<SessionRecord>& sessions);
+
 /// Sentences on participants who withdrew and let their data be used, and on looks at single
 /// participants' outcomes. Empty if there are none.
 [[nodiscard]] std::vector<std::string> people_notes(const Collection& collection);
 
-/// Counts participants, each by the participant's last session.
+/// Counts participants, each by the participant's last session; of the visits, by those that are
+/// needed.
 /// \param rows  sessions in order of their numbers
 [[nodiscard]] ParticipantFlow participant_flow(const std::vector<store::SessionRow>& rows,
                                                const std::vector<SessionRecord>& records,

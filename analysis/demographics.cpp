@@ -1,43 +1,15 @@
 #include "analysis/demographics.hpp"
 
-#include "analysis/sealed_sessions.hpp"
-#include "core/errors.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "analysis/answers.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace touchtrial::analysis {
 namespace {
-
-/// Answers by the id of their question. Texts are left out, because they may name people.
-struct QuestionnaireAnswers {
-  std::map<std::string, int> choices;     ///< index of the option, or a whole number
-  std::map<std::string, double> numbers;  ///< finite
-};
-
-bool fits_int(const nlohmann::json& value) {
-  return value.is_number_integer() && value >= 0 && value <= std::numeric_limits<int>::max();
-}
-
-/// \throws StoreError if the text is not a JSON object
-QuestionnaireAnswers answers_from_json(const std::string& text) {
-  const nlohmann::json object = nlohmann::json::parse(text, nullptr, false);
-  if (!object.is_object()) {
-    throw StoreError("a questionnaire's answers are no JSON object; run `touchtrial verify`");
-  }
-  QuestionnaireAnswers answers;
-  for (const auto& [id, value] : object.items()) {
-    if (fits_int(value)) answers.choices[id] = value.get<int>();
-    if (value.is_number()) answers.numbers[id] = value.get<double>();
-  }
-  return answers;
-}
 
 /// Changes ASCII letters only, in every locale.
 std::string lower_case(std::string text) {
@@ -49,15 +21,13 @@ std::string lower_case(std::string text) {
 
 /// The text of an option in lower case, in English if the study has it in English.
 std::optional<std::string> option_text(const design::Study& study, const std::string& question,
-                                       int option) {
+                                       double option) {
   for (const design::Question& one : study.session.closing_questions) {
-    if (one.id != question || option < 0 || option >= static_cast<int>(one.options.size())) {
+    if (one.id != question || option < 0.0 || option >= static_cast<double>(one.options.size())) {
       continue;
     }
-    const design::Translated& words = one.options[option];
-    if (words.empty()) return std::nullopt;
-    const auto english = words.find("en");
-    return lower_case(english == words.end() ? words.begin()->second : english->second);
+    const std::string words = in_language(one.options[static_cast<std::size_t>(option)], "en");
+    if (!words.empty()) return lower_case(words);
   }
   return std::nullopt;
 }
@@ -73,30 +43,18 @@ std::string age_band(double age) {
 
 /// The laterality quotient: the mean over the inventory's four items, each 100 (always right), 50,
 /// 0, -50 or -100. Source: Veale (2014), Laterality 19, 164-177.
+/// \param answers  of one session to the inventory, by item
 /// \return nothing if an item has no answer
-std::optional<double> handedness_score(const std::map<std::string, int>& answers) {
+std::optional<double> handedness_score(const std::map<std::string, double>& answers) {
   constexpr std::array<const char*, 4> kItems{"writing", "throwing", "toothbrush", "spoon"};
   double sum = 0.0;
   for (const char* item : kItems) {
     const auto answer = answers.find(item);
-    if (answer == answers.end() || answer->second < 0 || answer->second > 4) return std::nullopt;
+    if (answer == answers.end() || answer->second < 0.0 || answer->second > 4.0)
+      return std::nullopt;
     sum += 100.0 - 50.0 * answer->second;
   }
   return sum / static_cast<double>(kItems.size());
-}
-
-void take_answers(const std::string& questionnaire, const QuestionnaireAnswers& answers,
-                  const design::Study& study, Demographics& of) {
-  if (questionnaire == "handedness") {
-    if (const auto score = handedness_score(answers.choices)) of.handedness_score = score;
-  }
-  const auto age = answers.numbers.find("age");
-  if (age != answers.numbers.end()) of.age_band = age_band(age->second);
-  for (const char* id : {"sex", "gender"}) {
-    const auto chosen = answers.choices.find(id);
-    if (chosen == answers.choices.end()) continue;
-    if (const auto text = option_text(study, id, chosen->second)) of.sex = text;
-  }
 }
 
 }  // namespace
@@ -106,18 +64,37 @@ std::string handedness_of(double score) {
   return score < -60.0 ? "left" : "ambidextrous";
 }
 
-std::map<int, Demographics> demographics_of(const store::StudyStore& store,
-                                            const design::StudyKey& key) {
+std::map<int, Demographics> demographics_of(const std::vector<QuestionAnswer>& answers,
+                                            const design::Study& study) {
   std::map<int, Demographics> all;
-  const std::map<int, SecretKey> keys = participant_keys(store, key);
-  store.for_each(store::EventKind::questioned, [&](const store::Event& event) {
-    const auto own = keys.find(event.session);
-    if (own == keys.end()) return;
-    take_answers(store::remark_from_json(event.body),
-                 answers_from_json(whole_event(event, own->second).secret), key.study,
-                 all[event.session]);
-  });
+  std::map<int, std::map<std::string, double>> hands;
+  for (const QuestionAnswer& answer : answers) {
+    Demographics& of = all[answer.session];
+    if (!answer.number) continue;
+    if (answer.questionnaire == "handedness") {
+      hands[answer.session][answer.question] = *answer.number;
+    }
+    if (answer.question == "age") of.age_band = age_band(*answer.number);
+    if (answer.question != "sex" && answer.question != "gender") continue;
+    if (const auto text = option_text(study, answer.question, *answer.number)) of.sex = text;
+  }
+  for (const auto& [session, items] : hands)
+    all[session].handedness_score = handedness_score(items);
   return all;
+}
+
+int keep_large_bands(std::vector<Band>& bands, int others) {
+  std::erase_if(bands, [&](const Band& band) {
+    if (band.people >= kFewestOfBand) return false;
+    others += band.people;
+    return true;
+  });
+  while (others > 0 && others < kFewestOfBand && !bands.empty()) {
+    const auto least = std::ranges::min_element(bands, {}, &Band::people);
+    others += least->people;
+    bands.erase(least);
+  }
+  return others;
 }
 
 namespace {
@@ -127,19 +104,8 @@ std::optional<Characteristic> shown(const std::string& name, std::map<std::strin
   Characteristic shown{name, {}, counts[""]};
   counts.erase("");
   if (counts.empty()) return std::nullopt;
-  for (const auto& [band, people] : counts) {
-    if (people >= kFewestOfBand) {
-      shown.bands.push_back({band, people});
-    } else {
-      shown.others += people;
-    }
-  }
-  // A few others would tell how many they are by what the bands leave of the whole.
-  while (shown.others > 0 && shown.others < kFewestOfBand && !shown.bands.empty()) {
-    const auto least = std::ranges::min_element(shown.bands, {}, &Band::people);
-    shown.others += least->people;
-    shown.bands.erase(least);
-  }
+  for (const auto& [band, people] : counts) shown.bands.push_back({band, people});
+  shown.others = keep_large_bands(shown.bands, shown.others);
   return shown;
 }
 

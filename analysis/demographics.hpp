@@ -22,13 +22,14 @@ struct Demographics {
 /// "right", "left" or "ambidextrous", with the bounds of 60 and -60 of Veale (2014).
 [[nodiscard]] std::string handedness_of(double score);
 
-/// Demographics by session. They come from sealed answers to questions with the id "age" (a
-/// number), "sex" or "gender", and from the handedness inventory. Texts are never read, because
-/// they may name people.
-/// \throws VerificationError if an answer does not open
-/// \throws StoreError if an answer is not in the form that this program writes
-[[nodiscard]] std::map<int, Demographics> demographics_of(const store::StudyStore& store,
-                                                          const design::StudyKey& key);
+struct QuestionAnswer;
+
+/// Demographics by session. They come from answers to questions with the id "age" (a number), "sex"
+/// or "gender", and from the handedness inventory. Texts are never read, because they may name
+/// people.
+/// \param study  has the options of its questions
+[[nodiscard]] std::map<int, Demographics> demographics_of(
+    const std::vector<QuestionAnswer>& answers, const design::Study& study);
 
 /// The least number of people that a band shows. Fewer could be recognised.
 inline constexpr int kFewestOfBand = 5;
@@ -47,6 +48,12 @@ struct Characteristic {
   /// The smallest band goes in with them if they are too few by themselves.
   int others = 0;
 };
+
+/// Takes out bands of fewer than kFewestOfBand people, and the smallest band too while a few others
+/// would tell how many they are by what the bands leave of the whole.
+/// \param others  people in no band
+/// \return the people in no band now
+[[nodiscard]] int keep_large_bands(std::vector<Band>& bands, int others);
 
 /// The characteristics of a group, without those that nobody told.
 /// \param people  one entry for each person, empty if the person said nothing

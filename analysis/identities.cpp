@@ -1,9 +1,9 @@
 #include "analysis/identities.hpp"
 
 #include "analysis/statistics/proportion.hpp"
+#include "protocols/design/deviation_codes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <set>
 #include <string_view>
@@ -13,29 +13,6 @@
 
 namespace touchtrial::analysis {
 namespace {
-
-/// The codes of deviations that the program gives. Docs: docs/data-dictionary.md.
-constexpr std::array<std::string_view, 21> kCodes{"answers-lost",
-                                                  "comfort-stop",
-                                                  "key-at-station",
-                                                  "no-blindfold",
-                                                  "no-calibration",
-                                                  "no-certificate",
-                                                  "no-consent",
-                                                  "no-curtain",
-                                                  "no-fixture-touch",
-                                                  "no-fixture-touch-after",
-                                                  "no-gravity-compensation",
-                                                  "no-headphones",
-                                                  "no-labels-learnt",
-                                                  "no-masking-level",
-                                                  "no-masking-noise",
-                                                  "no-questions-after",
-                                                  "no-warm-up",
-                                                  "not-cleaned",
-                                                  "other-certificate",
-                                                  "other-device",
-                                                  "practice-not-passed"};
 
 /// New names by old ones.
 using Names = std::map<std::string, std::string>;
@@ -73,17 +50,8 @@ void rename(const Names& names, store::SessionRow& row) {
   rename(names, row.replaced_by);
 }
 
-/// "no-day-sheet-3": an item of the study's own day sheet.
-bool is_of_day_sheet(std::string_view code) {
-  constexpr std::string_view kItem = "no-day-sheet-";
-  return code.starts_with(kItem) &&
-         code.find_first_not_of("0123456789", kItem.size()) == std::string_view::npos;
-}
-
 std::string code_of(const std::string& code, const std::set<std::string>& registered) {
-  const bool is_known = registered.contains(code) || is_of_day_sheet(code) ||
-                        std::ranges::find(kCodes, code) != kCodes.end();
-  return is_known ? code : "other";
+  return registered.contains(code) || design::is_deviation_code(code) ? code : "other";
 }
 
 void strip(SessionRecord& session, const Names& names, const std::set<std::string>& registered) {
@@ -94,6 +62,7 @@ void strip(SessionRecord& session, const Names& names, const std::set<std::strin
   session.replacement_reason.clear();
   session.stop_reason.clear();
   session.withdrawal_reason.clear();
+  session.handedness_score.reset();
   std::vector<Deviation> deviations;
   for (const Deviation& one : session.deviations) {
     Deviation bare{code_of(one.code, registered), ""};
@@ -123,6 +92,11 @@ Outcomes without_identities(Outcomes outcomes) {
   for (SessionOutcome& session : outcomes.sessions) rename(names, session.row);
   for (TrialOutcome& trial : outcomes.trials) rename(names, trial.participant);
   for (SessionRecord& session : outcomes.collection.sessions) strip(session, names, registered);
+  for (QuestionAnswer& answer : outcomes.answers) {
+    rename(names, answer.participant);
+    answer.words.clear();
+  }
+  outcomes.incidents.clear();
   for (Look& look : outcomes.looked.looks) {
     rename(names, look.participant);
     look.reason.clear();

@@ -44,7 +44,8 @@ void put_stamp(nlohmann::ordered_json& object, bool simulated) {
 
 void put_state(nlohmann::ordered_json& object, const store::StudyState& state, bool pilot) {
   object["state"] = name_of(state);
-  object["interim"] = state.unblinded && !state.closed;
+  object["interim"] = (state.unblinded || state.question) && !state.closed;
+  object["question_alone"] = state.question.has_value();
   object["pilot"] = pilot;
 }
 
@@ -62,11 +63,6 @@ nlohmann::ordered_json glcm_json(const engine::GlcmTable& glcm) {
     directions[std::to_string(engine::kGlcmOffsets[i].degrees)] = statistics_json(glcm[i]);
   }
   return directions;
-}
-
-std::string json_text(const nlohmann::ordered_json& object) {
-  using ErrorHandler = nlohmann::ordered_json::error_handler_t;
-  return object.dump(2, ' ', false, ErrorHandler::replace) + '\n';
 }
 
 void put_method(nlohmann::ordered_json& object, const std::string& method,

@@ -5,6 +5,7 @@
 #include "analysis/quality.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/proportion.hpp"
+#include "core/strict_json.hpp"
 #include "engine/metrics/glcm.hpp"
 #include "protocols/design/session_plan.hpp"
 
@@ -42,9 +43,8 @@ void put_stamp(nlohmann::ordered_json& object, bool simulated);
 /// pilot.
 void put_state(nlohmann::ordered_json& object, const store::StudyState& state, bool pilot);
 
-/// The object as indented text, ending with a line feed. Bytes that are not valid UTF-8 become
-/// replacement characters.
-[[nodiscard]] std::string json_text(const nlohmann::ordered_json& object);
+/// The members that begin every report: study, protocol, stamp, state, participants and trials.
+[[nodiscard]] nlohmann::ordered_json head_object(const StudyHead& head);
 
 /// How sessions were conducted: prescription, flow, deviations and sessions.
 [[nodiscard]] nlohmann::ordered_json collection_object(const Collection& collection);

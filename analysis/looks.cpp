@@ -1,12 +1,11 @@
 #include "analysis/looks.hpp"
 
+#include "analysis/collection.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
 #include <map>
 #include <optional>
-
-#include <fmt/format.h>
 
 namespace touchtrial::analysis {
 namespace {
@@ -16,8 +15,13 @@ using std::chrono::nanoseconds;
 /// One chain's sessions as its events come, and the looks at them.
 class ChainReading {
  public:
-  ChainReading(int station, const design::Registration& registration)
-      : station_(station), registration_(registration) {}
+  /// \param registered  the registered looks, by number of participants
+  /// \param visits  without which a participant does not count
+  ChainReading(int station, std::vector<int> registered, int visits)
+      : station_(station), registered_(std::move(registered)), visits_(visits) {}
+
+  /// These sessions are none that the plan is about.
+  void leave_out(std::set<int> sessions) { others_ = std::move(sessions); }
 
   void add(const store::Event& event) {
     using store::EventKind;
@@ -25,25 +29,27 @@ class ChainReading {
       case EventKind::session_opened: {
         const store::SessionOpenedBody body = store::session_opened_from_json(event.body);
         participants_[body.session] = body.participant;
+        // The last visit stands for the participant.
+        if (body.visit != visits_) others_.insert(body.session);
         last_opened = event.at;
         return;
       }
       case EventKind::session_closed: {
         const store::SessionClosedBody body = store::session_closed_from_json(event.body);
         ended_.insert(body.session);
-        if (body.complete) counted_.insert(body.session);
+        if (body.complete && !others_.contains(body.session)) counted_.insert(body.session);
         return;
       }
       case EventKind::participant_excluded: {
         const store::ParticipantBody body = store::participant_from_json(event.body);
         if (body.after_outcomes) record.excluded_afterwards.insert(body.session);
-        return leave_out(event, record.excluded_afterwards);
+        return decide(event, record.excluded_afterwards);
       }
       case EventKind::participant_withdrawn:
         if (store::withdrawal_from_json(event.body).kept == store::Kept::data) return;
-        return leave_out(event, record.erased_afterwards);
+        return decide(event, record.erased_afterwards);
       case EventKind::participant_replaced:
-        return leave_out(event, record.replaced_afterwards);
+        return decide(event, record.replaced_afterwards);
       case EventKind::study_closed:
         closed = event.at;
         return;
@@ -57,12 +63,19 @@ class ChainReading {
   /// From this time on everybody's outcomes were known, whatever this chain says.
   void seen_from(nanoseconds at) { seen_from_ = at; }
 
+  /// Everything that was read, with what would be at a look now.
+  [[nodiscard]] LookRecord take() {
+    record.participants = static_cast<int>(counted_.size());
+    record.may_look = is_registered();
+    return std::move(record);
+  }
+
   LookRecord record;
   nanoseconds last_opened = nanoseconds::min();  ///< the last session
   nanoseconds closed = nanoseconds::max();
 
  private:
-  void leave_out(const store::Event& event, std::set<int>& afterwards) {
+  void decide(const store::Event& event, std::set<int>& afterwards) {
     const int session = store::session_from_json(event.body);
     counted_.erase(session);
     const bool seen = seen_.contains(session) || event.at >= seen_from_ ||
@@ -80,23 +93,33 @@ class ChainReading {
       look.participants = 1;
       persons_.insert(look.participant);
     } else {
-      look.kind = kind_of(body, look.participants);
+      look.kind = kind_of(body);
       seen_.insert(ended_.begin(), ended_.end());
     }
     record.looks.push_back(std::move(look));
   }
 
-  /// A station's look is never a registered one: those are at the whole study.
-  [[nodiscard]] LookKind kind_of(const store::UnblindingBody& body, int participants) const {
+  [[nodiscard]] LookKind kind_of(const store::UnblindingBody& body) {
     if (!body.interim) return LookKind::final;
-    const bool registered = station_ == 0 && registration_.analysis &&
-                            std::ranges::find(registration_.analysis->looks, participants) !=
-                                registration_.analysis->looks.end();
-    return registered ? LookKind::registered : LookKind::unregistered;
+    if (!body.question_alone || !is_registered()) return LookKind::unregistered;
+    made_[static_cast<int>(counted_.size())] = counted_;
+    return LookKind::registered;
+  }
+
+  /// Whether a look now is one of the registered ones. One that was made can be made again, at the
+  /// same sessions.
+  [[nodiscard]] bool is_registered() const {
+    const auto participants = static_cast<int>(counted_.size());
+    if (std::ranges::find(registered_, participants) == registered_.end()) return false;
+    const auto made = made_.find(participants);
+    return made == made_.end() || made->second == counted_;
   }
 
   int station_;
-  const design::Registration& registration_;
+  std::vector<int> registered_;
+  int visits_;
+  std::set<int> others_;                     ///< sessions that never count
+  std::map<int, std::set<int>> made_;        ///< sessions of registered looks, by participants
   std::map<int, std::string> participants_;  ///< by session
   std::set<int> counted_;                    ///< sessions
   std::set<std::string> persons_;            ///< looked at alone
@@ -124,6 +147,24 @@ void mark_persons(nanoseconds closed, std::vector<Look>& looks) {
   for (Look& look : looks) look.is_one_of_several = persons.size() > 1 && is_early(look);
 }
 
+/// The registered looks that this file can make.
+std::vector<int> registered_looks(const store::StudyStore& store, const design::StudyKey& key) {
+  const auto& analysis = key.study.registration.analysis;
+  const bool in_one_file = key.stations.size() < 2 && store.stations() < 2;
+  return analysis && in_one_file ? analysis->looks : std::vector<int>{};
+}
+
+/// Pilots in a study that is none, and the like.
+std::set<int> of_other_kind(const store::StudyStore& store) {
+  const store::StudyCommitment& commitment = store.commitment();
+  std::set<int> sessions;
+  for (const store::SessionRow& row : store.sessions()) {
+    if (row.pilot == commitment.pilot && row.simulated == commitment.simulated) continue;
+    sessions.insert(row.session);
+  }
+  return sessions;
+}
+
 }  // namespace
 
 std::string name_of(LookKind kind) {
@@ -140,20 +181,22 @@ std::string name_of(LookKind kind) {
   return "one participant";
 }
 
-LookRecord look_record(const store::StudyStore& store, const design::Registration& registration) {
+LookRecord look_record(const store::StudyStore& store, const design::StudyKey& key) {
   std::vector<Look> of_stations;
   nanoseconds first_seen = nanoseconds::max();
   // Nobody has looked at the stations of a simulation, which are unblinded as they are made.
   const int stations = store.commitment().simulated ? 0 : store.stations();
+  const int visits = prescription_from_json(store.commitment().configuration).visits_needed;
   for (int station = 1; station <= stations; ++station) {
-    ChainReading reading(station, registration);
+    ChainReading reading(station, {}, visits);
     for (const store::Event& event : store.events(-station)) reading.add(event);
     for (Look& look : reading.record.looks) {
       if (look.kind != LookKind::person) first_seen = std::min(first_seen, look.at);
       of_stations.push_back(std::move(look));
     }
   }
-  ChainReading whole(0, registration);
+  ChainReading whole(0, registered_looks(store, key), visits);
+  whole.leave_out(of_other_kind(store));
   whole.seen_from(first_seen);
   for (const store::Event& event : store.events(0)) {
     if (!is_of_stations(event, of_stations)) whole.add(event);
@@ -163,42 +206,10 @@ LookRecord look_record(const store::StudyStore& store, const design::Registratio
     const bool early = look.kind == LookKind::final && look.at < whole.last_opened;
     if (early) look.kind = LookKind::unregistered;
   }
-  LookRecord record = std::move(whole.record);
+  LookRecord record = whole.take();
   record.looks.insert(record.looks.begin(), of_stations.begin(), of_stations.end());
   mark_persons(whole.closed, record.looks);
   return record;
-}
-
-namespace {
-
-struct Civil {
-  std::chrono::year_month_day day;
-  std::chrono::hh_mm_ss<std::chrono::seconds> time;
-};
-
-Civil civil(nanoseconds at) {
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(at);
-  const auto days = std::chrono::floor<std::chrono::days>(seconds);
-  return {std::chrono::sys_days(days), std::chrono::hh_mm_ss(seconds - days)};
-}
-
-std::string day_text(const std::chrono::year_month_day& day) {
-  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(day.year()),
-                     static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
-}
-
-}  // namespace
-
-std::string date_text(nanoseconds at) {
-  const Civil when = civil(at);
-  return fmt::format("{} {:02}:{:02} UTC", day_text(when.day), when.time.hours().count(),
-                     when.time.minutes().count());
-}
-
-std::string iso_date(nanoseconds at) {
-  const Civil when = civil(at);
-  return fmt::format("{}T{:02}:{:02}:{:02}Z", day_text(when.day), when.time.hours().count(),
-                     when.time.minutes().count(), when.time.seconds().count());
 }
 
 }  // namespace touchtrial::analysis

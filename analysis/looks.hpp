@@ -1,7 +1,7 @@
 /// \file Who looked at outcomes, and when: every unblinding that the file's chain holds.
 #pragma once
 
-#include "protocols/design/session_plan.hpp"
+#include "protocols/design/study_key.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <chrono>
@@ -13,7 +13,7 @@ namespace touchtrial::analysis {
 
 enum class LookKind {
   final,         ///< after the study was closed
-  registered,    ///< an interim look at a number of participants that was registered
+  registered,    ///< at the registered question alone, at a registered number of participants
   unregistered,  ///< any other interim look
   person,        ///< at the outcomes of one participant
 };
@@ -46,17 +46,14 @@ struct LookRecord {
   std::set<int> excluded_afterwards;  ///< sessions excluded after a look at their outcomes
   std::set<int> replaced_afterwards;  ///< likewise replaced
   std::set<int> erased_afterwards;    ///< likewise erased at the participant's wish
+  int participants = 0;               ///< whose sessions are complete and counted today
+  bool may_look = false;              ///< an interim look today would be a registered one
 };
 
 /// Reads the looks from the file's chain and from those of collected stations.
-/// \param registration  the looks that were registered
+/// \param key  has the looks that were registered. A study of several stations can make none of
+///   them: a look at a merged file is not in the next merge
 /// \throws StoreError if a body cannot be read
-[[nodiscard]] LookRecord look_record(const store::StudyStore& store,
-                                     const design::Registration& registration);
-
-/// \return "2026-01-31 14:05 UTC"
-[[nodiscard]] std::string date_text(std::chrono::nanoseconds at);
-/// \return "2026-01-31T14:05:09Z"
-[[nodiscard]] std::string iso_date(std::chrono::nanoseconds at);
+[[nodiscard]] LookRecord look_record(const store::StudyStore& store, const design::StudyKey& key);
 
 }  // namespace touchtrial::analysis

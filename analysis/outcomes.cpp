@@ -1,12 +1,13 @@
 #include "analysis/outcomes.hpp"
 
+#include "analysis/collection.hpp"
 #include "analysis/sealed_sessions.hpp"
-#include "analysis/session_rules.hpp"
 #include "core/errors.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/store/damage.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -80,6 +81,8 @@ TrialOutcome outcome_of(const store::TrialRow& row, const SessionOutcome& sessio
       row.state == store::TrialState::answered || row.state == store::TrialState::timed_out;
   TrialOutcome trial;
   trial.participant = session.row.participant;
+  trial.visit = session.row.visit;
+  trial.group = session.group;
   trial.row = row;
   trial.stimulus = presentation.stimulus;
   trial.kind = presentation.kind;
@@ -122,6 +125,41 @@ std::vector<Demographics> said_by_participants(const Outcomes& outcomes,
   return all;
 }
 
+/// Adds what the study's dealing says of each session that is shown.
+void add_dealt(const Outcomes& outcomes, Collection& collection) {
+  std::map<int, const SessionOutcome*> shown;
+  for (const SessionOutcome& one : outcomes.sessions) shown[one.row.session] = &one;
+  const std::vector<std::string>& groups = outcomes.design.groups.labels;
+  for (SessionRecord& record : collection.sessions) {
+    const auto found = shown.find(record.row.session);
+    if (found == shown.end()) continue;
+    record.order_block = found->second->order_block;
+    const std::optional<int> group = found->second->group;
+    if (group && !record.row.erased) record.group = groups[static_cast<std::size_t>(*group)];
+  }
+}
+
+/// Answers, incidents and demographics of the sessions that are shown.
+void take_what_was_said(const store::StudyStore& store, const design::StudyKey& key,
+                        Outcomes& outcomes) {
+  std::map<int, store::PersonKeys> keys;
+  for (const SessionOutcome& one : outcomes.sessions) {
+    keys.emplace(one.row.session, person_keys(store, key, one.row));
+  }
+  const auto is_unseen = [&](const auto& one) { return !keys.contains(one.session); };
+  outcomes.asked = own_questions(key.study);
+  outcomes.answers = open_answers(store, key);
+  std::erase_if(outcomes.answers, is_unseen);
+  outcomes.incidents = load_incidents(store, keys);
+  std::erase_if(outcomes.incidents, is_unseen);
+  const std::map<int, Demographics> said = demographics_of(outcomes.answers, key.study);
+  outcomes.demographics = in_bands(said_by_participants(outcomes, said));
+  for (SessionRecord& record : outcomes.collection.sessions) {
+    const auto own = said.find(record.row.session);
+    if (own != said.end()) record.handedness_score = own->second.handedness_score;
+  }
+}
+
 [[noreturn]] void refuse_unseen(const std::string& participant) {
   if (participant.empty()) {
     throw StoreError(
@@ -141,42 +179,39 @@ std::string shown(const store::ChainFault& fault) {
                      one_line(fault.what));
 }
 
-Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& key,
-                       const std::string& participant) {
-  require_key_of(store, key);
-  Outcomes outcomes = labelled(store, key.study);
+namespace {
+
+/// Opens the sessions that `shows` names.
+/// \param participant  whose sessions alone are wanted; empty: the study's
+template <typename Shows>
+Outcomes opened(const store::StudyStore& store, const design::StudyKey& key, Shows shows,
+                const std::string& participant) {
   const std::vector<store::SessionRow> rows = store.sessions();
-  const auto shows = [&](const store::SessionRow& row) {
-    return participant.empty()
-               ? outcomes.state.reports(row.session)
-               : row.participant == participant && outcomes.state.shows(row.session);
-  };
-  if (participant.empty() ? !outcomes.state.unblinded : std::ranges::none_of(rows, shows)) {
-    refuse_unseen(participant);
-  }
+  Outcomes outcomes = labelled(store, key.study);
   require_whole(store);
   require_sealed_ends(store, key);
   outcomes.collection = load_collection(store, &key);
   outcomes.visual = outcomes.collection.visual;
-  outcomes.looked = look_record(store, key.study.registration);
+  outcomes.looked = look_record(store, key);
+  std::vector<store::SessionRow> shown;
+  std::ranges::copy_if(rows, std::back_inserter(shown), shows);
+  if (participant.empty()) {
+    outcomes.sessions_unseen = static_cast<int>(rows.size() - shown.size());
+  }
+  const std::set<int> counted = counted_sessions(shown, store.commitment());
   std::map<int, SessionOutcome> sessions;
-  for (const store::SessionRow& row : rows) {
-    if (!shows(row)) {
-      if (participant.empty()) ++outcomes.sessions_unseen;
-      continue;
-    }
-    sessions[row.session] = {row, session_counts(row, store.commitment()),
-                             design::order_block_of(key.study, key.stations, row.enrolment)};
+  for (const store::SessionRow& row : shown) {
+    const design::Draws draws = draws_of(row);
+    sessions[row.session] = {row, counted.contains(row.session),
+                             design::order_block_of(key.study, key.stations, row.enrolment, draws),
+                             key.group_of(row.enrolment, draws)};
     outcomes.sessions.push_back(sessions[row.session]);
   }
-  for (SessionRecord& record : outcomes.collection.sessions) {
-    const auto shown = sessions.find(record.row.session);
-    if (shown != sessions.end()) record.order_block = shown->second.order_block;
-  }
-  outcomes.demographics = in_bands(said_by_participants(outcomes, demographics_of(store, key)));
+  add_dealt(outcomes, outcomes.collection);
+  take_what_was_said(store, key, outcomes);
   const auto schedules = open_schedules(store, key);
-  const auto measures = open_measures(store, key);
-  for (const store::TrialRow& row : open_trials(store, key)) {
+  Measures measures;
+  for (const store::TrialRow& row : open_trials(store, key, &measures)) {
     const auto schedule = schedules.find(row.session);
     if (schedule == schedules.end()) continue;  // without an opening
     const auto session = sessions.find(row.session);
@@ -187,6 +222,32 @@ Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& k
     outcomes.trials.push_back(std::move(trial));
   }
   return outcomes;
+}
+
+}  // namespace
+
+Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& key,
+                       const std::string& participant) {
+  require_key_of(store, key);
+  const store::StudyState state = store.state();
+  const auto shows = [&](const store::SessionRow& row) {
+    // A look at the registered question alone shows nobody's outcomes.
+    const bool in_results = state.unblinded && state.reports(row.session);
+    if (participant.empty()) return in_results;
+    return row.participant == participant && (in_results || state.looked_at.contains(row.session));
+  };
+  if (participant.empty() ? !state.unblinded : std::ranges::none_of(store.sessions(), shows)) {
+    refuse_unseen(participant);
+  }
+  return opened(store, key, shows, participant);
+}
+
+Outcomes load_for_question(const store::StudyStore& store, const design::StudyKey& key) {
+  require_key_of(store, key);
+  const store::StudyState state = store.state();
+  if (!state.question) refuse_unseen("");
+  return opened(
+      store, key, [&](const store::SessionRow& row) { return state.reports(row.session); }, "");
 }
 
 }  // namespace touchtrial::analysis

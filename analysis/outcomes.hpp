@@ -1,8 +1,10 @@
 /// \file Stimuli and answers of a study after unblinding.
 #pragma once
 
+#include "analysis/answers.hpp"
 #include "analysis/collection.hpp"
 #include "analysis/demographics.hpp"
+#include "analysis/incidents.hpp"
 #include "analysis/looks.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/study_store.hpp"
@@ -17,7 +19,8 @@ namespace touchtrial::analysis {
 struct SessionOutcome {
   store::SessionRow row;
   bool counted = false;
-  int order_block = -1;  ///< design::order_block_of the enrolment number
+  int order_block = -1;        ///< design::order_block_of the enrolment number
+  std::optional<int> group{};  ///< index into the study's groups
 };
 
 /// One trial with its stimulus and answer.
@@ -31,6 +34,8 @@ struct TrialOutcome {
   std::optional<int> response;  ///< index of the chosen alternative; empty: no response
   std::optional<int> right;     ///< index of the right choice; empty: there is none
   std::optional<store::TrialMeasures> measures;
+  int visit = 1;
+  std::optional<int> group{};  ///< index into the study's groups
 
   /// Whether the response is right. A trial without a response is wrong.
   [[nodiscard]] bool correct() const noexcept { return response && response == right; }
@@ -60,6 +65,10 @@ struct Outcomes {
   LookRecord looked;                 ///< who looked at outcomes, and what was decided after that
   Collection collection;
   std::vector<Characteristic> demographics{};  ///< of the participants who count
+  std::vector<QuestionAnswer> answers{};       ///< of `sessions`
+  std::vector<Incident> incidents{};           ///< of `sessions`, with texts and times
+  /// The questions that were asked: the study's own, until somebody adds those of the program.
+  Questionnaires asked{};
 };
 
 /// "session 2, event 7: <what>"
@@ -67,8 +76,9 @@ struct Outcomes {
 
 /// Opens every sealed schedule and measure and scores the answers with them.
 ///
-/// A session counts if it was completed and is neither excluded, erased nor replaced. A pilot or
-/// simulated session counts only if the whole study is one. A scored trial of a counted session
+/// A session counts if it was completed and is neither excluded, erased nor replaced, and its
+/// participant has all visits that the study needs. A pilot or simulated session counts only if the
+/// whole study is one. A scored trial of a counted session
 /// counts if it ended, either with an answer or without a response when time ran out. A trial that
 /// was interrupted and repeated keeps its number, and its last presentation with an answer counts.
 /// A trial that was interrupted and never repeated does not count. After an interim look, the
@@ -83,5 +93,11 @@ struct Outcomes {
 ///   or a session does not agree with its schedule; the message names the session
 [[nodiscard]] Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& key,
                                      const std::string& participant = {});
+
+/// The same after a look at the registered question alone: only what question_alone (results.hpp)
+/// makes of it may be shown.
+/// \throws as load_outcomes; StoreError if the last look was none of that kind
+[[nodiscard]] Outcomes load_for_question(const store::StudyStore& store,
+                                         const design::StudyKey& key);
 
 }  // namespace touchtrial::analysis

@@ -19,6 +19,29 @@ Json demographics_array(const std::vector<Characteristic>& characteristics) {
   return all;
 }
 
+Json said_array(const std::vector<QuestionSummary>& questions) {
+  Json all = Json::array();
+  for (const QuestionSummary& one : questions) {
+    Json question{{"question", one.question}, {"wording", one.wording}, {"answered", one.answered}};
+    if (one.kind == design::QuestionKind::choice) {
+      question["options"] = Json::array();
+      for (const Band& option : one.options) {
+        question["options"].push_back({{"option", option.name}, {"participants", option.people}});
+      }
+      question["others"] = one.others;
+    } else if (one.kind == design::QuestionKind::number) {
+      question["numbers"] = quartiles_json(one.numbers);
+    } else {
+      question["texts"] = Json::array();
+      for (const auto& [participant, text] : one.texts) {
+        question["texts"].push_back({{"participant", participant}, {"text", text}});
+      }
+    }
+    all.push_back(std::move(question));
+  }
+  return all;
+}
+
 Json explorations_array(const std::vector<Explorations>& methods) {
   Json all = Json::array();
   for (const Explorations& one : methods) {
@@ -40,6 +63,7 @@ Json explorations_array(const std::vector<Explorations>& methods) {
 void put_people(nlohmann::ordered_json& object, const StudyHead& head) {
   object["public"] = head.collection.is_public;
   object["demographics"] = demographics_array(head.demographics);
+  object["said"] = said_array(head.said);
   object["exploration"] = explorations_array(head.explorations);
 }
 

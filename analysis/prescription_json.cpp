@@ -1,6 +1,7 @@
 /// \file Reads what a study prescribes from its configuration in clear.
 #include "analysis/collection.hpp"
 #include "core/errors.hpp"
+#include "protocols/design/languages.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/design/random_orders.hpp"
 #include "protocols/design/session_plan.hpp"
@@ -17,6 +18,7 @@ void read_session(const json& session, Prescription& prescription) {
   prescription.sight = session.at("sight").get<std::string>();
   prescription.masking_wanted = session.at("masking").at("wanted").get<bool>();
   prescription.masking_dbfs = session.at("masking").at("level_dbfs").get<double>();
+  prescription.draft = design::draft_notice(session.value("language", "en"));
 }
 
 /// The number of orders of methods. Methods have an order only if several are presented, each in
@@ -27,6 +29,15 @@ int method_orders_of(const json& configuration) {
   const json trials = configuration.at("trials");
   if (!several || trials.value("blocks", "by-method") != "by-method") return 1;
   return design::williams_rows(static_cast<int>(configuration.at("methods").size()));
+}
+
+design::ValidityRule validity_rule_of(const json& rule) {
+  return {.least_exploring_s = rule.at("exploring_s").get<double>(),
+          .least_contact_s = rule.at("contact_s").get<double>(),
+          .least_path_mm = rule.at("path_mm").get<double>(),
+          .least_median_n = rule.at("least_median_n").get<double>(),
+          .largest_median_n = rule.at("largest_median_n").get<double>(),
+          .saturated_share = rule.at("saturated_share").get<double>()};
 }
 
 Prescription prescription_of(const json& configuration) {
@@ -41,7 +52,15 @@ Prescription prescription_of(const json& configuration) {
   prescription.order = trials.at("order").get<std::string>();
   prescription.repeats = trials.at("repeats").get<int>();
   prescription.method_orders = method_orders_of(configuration);
+  if (trials.contains("validity")) prescription.validity = validity_rule_of(trials["validity"]);
   if (configuration.contains("session")) read_session(configuration["session"], prescription);
+  if (configuration.contains("visits")) {
+    prescription.visits = configuration["visits"].at("count").get<int>();
+    prescription.visits_needed = configuration["visits"].at("needed").get<int>();
+  }
+  if (configuration.contains("groups")) {
+    configuration["groups"].at("labels").get_to(prescription.groups);
+  }
   return prescription;
 }
 

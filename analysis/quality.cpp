@@ -1,8 +1,8 @@
 #include "analysis/quality.hpp"
 
+#include "analysis/collection.hpp"
 #include "analysis/collection_records.hpp"
 #include "analysis/json_figures.hpp"
-#include "analysis/session_rules.hpp"
 #include "analysis/statistics/confusion.hpp"
 #include "analysis/text_figures.hpp"
 #include "analysis/text_table.hpp"
@@ -72,7 +72,7 @@ void count_session(const store::SessionRow& session, const store::StudyCommitmen
 void count_answer(const store::TrialRow& trial, TrialQuality& quality) {
   ++quality.presented;
   if (trial.state == store::TrialState::timed_out) ++quality.no_response;
-  if (trial.state == store::TrialState::interrupted) ++quality.interrupted;
+  if (trial.state == store::TrialState::interrupted) ++quality.not_repeated;
   if (trial.state == store::TrialState::answered) ++quality.answered;
 }
 
@@ -100,11 +100,13 @@ QualityReport make_quality(const store::StudyStore& store) {
   report.state = store.state();
   report.simulated = commitment.simulated;
   report.pilot = commitment.pilot;
+  const Prescription prescription = prescription_from_json(commitment.configuration);
   std::set<int> erased;
   for (const store::SessionRow& session : store.sessions()) {
     count_session(session, commitment, report.sessions);
     if (session.erased) erased.insert(session.session);
-    if (session_counts(session, commitment)) ++report.participants;
+    const bool is_last = session.visit == prescription.visits;
+    if (session_counts(session, commitment) && is_last) ++report.participants;
   }
   report.trials = report.participants * commitment.scored_trials;
   for (const store::TrialRow& trial : store.trials()) {
@@ -113,9 +115,13 @@ QualityReport make_quality(const store::StudyStore& store) {
     count_trace(trial, report.quality);
   }
   report.collection = load_collection(store);
+  for (const SessionRecord& session : report.collection.sessions) {
+    report.quality.interrupted += session.interruptions;
+  }
   report.servo = servo_quality(report.collection);
   report.visual = report.collection.visual;
   report.notes = chain_notes(store);
+  if (!prescription.draft.empty()) report.notes.push_back(prescription.draft);
   return report;
 }
 
@@ -167,7 +173,8 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
   object["responses"] = {{"presented", quality.presented},
                          {"answered", quality.answered},
                          {"no_response", quality.no_response},
-                         {"interrupted", quality.interrupted}};
+                         {"interrupted", quality.interrupted},
+                         {"not_repeated", quality.not_repeated}};
   object["validity"] = {
       {"trials", quality.with_trace},
       {"valid", quality.valid},
@@ -233,9 +240,10 @@ std::string hands_text(const QualityReport& report) {
 std::string health_text(const QualityReport& report) {
   const TrialQuality& quality = report.quality;
   std::string text = heading("trials", report.simulated);
-  text +=
-      fmt::format("  presented {}, answered {}, no response {}, interrupted {}\n",
-                  quality.presented, quality.answered, quality.no_response, quality.interrupted);
+  text += fmt::format(
+      "  presented {}, answered {}, no response {}, interrupted {}{}\n", quality.presented,
+      quality.answered, quality.no_response, quality.interrupted,
+      quality.not_repeated > 0 ? fmt::format(" ({} not repeated)", quality.not_repeated) : "");
   text += fmt::format("  valid {} of {} with a trace ({})\n", quality.valid, quality.with_trace,
                       percent_of({quality.with_trace, quality.valid}));
   text += fmt::format("  servo overruns {} in {}", quality.overruns,

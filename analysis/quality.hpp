@@ -30,8 +30,9 @@ struct SessionCounts {
 struct TrialQuality {
   int presented = 0;
   int answered = 0;
-  int no_response = 0;  ///< time ran out
-  int interrupted = 0;  ///< interrupted and not yet repeated
+  int no_response = 0;   ///< time ran out
+  int interrupted = 0;   ///< presentations that were interrupted, repeated or not
+  int not_repeated = 0;  ///< trials that were interrupted and not presented again yet
   int with_trace = 0;
   int valid = 0;              ///< trials with a trace that are valid by the study's rule
   std::int64_t overruns = 0;  ///< servo ticks that came late
@@ -56,14 +57,15 @@ struct QualityReport {
   store::StudyState state;
   bool simulated = false;
   bool pilot = false;
-  int participants = 0;  ///< participants with a session that counts, see session_counts
+  int participants = 0;  ///< participants whose last visit's session counts, see session_counts
   int trials = 0;        ///< their scored trials
   SessionCounts sessions;
   TrialQuality quality;
   std::optional<ServoQuality> servo;  ///< empty if no session was in real time
   bool visual = false;                ///< textures were seen on a screen, not felt
   Collection collection;              ///< participant flow, deviations, stations
-  std::vector<std::string> notes{};   ///< where a clock went back, see chain_notes
+  std::vector<std::string>
+      notes{};  ///< where a clock went back, see chain_notes; texts that are a draft
 };
 
 /// "collecting", "closed" or "unblinded"

@@ -3,12 +3,12 @@
 #include "analysis/statistics/group_sequential.hpp"
 #include "analysis/text_figures.hpp"
 #include "core/text.hpp"
+#include "core/utc.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -22,7 +22,8 @@ int unregistered_of(const std::vector<Look>& looks) {
 /// Whether a session is one that the plan is about, whoever left it out later.
 bool is_completed(const Outcomes& outcomes, const store::SessionRow& row) {
   return row.state == store::SessionState::completed && row.replaced_by.empty() &&
-         row.pilot == outcomes.pilot && row.simulated == outcomes.simulated;
+         row.visit == outcomes.design.visits_needed() && row.pilot == outcomes.pilot &&
+         row.simulated == outcomes.simulated;
 }
 
 int completed_participants(const Outcomes& outcomes) {
@@ -80,7 +81,8 @@ double level_of(const PrimaryResult& result, const StudyCourse& course, design::
   if (!course.at_registered_look && shares.back() < 1.0) shares.push_back(1.0);
   const AlphaSpending kind =
       spending == design::Spending::pocock ? AlphaSpending::pocock : AlphaSpending::obrien_fleming;
-  return nominal_levels(result.alpha, result.sides, kind, shares).back();
+  constexpr double kLeastLevel = 1e-9;
+  return std::max(kLeastLevel, nominal_levels(result.alpha, result.sides, kind, shares).back());
 }
 
 namespace {
@@ -90,9 +92,15 @@ std::string share_text(double share, bool is_difference) {
                      is_difference ? " points" : "%");
 }
 
+/// The interval, unless all participants are alike: that it has no width is no certainty.
+std::optional<Interval> telling_interval(const PrimaryResult& result) {
+  const std::optional<Interval>& interval = result.registered().interval;
+  return interval && interval->low < interval->high ? interval : std::nullopt;
+}
+
 /// What the interval says of the smallest effect that was registered.
 std::string words_on_worth(const PrimaryResult& result) {
-  const std::optional<Interval>& interval = result.registered().interval;
+  const std::optional<Interval> interval = telling_interval(result);
   if (!result.smallest_effect || !interval) return "";
   const double worth = *result.smallest_effect;
   const std::string least = share_text(worth, result.estimand == design::Estimand::difference);
@@ -108,9 +116,9 @@ std::string words_on_worth(const PrimaryResult& result) {
 
 /// What the interval says of the margin: "as good" may be better, or still a little worse.
 std::string words_on_margin(const PrimaryResult& result) {
-  const std::optional<Interval>& interval = result.registered().interval;
+  const std::optional<Interval> interval = telling_interval(result);
   if (!result.margin || !interval) return "";
-  const std::string level = fmt::format(" The {:.4g}% interval", 100.0 * result.interval_level);
+  const std::string level = fmt::format(" The {:.6g}% interval", 100.0 * result.interval_level);
   const std::string margin = share_text(-*result.margin, true);
   if (interval->high < -*result.margin) {
     return level + " lies below " + margin +
@@ -126,6 +134,33 @@ std::string words_on_margin(const PrimaryResult& result) {
     return above + ", and below 0: the first method is worse, but by less than the margin.";
   }
   return above + ", and contains 0.";
+}
+
+/// What a reader of the interval might miss: that it ends where possible values end, or has no
+/// width.
+std::string words_on_ends(const PrimaryResult& result) {
+  const PrimaryChoice& choice = result.registered();
+  if (!choice.interval || !choice.estimate) return "";
+  if (!telling_interval(result)) {
+    return std::string(result.crossover ? " Within an order of methods participants"
+                                        : " Participants") +
+           " do not differ; that the interval has no width is no certainty.";
+  }
+  const double least = result.estimand == design::Estimand::difference ? -1.0 : 0.0;
+  const bool low = choice.interval->low == least && *choice.estimate > least;
+  const bool high = choice.interval->high == 1.0 && *choice.estimate < 1.0;
+  if (low && high) return " The interval holds every possible value: it says nothing.";
+  return low || high ? " The interval is cut where possible values end." : "";
+}
+
+/// A one-sided test may reject although the two-sided interval holds what it rejects.
+std::string words_on_sides(const PrimaryResult& result) {
+  const std::optional<Interval> interval = telling_interval(result);
+  if (!interval || !result.bound || result.margin || interval->low > result.null) return "";
+  const bool difference = result.estimand == design::Estimand::difference;
+  return fmt::format(
+      " The two-sided interval reaches {}; the lower limit of the one-sided test, {}, does not.",
+      difference ? "0" : "chance", share_text(*result.bound, difference));
 }
 
 bool has_one_order(const PrimaryResult& result) {
@@ -144,6 +179,14 @@ std::string words_on_early_end(const PrimaryResult& result, const StudyCourse& c
                                        counted(course.registered_looks.back(), "participant"));
   return (course.closed ? " Collecting ended at " + look : " At " + look + " collecting may end") +
          "; an estimate that ends it early is too large on average.";
+}
+
+/// More participants than planned do no harm as long as nobody has seen outcomes.
+std::string words_on_number(const StudyCourse& course) {
+  if (course.planned == 0 || course.completed <= course.planned) return "";
+  return fmt::format(
+      " {} completed, {} more than planned; the study's outcomes had not been looked at before.",
+      counted(course.completed, "participant"), course.completed - course.planned);
 }
 
 /// "p is above 0.05", or with the digits that tell them apart.
@@ -175,6 +218,13 @@ std::string obstacle(const PrimaryResult& result, const StudyCourse& course) {
     return "No number of participants was registered, so collecting could have ended because of "
            "the outcomes.";
   }
+  const bool is_over = course.planned > 0 && course.completed > course.planned;
+  if (is_over && !course.registered_looks.empty() && *result.p <= result.level) {
+    return fmt::format(
+        "After a look at outcomes {} more than the {} planned were collected, so the error rate of "
+        "the test is not known.",
+        counted(course.completed - course.planned, "participant"), course.planned);
+  }
   return "";
 }
 
@@ -196,23 +246,24 @@ void judge(PrimaryResult& result, const StudyCourse& course) {
     return decide(Verdict::not_registered,
                   "The study file registers no estimand and no test, so nothing is decided here.");
   }
-  const std::string worth = words_on_worth(result) + words_on_margin(result);
+  const std::string worth =
+      words_on_worth(result) + words_on_margin(result) + words_on_ends(result);
   const std::string hindered = obstacle(result, course);
   if (!hindered.empty()) return decide(Verdict::undecided, hindered + worth);
   if (*result.p > result.level) {
     const std::string above = compared_p(result, "above");
-    const std::optional<Interval>& interval = result.registered().interval;
+    const std::optional<Interval> interval = telling_interval(result);
     const std::optional<double> least =
         result.margin ? std::optional(-*result.margin) : result.smallest_effect;
-    const bool open = least && interval && interval->high >= *least;
+    const bool open = least && (!interval || interval->high >= *least);
     return decide(open ? Verdict::undecided : Verdict::not_supported, above + worth);
   }
   if (is_against(result)) {
     return decide(Verdict::not_supported,
                   "The test rejects, but in the direction opposite to the hypothesis." + worth);
   }
-  decide(Verdict::supported,
-         compared_p(result, "at most") + worth + words_on_early_end(result, course));
+  decide(Verdict::supported, compared_p(result, "not above") + words_on_sides(result) + worth +
+                                 words_on_early_end(result, course) + words_on_number(course));
 }
 
 namespace {
@@ -286,11 +337,7 @@ std::pair<int, std::string> sessions_with(const Outcomes& outcomes, Why why) {
 std::map<int, std::string> exclusion_reasons(const Outcomes& outcomes) {
   std::map<int, std::string> reasons;
   for (const SessionRecord& record : outcomes.collection.sessions) {
-    // The record may begin with what the sentence about it says.
-    constexpr std::string_view kSeen = "after outcomes were seen: ";
-    std::string reason = record.exclusion_reason;
-    if (reason.starts_with(kSeen)) reason.erase(0, kSeen.size());
-    reasons[record.row.session] = std::move(reason);
+    reasons[record.row.session] = record.exclusion_reason;
   }
   return reasons;
 }
@@ -304,7 +351,7 @@ void add_looks(const Outcomes& outcomes, Departures& departures) {
       const std::string who =
           outcomes.collection.is_public ? "one participant" : "participant " + look.participant;
       departures.push_back(fmt::format(
-          "The outcomes of {} alone were looked at{} on {}{}.{}", who, station, date_text(look.at),
+          "The outcomes of {} alone were looked at{} on {}{}.{}", who, station, utc_words(look.at),
           after_colon(look.reason),
           look.is_one_of_several ? " With those of others, they told how the study was going."
                                  : ""));
@@ -313,7 +360,7 @@ void add_looks(const Outcomes& outcomes, Departures& departures) {
     const std::string of = planned > 0 ? fmt::format(" of {} planned", planned) : "";
     departures.push_back(fmt::format(
         "Outcomes were looked at{} on {}, with {}{} {} complete{}. This look was not registered.",
-        station, date_text(look.at), look.participants, of,
+        station, utc_words(look.at), look.participants, of,
         look.participants == 1 && of.empty() ? "participant" : "participants",
         after_colon(look.reason)));
   }
@@ -322,7 +369,10 @@ void add_looks(const Outcomes& outcomes, Departures& departures) {
 void add_numbers(const Outcomes& outcomes, Departures& departures) {
   const int planned = outcomes.design.registration.participants;
   const int completed = completed_participants(outcomes);
-  const auto analysed = std::ranges::count_if(outcomes.sessions, &SessionOutcome::counted);
+  const auto analysed =
+      std::ranges::count_if(outcomes.sessions, [&](const SessionOutcome& session) {
+        return session.counted && session.row.visit == outcomes.design.visits_needed();
+      });
   if (planned == 0 && outcomes.design.registration.analysis) {
     departures.emplace_back("No number of participants was registered.");
   }

@@ -80,7 +80,7 @@ struct StudyCourse {
 [[nodiscard]] StudyCourse course_of(const Outcomes& outcomes, int analysed);
 
 /// The level that p must not exceed: alpha, or the nominal level by Lan and DeMets if registered
-/// looks were made.
+/// looks were made; then at least 1e-9, so that there is an interval of this level.
 [[nodiscard]] double level_of(const PrimaryResult& result, const StudyCourse& course,
                               design::Spending spending);
 
@@ -88,8 +88,9 @@ struct StudyCourse {
 ///
 /// It is undecided if all participants had one order of two methods in blocks, if the test needs
 /// more participants, if the study is open, ended before its planned number of participants, or has
-/// a p that is within its level after an unregistered look; and if p is above its level while the
-/// interval contains the smallest effect worth having, or does not lie below minus the margin.
+/// a p that is within its level after an unregistered look, or after a registered one with more
+/// participants than planned; and if p is above its level while the interval contains the smallest
+/// effect worth having, does not lie below minus the margin, or has no width.
 /// \pre result has at least one choice
 void judge(PrimaryResult& result, const StudyCourse& course);
 

@@ -1,5 +1,6 @@
 #include "analysis/json_figures.hpp"
 #include "analysis/study_head.hpp"
+#include "core/utc.hpp"
 
 namespace touchtrial::analysis {
 namespace {
@@ -132,7 +133,7 @@ Json prevalence_object(const std::optional<Prevalence>& prevalence) {
 Json looks_array(const std::vector<Look>& looks, bool is_public) {
   Json all = Json::array();
   for (const Look& look : looks) {
-    Json one{{"at", iso_date(look.at)},
+    Json one{{"at", utc_text(look.at)},
              {"participants", look.participants},
              {"reason", look.reason},
              {"kind", name_of(look.kind)}};

@@ -4,6 +4,7 @@
 #include "protocols/design/protocol.hpp"
 
 #include <map>
+#include <utility>
 
 namespace touchtrial::analysis {
 namespace {
@@ -13,7 +14,49 @@ std::map<std::string_view, const ProtocolAnalysis*>& known_analyses() {
   return all;
 }
 
+/// Leaves of a report's head the registered estimate, its interval and test, and what is in clear.
+void keep_question(StudyHead& head, Collection in_clear) {
+  head.collection = std::move(in_clear);
+  head.warnings.clear();
+  head.explorations.clear();
+  head.prevalence.reset();
+  if (!head.primary) return;
+  head.primary->choices.resize(1);
+  head.primary->permutation.reset();
+  head.primary->stations.reset();
+  if (head.primary->crossover) {
+    head.primary->crossover->period.reset();
+    head.primary->crossover->period_interval.reset();
+  }
+}
+
+class QuestionAlone final : public Results {
+ public:
+  QuestionAlone(StudyHead head, const store::StudyStore& store)
+      : head_(std::move(head)), quality_(make_quality(store)) {
+    keep_question(head_, load_collection(store));
+  }
+
+  const StudyHead& head() const override { return head_; }
+  std::string json() const override { return framed_json(head_, "{}"); }
+  Document document(const Provenance& provenance, const Pictures&) const override {
+    std::vector<Section> quality =
+        quality_document(quality_, head_.collection, provenance).sections;
+    std::erase_if(quality, [](const Section& one) { return one.id == "participants"; });
+    return framed_document(head_, {"result", "Result", {}}, std::move(quality), provenance);
+  }
+
+ private:
+  StudyHead head_;
+  QualityReport quality_;
+};
+
 }  // namespace
+
+std::unique_ptr<const Results> question_alone(const Results& results,
+                                              const store::StudyStore& store) {
+  return std::make_unique<QuestionAlone>(results.head(), store);
+}
 
 std::vector<Figure> Results::figures(const std::string&) const {
   return {};

@@ -39,6 +39,8 @@ class Results {
  public:
   virtual ~Results() = default;
 
+  /// The part that all reports have in common.
+  [[nodiscard]] virtual const StudyHead& head() const = 0;
   /// One JSON object, indented, ending with a line feed; numbers that do not exist are null.
   [[nodiscard]] virtual std::string json() const = 0;
   /// The figures to draw, in the order of the document.
@@ -49,6 +51,12 @@ class Results {
   [[nodiscard]] virtual Document document(const Provenance& provenance,
                                           const Pictures& pictures) const = 0;
 };
+
+/// The answer to the registered question and how the study was collected: what a registered look
+/// shows of results, whatever the protocol.
+/// \param store  has what is in clear, for the quality of the data
+[[nodiscard]] std::unique_ptr<const Results> question_alone(const Results& results,
+                                                            const store::StudyStore& store);
 
 /// A table of results in its own file.
 struct ResultTable {

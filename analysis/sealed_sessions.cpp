@@ -27,9 +27,8 @@ std::string place_of(const store::Event& event) {
 /// Calls `visit` with each event of a kind, opened, and its secret text, for all sessions that have
 /// a key.
 template <typename Visit>
-void for_each_secret(const store::StudyStore& store, const design::StudyKey& key,
+void for_each_secret(const store::StudyStore& store, const std::map<int, SecretKey>& keys,
                      store::EventKind kind, Visit visit) {
-  const std::map<int, SecretKey> keys = participant_keys(store, key);
   store.for_each(kind, [&](const store::Event& stored) {
     const auto own = keys.find(stored.session);
     if (own == keys.end()) return;
@@ -45,21 +44,31 @@ void for_each_secret(const store::StudyStore& store, const design::StudyKey& key
 /// The events of a session, and what they come to.
 struct WaitingSession {
   SecretKey own{};
+  int session = 0;
+  bool measured = false;  ///< whether measures are wanted
   std::vector<store::Event> events;
   store::DerivedRows rows;
+  Measures measures;
   std::exception_ptr fault;
 
   /// Keeps an error instead of throwing it, so that the first session's is reported, whichever
   /// thread finds one first.
   void open() noexcept {
     try {
-      for (const store::Event& event : events) store::fold(rows, whole_event(event, own).event);
+      for (const store::Event& event : events) add(whole_event(event, own));
     } catch (const StoreError& error) {
       fault = std::make_exception_ptr(VerificationError(error.what()));
     } catch (...) {
       fault = std::current_exception();
     }
     events.clear();
+  }
+
+  void add(const store::OpenedEvent& opened) {
+    store::fold(rows, opened.event);
+    if (!measured || opened.event.kind != store::EventKind::trace_stored) return;
+    const int trial = store::trace_body_from_json(opened.event.body).trial;
+    measures.insert_or_assign({session, trial}, store::measures_from_json(opened.secret));
   }
 };
 
@@ -68,10 +77,10 @@ struct WaitingSession {
 void require_key_of(const store::StudyStore& store, const design::StudyKey& key) {
   const store::StudyCommitment& commitment = store.commitment();
   if (key.study_id != commitment.study_id) {
-    throw VerificationError(
-        fmt::format("the key is of study {} and the database of study {}; give the key that was "
-                    "made with this database's pack",
-                    key.study_id, commitment.study_id));
+    throw VerificationError(fmt::format(
+        "the key is of study {} ({}) and the database of study {} ({}); give the key "
+        "that was made with this database's pack",
+        one_line(key.study.name), key.study_id, one_line(commitment.study), commitment.study_id));
   }
   if (key.seal != commitment.seal) {
     throw VerificationError(
@@ -161,22 +170,27 @@ store::Event readable_event(const store::Event& event, const store::SessionRow& 
 }
 
 std::vector<store::TrialRow> open_trials(const store::StudyStore& store,
-                                         const design::StudyKey& key) {
+                                         const design::StudyKey& key, Measures* measures) {
   std::vector<WaitingSession> sessions;
   for (const auto& [session, own] : participant_keys(store, key)) {
-    sessions.push_back({.own = own, .events = store.events(session), .rows = {}, .fault = {}});
+    WaitingSession& waiting = sessions.emplace_back();
+    waiting.own = own;
+    waiting.session = session;
+    waiting.measured = measures != nullptr;
+    waiting.events = store.events(session);
   }
   tbb::parallel_for(std::size_t{0}, sessions.size(), [&](std::size_t i) { sessions[i].open(); });
   std::vector<store::TrialRow> trials;
-  for (const WaitingSession& session : sessions) {
+  for (WaitingSession& session : sessions) {
     if (session.fault) std::rethrow_exception(session.fault);
     for (const auto& [id, row] : session.rows.trials) trials.push_back(row);
+    if (measures != nullptr) measures->merge(session.measures);
   }
   return trials;
 }
 
 void require_sealed_ends(const store::StudyStore& store, const design::StudyKey& key) {
-  for_each_secret(store, key, store::EventKind::closed,
+  for_each_secret(store, participant_keys(store, key), store::EventKind::closed,
                   [&](const store::Event& event, const std::string& text) {
                     const store::ChainEnd before{.length = event.sequence, .head = event.previous};
                     if (store::chain_end_from_json(text) == before) return;
@@ -189,8 +203,9 @@ void require_sealed_ends(const store::StudyStore& store, const design::StudyKey&
 
 std::map<int, design::Schedule> open_schedules(const store::StudyStore& store,
                                                const design::StudyKey& key) {
+  const std::map<int, SecretKey> keys = participant_keys(store, key);
   std::map<int, design::Schedule> schedules;
-  for_each_secret(store, key, store::EventKind::opened,
+  for_each_secret(store, keys, store::EventKind::opened,
                   [&](const store::Event& event, const std::string& text) {
                     schedules.insert_or_assign(event.session,
                                                design::schedule_from_json(text, key));
@@ -200,19 +215,8 @@ std::map<int, design::Schedule> open_schedules(const store::StudyStore& store,
     const std::vector<design::Presentation> block = block_from_json(text, key);
     all.insert(all.end(), block.begin(), block.end());
   };
-  for_each_secret(store, key, store::EventKind::block_restarted, add_block);
+  for_each_secret(store, keys, store::EventKind::block_restarted, add_block);
   return schedules;
-}
-
-std::map<TrialPlace, store::TrialMeasures> open_measures(const store::StudyStore& store,
-                                                         const design::StudyKey& key) {
-  std::map<TrialPlace, store::TrialMeasures> measures;
-  const auto keep = [&](const store::Event& event, const std::string& text) {
-    const store::TraceBody body = store::trace_body_from_json(event.body);
-    measures.insert_or_assign({event.session, body.trial}, store::measures_from_json(text));
-  };
-  for_each_secret(store, key, store::EventKind::trace_stored, keep);
-  return measures;
 }
 
 }  // namespace touchtrial::analysis

@@ -53,10 +53,16 @@ void require_key_of(const store::StudyStore& store, const design::StudyKey& key)
 [[nodiscard]] store::Event readable_event(const store::Event& event, const store::SessionRow& row,
                                           const store::PersonKeys& keys);
 
+/// Measures by session and number of the trial.
+using Measures = std::map<std::pair<int, int>, store::TrialMeasures>;
+
 /// The trials of all sessions that are not erased, with answers and times, by session and trial.
+/// \param measures  unless it is null, gets those of all trials with a trace; for a repeated trial,
+///   the last presentation counts
 /// \throws VerificationError, naming the event, if one does not open or cannot follow those before
 [[nodiscard]] std::vector<store::TrialRow> open_trials(const store::StudyStore& store,
-                                                       const design::StudyKey& key);
+                                                       const design::StudyKey& key,
+                                                       Measures* measures = nullptr);
 
 /// Checks the chain of every session that has ended and is not erased against the end that was
 /// sealed with it. Somebody without the key can rebuild a chain, but cannot seal its end.
@@ -69,14 +75,5 @@ void require_sealed_ends(const store::StudyStore& store, const design::StudyKey&
 ///   this key
 [[nodiscard]] std::map<int, design::Schedule> open_schedules(const store::StudyStore& store,
                                                              const design::StudyKey& key);
-
-/// A session and the number of a trial in it.
-using TrialPlace = std::pair<int, int>;
-
-/// Measures of all trials with a trace, of sessions that are not erased. For a repeated trial,
-/// the last presentation counts.
-/// \throws VerificationError, naming the session, if one does not open
-[[nodiscard]] std::map<TrialPlace, store::TrialMeasures> open_measures(
-    const store::StudyStore& store, const design::StudyKey& key);
 
 }  // namespace touchtrial::analysis

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "analysis/collection.hpp"
-#include "analysis/explorations.hpp"
 #include "analysis/outcomes.hpp"
 #include "analysis/registered.hpp"
+#include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/prevalence.hpp"
 
 #include <optional>
@@ -12,6 +12,20 @@
 #include <vector>
 
 namespace touchtrial::analysis {
+
+/// How hands explored the counted trials of one method, each with the same weight. Contact, path,
+/// force and speed are of the trials with a trace that touched the plane.
+struct Explorations {
+  std::string method;
+  int trials = 0;
+  int without_response = 0;  ///< the time ran out
+  Quartiles answer_s;        ///< from the moment the plane can be felt to the answer
+  Quartiles contact_s;       ///< at the plane
+  Quartiles path_mm;         ///< along the plane, while in contact
+  Quartiles speed_mm_s;      ///< path over contact
+  Quartiles force_n;         ///< root mean square over the contact
+  Quartiles saturated;       ///< share of the contact with the force at its limit, 0 .. 1
+};
 
 struct StudyHead {
   std::string study;
@@ -25,8 +39,9 @@ struct StudyHead {
   store::StudyState state{};                   ///< unblinded; an interim look if not closed
   design::Registration registration;           ///< the registration deposited before collection
   std::vector<std::string> warnings;           ///< how a reader could misread the numbers
-  std::vector<Explorations> explorations{};    ///< by method
+  std::vector<Explorations> explorations{};    ///< of each method, in the order of Outcomes
   std::vector<Characteristic> demographics{};  ///< of the participants who count, in bands
+  std::vector<QuestionSummary> said{};         ///< answers to closing questions
   std::vector<Look> looks{};                   ///< at outcomes, by whomever
   std::vector<std::string> departures{};       ///< departures_of
   StudyCourse course{};                        ///< numbers of people and looks

@@ -5,6 +5,7 @@
 #include "core/text.hpp"
 
 #include <algorithm>
+#include <string_view>
 #include <thread>
 
 namespace touchtrial::app {
@@ -16,6 +17,23 @@ CLI::Validator refusing(const std::string& unwanted, const std::string& message)
             return text.find(unwanted) == std::string::npos ? std::string() : message;
           },
           ""};
+}
+
+/// Two sides of 320 to 16,384 pixels, typed as 1280x720.
+std::pair<int, int> size_of(const std::string& text) {
+  const auto side = [](std::string_view part) {
+    const auto number = number_in<int>(part);
+    return number && *number >= 320 && *number <= 16'384 ? *number : 0;
+  };
+  const std::string_view view = text;
+  const std::size_t cross = view.find('x');
+  const bool has_cross = cross != std::string_view::npos;
+  const std::pair size{side(view.substr(0, cross)), has_cross ? side(view.substr(cross + 1)) : 0};
+  if (size.first == 0 || size.second == 0) {
+    throw CLI::ValidationError(
+        "--window", "'" + text + "' is not a size; give WIDTHxHEIGHT, for instance 1280x720");
+  }
+  return size;
 }
 
 }  // namespace
@@ -81,6 +99,16 @@ void add_settings_option(CLI::App& command, std::filesystem::path& settings) {
                      "configuration folder, if it exists)");
 }
 
+void add_window_options(CLI::App& command, int& monitor,
+                        std::optional<std::pair<int, int>>& size_px) {
+  command.add_option("--monitor", monitor, "Monitor of the participant's window, from 1")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  command.add_option_function<std::string>(
+      "--window", [&size_px](const std::string& text) { size_px = size_of(text); },
+      "Size WIDTHxHEIGHT of a window instead of the whole monitor, pixels");
+}
+
 void add_rate_option(CLI::App& command, double& rate_hz) {
   command.add_option("--rate", rate_hz, "Servo ticks per second")
       ->check(CLI::Range(1000.0, 10'000.0))
@@ -103,6 +131,10 @@ void add_jobs_option(CLI::App& command, int& jobs) {
   command.add_option("--jobs", jobs, "Threads; results do not depend on their number")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+}
+
+void add_yes_flag(CLI::App& command, bool& yes) {
+  command.add_flag("--yes", yes, "Do not ask whether to go on; needed without a terminal");
 }
 
 CLI::Option* add_json_flag(CLI::App& command, bool& json) {

@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -28,6 +30,8 @@ void add_stimuli_command(CLI::App& program, Action& action);
 /// The commands of "stimuli".
 void add_stimuli_sheet_command(CLI::App& stimuli, Action& action);
 void add_stimuli_measure_command(CLI::App& stimuli, Action& action);
+void add_new_command(CLI::App& program, Action& action);
+void add_preview_command(CLI::App& program, Action& action);
 void add_prepare_command(CLI::App& program, Action& action);
 void add_prereg_command(CLI::App& program, Action& action);
 void add_simulate_command(CLI::App& program, Action& action);
@@ -39,6 +43,7 @@ void add_report_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);
 void add_fit_command(CLI::App& program, Action& action);
 void add_consent_command(CLI::App& program, Action& action);
+void add_status_command(CLI::App& program, Action& action);
 void add_key_command(CLI::App& program, Action& action);
 /// The command "key check".
 void add_key_check_command(CLI::App& keys, Action& action);
@@ -47,6 +52,7 @@ void add_record_commands(CLI::App& program, Action& action);
 void add_merge_command(CLI::App& program, Action& action);
 void add_power_command(CLI::App& program, Action& action);
 void add_device_command(CLI::App& program, Action& action);
+void add_screen_command(CLI::App& program, Action& action);
 /// The commands of "device".
 void add_device_test_command(CLI::App& device, Action& action);
 void add_device_fit_command(CLI::App& device, Action& action);
@@ -67,7 +73,9 @@ CLI::Option* add_database_argument(CLI::App& command, std::filesystem::path& dat
 void add_study_place_argument(CLI::App& command, std::filesystem::path& place);
 /// --key, see key_of_database; and --passphrase-file, see app/passphrases.hpp.
 CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key,
-                            const std::string& meaning = "Key of the study (default: DB.key)");
+                            const std::string& meaning =
+                                "Key of the study (default: DB.key, or the "
+                                "one named last time)");
 /// --passphrase-file, for commands that read keys or stations' files without --key.
 void add_passphrase_option(CLI::App& command);
 /// Why to go on without what the database lacks and its head file knows.
@@ -89,6 +97,9 @@ void add_subject_option(CLI::App& command, std::filesystem::path& subject);
 void add_driver_argument(CLI::App& command, const std::string& name, std::string& driver);
 /// --settings; see device::device_settings_for.
 void add_settings_option(CLI::App& command, std::filesystem::path& settings);
+/// --monitor, and --window for a window of this size in place of the whole monitor.
+void add_window_options(CLI::App& command, int& monitor,
+                        std::optional<std::pair<int, int>>& size_px);
 /// --rate, 1,000 to 10,000 Hz.
 void add_rate_option(CLI::App& command, double& rate_hz);
 
@@ -100,6 +111,8 @@ void add_rate_option(CLI::App& command, double& rate_hz);
 void add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& meaning);
 /// --jobs, by default as many as there are logical cores.
 void add_jobs_option(CLI::App& command, int& jobs);
+/// --yes: does not ask; see confirm of app/console.hpp.
+void add_yes_flag(CLI::App& command, bool& yes);
 /// --json
 CLI::Option* add_json_flag(CLI::App& command, bool& json);
 

@@ -1,30 +1,41 @@
-// consent: records a participant's consent and demographics in the file of personal data.
+// consent: records a participant's consent and demographics in the file of personal data, and shows
+// what is recorded.
+#include "analysis/text_table.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/participant_ids.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/printable.hpp"
+#include "core/strict_json.hpp"
 #include "core/text.hpp"
+#include "core/utc.hpp"
 #include "protocols/store/personal_data.hpp"
+#include "protocols/store/study_store.hpp"
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 namespace touchtrial::app {
 namespace {
 
 constexpr int kOldestYears = 130;
+constexpr std::size_t kLongestVersion = 64;  // bytes
 
 struct ConsentArguments {
   std::filesystem::path database;
@@ -32,6 +43,10 @@ struct ConsentArguments {
   std::string details;  ///< "-": read them from standard input
   std::string refused;  ///< what earlier versions took from the command line
   bool on_command_line = false;
+  bool yes = false;
+  bool show = false;
+  bool list = false;
+  bool json = false;
 };
 
 std::string trimmed(std::string_view text) {
@@ -101,6 +116,41 @@ void read_details(store::PersonalRecord& record) {
   }
 }
 
+/// The ids of the study's sessions, in their order, and of those who take somebody's place.
+std::vector<std::string> participants_of(const std::filesystem::path& database) {
+  std::vector<std::string> ids;
+  if (!is_there(database)) return ids;
+  try {
+    const auto store = store::StudyStore::open(database, store::StudyStore::Access::read_only);
+    for (const store::SessionRow& row : store.sessions()) {
+      for (const std::string& id : {row.participant, row.replaced_by}) {
+        if (!id.empty() && std::ranges::count(ids, id) == 0) ids.push_back(id);
+      }
+    }
+  } catch (const StoreError&) {
+    // A consent is recorded whatever became of the database.
+  }
+  return ids;
+}
+
+std::vector<std::string> known_ids(const std::filesystem::path& database) {
+  std::vector<std::string> ids = participants_of(database);
+  for (const store::PersonalRecord& one : consents_beside(database)) {
+    if (std::ranges::count(ids, one.participant) == 0) ids.push_back(one.participant);
+  }
+  return ids;
+}
+
+/// Asks about an id that nobody has and that is like another's.
+void confirm_id(const ConsentArguments& arguments) {
+  const std::string& id = arguments.record.participant;
+  const auto meant = perhaps_meant(id, known_ids(arguments.database));
+  if (!meant) return;
+  confirm("consent: participant " + id + " has neither a session nor a consent, and " + *meant +
+              " is known; give --participant " + *meant + " if that is who is meant",
+          arguments.yes);
+}
+
 int record_consent(const ConsentArguments& arguments) {
   if (arguments.on_command_line) {
     throw UsageError(
@@ -109,19 +159,94 @@ int record_consent(const ConsentArguments& arguments) {
   }
   store::PersonalRecord record = arguments.record;
   if (record.participant.empty() || record.consent_version.empty()) {
-    throw UsageError("consent: --participant and --version must not be empty");
+    throw UsageError(
+        "consent: give --participant and --version, neither of them empty; --list and --show tell "
+        "what is recorded");
   }
+  if (!store::is_participant_id(record.participant)) {
+    throw UsageError("consent: " + in_quotes(record.participant) +
+                     " is no participant id; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
+  }
+  if (record.consent_version.size() > kLongestVersion ||
+      printable(record.consent_version) != record.consent_version) {
+    throw UsageError(fmt::format(
+        "consent: --version is the name of a form: one line of at most {} bytes", kLongestVersion));
+  }
+  confirm_id(arguments);
   if (!arguments.details.empty() && ::isatty(STDIN_FILENO) != 0) {
     ask_details(record);
   } else if (!arguments.details.empty()) {
     read_details(record);
   }
-  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
-  record.consented_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
+  record.consented_utc = utc_text(utc_now());
   const std::filesystem::path path = store::personal_data_path(arguments.database);
-  store::PersonalData(path).put(record);
+  store::PersonalData data(path);
+  const auto before = data.find(record.participant);
+  data.put(record);
   print(fmt::format("{}: consent of participant {} to version {} recorded\n", path.string(),
                     record.participant, record.consent_version));
+  if (before) {
+    print(fmt::format("the consent to version {} of {}, and what was said then, are kept\n",
+                      before->consent_version, before->consented_utc));
+  }
+  return 0;
+}
+
+nlohmann::ordered_json consent_json(const store::PersonalRecord& one) {
+  nlohmann::ordered_json object{{"version", one.consent_version},
+                                {"consented_utc", one.consented_utc}};
+  object["age"] = nullptr;
+  if (one.age) object["age"] = *one.age;
+  object["gender"] = one.gender;
+  object["contact"] = one.contact;
+  return object;
+}
+
+/// Every consent of one participant, with what was said then.
+int show_consents(const ConsentArguments& arguments) {
+  const std::string& id = arguments.record.participant;
+  nlohmann::ordered_json consents = nlohmann::ordered_json::array();
+  std::string text;
+  const auto said = [](const std::string& words) { return words.empty() ? "-" : one_line(words); };
+  for (const store::PersonalRecord& one : consents_beside(arguments.database)) {
+    if (one.participant != id) continue;
+    consents.push_back(consent_json(one));
+    text += fmt::format("{}  version {}; age: {}; gender: {}; contact: {}\n", one.consented_utc,
+                        one_line(one.consent_version), one.age ? std::to_string(*one.age) : "-",
+                        said(one.gender), said(one.contact));
+  }
+  if (consents.empty()) {
+    throw StoreError(one_line(arguments.database.string() + ": no consent of participant " + id +
+                              " is recorded; `touchtrial consent DB --list` names those who have "
+                              "one"));
+  }
+  print(arguments.json ? json_text(nlohmann::ordered_json{{"participant", id},
+                                                          {"consents", std::move(consents)}})
+                       : text);
+  return 0;
+}
+
+/// Who consented to what and when, and who has a session and no consent. Nothing else about them.
+int list_consents(const ConsentArguments& arguments) {
+  std::map<std::string, std::vector<store::PersonalRecord>> people;
+  for (const std::string& id : participants_of(arguments.database)) people[id];
+  for (store::PersonalRecord& one : consents_beside(arguments.database)) {
+    people[one.participant].push_back(std::move(one));
+  }
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  analysis::TextTable table({"participant", "consents", "last version", "when"}, {0, 2, 3});
+  for (const auto& [id, consents] : people) {
+    const store::PersonalRecord last = consents.empty() ? store::PersonalRecord{} : consents.back();
+    list.push_back({{"participant", id},
+                    {"consents", consents.size()},
+                    {"version", last.consent_version},
+                    {"consented_utc", last.consented_utc}});
+    table.add({id, consents.empty() ? "none" : std::to_string(consents.size()),
+               consents.empty() ? "-" : last.consent_version,
+               consents.empty() ? "-" : last.consented_utc});
+  }
+  print(arguments.json ? json_text(nlohmann::ordered_json{{"participants", std::move(list)}})
+                       : (people.empty() ? "no participant is known\n" : table.text()));
   return 0;
 }
 
@@ -129,15 +254,24 @@ int record_consent(const ConsentArguments& arguments) {
 
 void add_consent_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ConsentArguments>();
-  CLI::App* command = program.add_subcommand(
-      "consent", "Record a participant's consent and demographics, in DB.personal only");
+  CLI::App* command = program.add_subcommand("consent",
+                                             "Record a participant's consent and demographics, in "
+                                             "DB.personal only, or show what is there");
   add_database_argument(*command, arguments->database,
                         "Database of the study; it need not exist yet")
       ->check(place_validator());
-  command->add_option("--participant", arguments->record.participant, "Id, for instance P07")
-      ->required();
-  command->add_option("--version", arguments->record.consent_version, "Version that was signed")
-      ->required();
+  CLI::Option* participant =
+      command->add_option("--participant", arguments->record.participant, "Id, for instance P07");
+  CLI::Option* version = command->add_option("--version", arguments->record.consent_version,
+                                             "Version that was signed");
+  CLI::Option* show = command->add_flag(
+      "--show", arguments->show, "Show every consent of the participant, and what was said then");
+  show->needs(participant)->excludes(version);
+  CLI::Option* list =
+      command->add_flag("--list", arguments->list, "List who consented to which version and when");
+  list->excludes(participant)->excludes(version)->excludes(show);
+  add_json_flag(*command, arguments->json);
+  add_yes_flag(*command, arguments->yes);
   command
       ->add_option("--details", arguments->details,
                    "-: ask for age, gender and contact, or read them from standard input in lines "
@@ -151,7 +285,10 @@ void add_consent_command(CLI::App& program, Action& action) {
     for (const char* const option : kEarlierOptions) {
       arguments->on_command_line |= command->count(option) > 0;
     }
-    action = [=] { return record_consent(*arguments); };
+    action = [=] {
+      if (arguments->list) return list_consents(*arguments);
+      return arguments->show ? show_consents(*arguments) : record_consent(*arguments);
+    };
   });
 }
 

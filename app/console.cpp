@@ -4,9 +4,9 @@
 #include "core/printable.hpp"
 
 #include <cstdio>
-#include <ctime>
+#include <iostream>
+#include <string_view>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -36,6 +36,29 @@ void print(const std::string& given) {
   }
 }
 
+void confirm(const std::string& about, bool yes) {
+  if (yes) return;
+  if (::isatty(STDIN_FILENO) == 0) {
+    throw UsageError(one_line(about) +
+                     "; nothing was done: standard input is no terminal to ask at, and only with "
+                     "--yes does this go on without asking");
+  }
+  const std::string question = one_line(about) + "\ntype yes to go on: ";
+  std::fputs(question.c_str(), stderr);
+  std::string answer;
+  std::getline(std::cin, answer);
+  if (answer != "yes") throw UsageError("not confirmed; nothing was done");
+}
+
+std::string shell_word(const std::string& text) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./-+=:,@%";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
 std::function<void(int, int)> progress_bar(const std::string& what) {
   if (::isatty(STDERR_FILENO) == 0) return [](int, int) {};
   const auto shown_from = Clock::now() + std::chrono::seconds(1);
@@ -47,11 +70,6 @@ std::function<void(int, int)> progress_bar(const std::string& what) {
 std::chrono::nanoseconds utc_now() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::system_clock::now().time_since_epoch());
-}
-
-std::string utc_words(std::chrono::nanoseconds at) {
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(at).count();
-  return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(static_cast<std::time_t>(seconds)));
 }
 
 std::string ending_of(const std::filesystem::path& file) {

@@ -2,6 +2,8 @@
 /// endings of file names.
 #pragma once
 
+#include "core/strict_json.hpp"
+
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -13,12 +15,15 @@ namespace touchtrial::app {
 /// \throws FileError if that fails (a full disk, a closed pipe)
 void print(const std::string& text);
 
-/// A JSON object as commands print it: indented, ending with a line feed. Bytes that are not UTF-8
-/// become replacement characters.
-template <typename Json>
-[[nodiscard]] std::string json_text(const Json& object) {
-  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+/// Asks at the terminal whether to do something, before anything is done; `--yes` answers in
+/// advance (add_yes_flag).
+/// \param about  one line: whom it concerns, and what will be lost or seen
+/// \param yes  --yes: nothing is printed or asked
+/// \throws UsageError if the answer is not "yes", or standard input is no terminal
+void confirm(const std::string& about, bool yes);
+
+/// An argument as a shell reads it back.
+[[nodiscard]] std::string shell_word(const std::string& text);
 
 /// A progress bar on standard error. It appears only on a terminal and after one second, and
 /// disappears when the work ends. Call it from one thread.
@@ -26,9 +31,6 @@ template <typename Json>
 
 /// Nanoseconds since 1970, UTC.
 [[nodiscard]] std::chrono::nanoseconds utc_now();
-
-/// A time as utc_now gives it, for people: "2026-03-02 09:00 UTC".
-[[nodiscard]] std::string utc_words(std::chrono::nanoseconds at);
 
 /// The extension of a file name in lower case, with its dot: ".png" of "A.PNG".
 [[nodiscard]] std::string ending_of(const std::filesystem::path& file);

@@ -8,7 +8,6 @@
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
-#include "core/files.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
 #include "protocols/store/personal_data.hpp"
@@ -18,7 +17,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
 namespace {
@@ -33,6 +35,7 @@ struct ExportArguments {
   std::string participant;
   bool safety = false;
   bool with_database = false;
+  bool with_texts = false;
   analysis::DatasetOptions dataset;
 };
 
@@ -50,49 +53,64 @@ void require_fitting(const ExportArguments& arguments) {
         "--with-database: the study is on a server; make a file of it with `touchtrial merge`, and "
         "export that");
   }
-  const bool for_datasets = !dataset.authors.empty() || !dataset.license.empty();
+  const bool for_datasets =
+      !dataset.authors.empty() || !dataset.license.empty() || arguments.with_texts;
   if (for_datasets && arguments.format != "bids" && arguments.format != "psych-ds") {
-    throw UsageError("--author and --license belong to --format bids and --format psych-ds");
+    throw UsageError(
+        "--author, --license and --with-texts belong to --format bids and --format psych-ds");
   }
 }
 
 /// Refuses an export of a study that is not unblinded.
 /// \param what  why the export reveals stimuli or answers
-void require_outcomes(const std::optional<analysis::Outcomes>& outcomes, const std::string& what) {
+void require_outcomes(const store::StudyStore& store,
+                      const std::optional<analysis::Outcomes>& outcomes, const std::string& what) {
   if (outcomes) return;
-  throw StoreError("the study is not unblinded, and " + what +
+  throw StoreError("the study is " + blind_words(store.state()) + ", and " + what +
                    "; run `touchtrial close` and `touchtrial unblind`");
+}
+
+/// Personal data that this user may not read keep nobody from exporting the rest.
+std::vector<store::PersonalRecord> consents_if_readable(const fs::path& database) {
+  try {
+    return consents_beside(database);
+  } catch (const Error& error) {
+    spdlog::warn("consents are left out: {}", error.what());
+    return {};
+  }
 }
 
 std::vector<fs::path> write_files(const ExportArguments& arguments, const store::StudyStore& store,
                                   const std::optional<design::StudyKey>& key,
                                   const std::optional<analysis::Outcomes>& outcomes) {
   const std::string& format = arguments.format;
-  if (format == "csv") return analysis::export_csv(store, outcomes, arguments.folder);
-  if (format == "json") return {analysis::export_json(store, outcomes, arguments.folder)};
+  const auto consents = consents_if_readable(arguments.database);
+  if (format == "csv") return analysis::export_csv(store, outcomes, arguments.folder, consents);
+  if (format == "json") {
+    return {analysis::export_json(store, outcomes, arguments.folder, consents)};
+  }
   if (format == "r") {
-    require_outcomes(outcomes, "a model contains outcomes");
-    return analysis::analysis_of(outcomes->design).export_model(store, *outcomes, arguments.folder);
+    require_outcomes(store, outcomes, "a model contains outcomes");
+    std::vector<fs::path> files =
+        analysis::analysis_of(outcomes->design).export_model(store, *outcomes, arguments.folder);
+    for (fs::path& file : analysis::export_said(store, *outcomes, arguments.folder, consents)) {
+      files.push_back(std::move(file));
+    }
+    return files;
   }
   if (format == "events") {
-    require_outcomes(outcomes, "forces before a fault reveal what was presented");
+    require_outcomes(store, outcomes, "forces before a fault reveal what was presented");
     return analysis::export_events(store, *key, *outcomes, arguments.folder);
   }
   const analysis::DatasetSource study{store, outcomes ? &*outcomes : nullptr,
                                       key ? &*key : nullptr};
   analysis::DatasetOptions options = arguments.dataset;
+  options.typed = arguments.with_texts ? analysis::Typed::shown : analysis::Typed::left_out;
+  options.consents = consents;
   if (format == "psych-ds") return analysis::export_psych_ds(study, options, arguments.folder);
   if (arguments.with_database) options.database = arguments.database;
   if (options.traces) options.progress = progress_bar("export");
   return analysis::export_bids(study, options, arguments.folder);
-}
-
-/// The personal data are beside a station's own database alone.
-std::optional<store::PersonalRecord> person_of(const ExportArguments& arguments) {
-  if (collect::is_address(arguments.database.string())) return std::nullopt;
-  const fs::path path = store::personal_data_path(arguments.database);
-  if (!is_there(path)) return std::nullopt;
-  return store::PersonalData(path).find(arguments.participant);
 }
 
 /// Outcomes take the key, and a look at this participant that is recorded.
@@ -101,11 +119,15 @@ std::vector<fs::path> export_one(const ExportArguments& arguments, const store::
   std::optional<analysis::Outcomes> outcomes;
   if (!arguments.key.empty()) {
     key = key_of_database(store, arguments.database, arguments.key);
-    outcomes = analysis::load_outcomes(store, *key, arguments.participant);
+    outcomes = outcomes_of(store, *key, arguments.participant);
   }
+  std::vector<store::PersonalRecord> consents = consents_beside(arguments.database);
+  std::erase_if(consents, [&](const store::PersonalRecord& one) {
+    return one.participant != arguments.participant;
+  });
   return analysis::export_participant(
       {store, outcomes ? &*outcomes : nullptr, key ? &*key : nullptr}, arguments.participant,
-      person_of(arguments), arguments.folder);
+      consents, arguments.folder);
 }
 
 std::vector<fs::path> export_safety_record(const ExportArguments& arguments,
@@ -120,7 +142,7 @@ std::vector<fs::path> export_all(const ExportArguments& arguments, const store::
   std::optional<analysis::Outcomes> outcomes;
   if (store.state().unblinded) {
     key = key_of_database(store, arguments.database, arguments.key);
-    outcomes = analysis::load_outcomes(store, *key);
+    outcomes = outcomes_of(store, *key);
   }
   return write_files(arguments, store, key, outcomes);
 }
@@ -145,6 +167,9 @@ void add_dataset_options(CLI::App& command, ExportArguments& arguments) {
   command.add_flag("--with-stimuli", dataset.stimuli, "bids: the study's images");
   command.add_flag("--with-database", arguments.with_database,
                    "bids: a copy of the database in sourcedata/, never its key");
+  command.add_flag("--with-texts", arguments.with_texts,
+                   "bids, psych-ds: what people typed (answers in words, ages, notes, reasons), "
+                   "which may name somebody");
   command.add_option("--author", dataset.authors, "bids, psych-ds: an author; may be repeated");
   command.add_option("--license", dataset.license, "bids, psych-ds: license, for instance CC0");
   command.add_option("--institution", dataset.institution, "bids: where the data were collected");

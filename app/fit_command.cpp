@@ -133,8 +133,8 @@ planning::FitProgress shares(const std::function<void(int, int)>& bar) {
 store::StudyStore unblinded(const fs::path& database) {
   store::StudyStore store = store::StudyStore::open(database, store::StudyStore::Access::read_only);
   if (!store.state().unblinded) {
-    throw UsageError(one_line(database.string()) +
-                     ": not unblinded, and a fit needs outcomes; run `touchtrial close` and "
+    throw UsageError(one_line(database.string()) + ": " + blind_words(store.state()) +
+                     ", and a fit needs outcomes; run `touchtrial close` and "
                      "`touchtrial unblind`");
   }
   return store;

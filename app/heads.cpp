@@ -56,7 +56,7 @@ fs::path second_that_is_gone(const store::HeadFiles& files,
   return known / paths.back().filename() == paths.back() ? paths.back() : fs::path();
 }
 
-std::string words_of(const std::vector<store::Loss>& losses) {
+std::string words_on(const std::vector<store::Loss>& losses) {
   return listed(losses, "; ", &store::Loss::what);
 }
 
@@ -68,7 +68,7 @@ void accept(store::StudyStore& store, const std::vector<store::Loss>& losses,
     if (loss.session > 0 && store.last_event(loss.session)) sessions[loss.session] = loss.what;
     answers = std::max(answers, loss.answers);
   }
-  store.accept_loss({.reason = reason, .missing = words_of(losses), .answers = answers}, sessions,
+  store.accept_loss({.reason = reason, .missing = words_on(losses), .answers = answers}, sessions,
                     utc_now());
 }
 
@@ -140,7 +140,7 @@ void keep_heads(store::StudyStore& store, const fs::path& database, const Signer
                  " is gone, so that nobody can tell whether the first is the newest"});
   }
   if (!missing.empty() && options.accept_loss.empty()) {
-    throw StoreError(one_line(database.string()) + ": is not as it was left: " + words_of(missing) +
+    throw StoreError(one_line(database.string()) + ": is not as it was left: " + words_on(missing) +
                      "; restore the database and its -wal from where they are whole, or go on "
                      "without with --accept-loss REASON, which is recorded");
   }
@@ -170,7 +170,7 @@ void require_head_beside(const fs::path& database) {
   const std::vector<store::Loss> missing = losses_of(store, std::move(readings));
   if (missing.empty()) return;
   throw VerificationError(
-      one_line(database.string()) + ": is not as it was left: " + words_of(missing) +
+      one_line(database.string()) + ": is not as it was left: " + words_on(missing) +
       "; take the database and its -wal from where they are whole, or record the loss at its "
       "station, for instance with `touchtrial note --accept-loss REASON`");
 }

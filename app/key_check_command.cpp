@@ -88,8 +88,7 @@ CheckedStudy checked_study(const KeyCheckArguments& arguments) {
   }
   design::StudyKey key = design::load_study_key(key_path);
   if (!design::are_same(key.study, study)) {
-    throw VerificationError(one_line(key_path.string()) + ": is not the key of " + study.source +
-                            " as it is now; run `touchtrial prepare`, or name another with --key");
+    throw VerificationError(design::misfit_of(study, key, key_path, "--key"));
   }
   return {place, key_path, std::move(key)};
 }
@@ -238,7 +237,7 @@ int checked_database(const KeyCheckArguments& arguments) {
       store::StudyStore::open(arguments.subject, store::StudyStore::Access::read_only);
   const design::StudyKey key = key_of_database(store, arguments.subject, arguments.key);
   const OpenedKeys counts = opened_keys(store, key);
-  const fs::path key_path = key_path_for(arguments.subject, arguments.key);
+  const fs::path key_path = key_in_use(arguments.subject, arguments.key);
   if (arguments.json) {
     print(json_text(nlohmann::ordered_json{{"study", key.study.name},
                                            {"key", key_path.string()},

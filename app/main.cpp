@@ -34,6 +34,8 @@ void add_commands(CLI::App& program, Action& action) {
   add_evaluate_command(program, action);
   add_paper_command(program, action);
   add_stimuli_command(program, action);
+  add_new_command(program, action);
+  add_preview_command(program, action);
   add_prepare_command(program, action);
   add_prereg_command(program, action);
   add_simulate_command(program, action);
@@ -41,6 +43,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_key_command(program, action);
   add_run_command(program, action);
   add_consent_command(program, action);
+  add_status_command(program, action);
   add_record_commands(program, action);
   add_sync_command(program, action);
   add_verify_command(program, action);
@@ -50,6 +53,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_merge_command(program, action);
   add_power_command(program, action);
   add_device_command(program, action);
+  add_screen_command(program, action);
 }
 
 int complain(int code, const std::string& message) noexcept {
@@ -101,6 +105,27 @@ std::string command_so_far(const CLI::App& program) {
   return words;
 }
 
+/// What is wrong with the first option that the command does not have, if one of its own is near;
+/// else empty. A missing option is often a misspelt one.
+std::string misspelt_option(const CLI::App& program) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command->get_options()) {
+    if (option->get_group().empty()) continue;  // not in the help
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  for (const std::string& word : command->remaining()) {
+    const std::string given = word.substr(0, word.find('='));
+    if (!given.starts_with("--")) continue;
+    if (const auto nearest = nearest_name(given, known)) {
+      return given + ": is not an option; did you mean " + std::string(*nearest) + "?";
+    }
+  }
+  return "";
+}
+
 /// A write past the limit of a file's size, or to a pipe that nobody reads, then fails like any
 /// other, and what was begun ends in order.
 void let_writes_fail() {
@@ -127,8 +152,9 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return program.exit(help);
   } catch (const CLI::ParseError& error) {
-    return complain(kBadInput,
-                    std::string(error.what()) + "; see " + command_so_far(program) + " --help");
+    const std::string misspelt = misspelt_option(program);
+    return complain(kBadInput, (misspelt.empty() ? error.what() : misspelt) + "; see " +
+                                   command_so_far(program) + " --help");
   }
   return action();
 }

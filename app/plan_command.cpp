@@ -16,6 +16,7 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
 namespace {
@@ -29,6 +30,7 @@ struct PlanArguments {
   int stations = 0;
   std::vector<std::string> names;
   bool extend = false;
+  bool groups = false;
   bool json = false;
 };
 
@@ -79,6 +81,27 @@ std::string plan_json(const design::StudyKey& key, const design::PackPlace& plac
   return json_text(document);
 }
 
+/// The group of every number up to `participants`, for whoever treats groups differently.
+std::string groups_text(const design::StudyKey& key, int participants, bool json) {
+  const std::vector<std::string>& labels = key.study.groups.labels;
+  if (labels.empty()) throw UsageError("plan: the study has no groups; leave --groups out");
+  nlohmann::ordered_json dealt = nlohmann::ordered_json::array();
+  std::string text;
+  for (int number = 1; number <= participants; ++number) {
+    const auto group = key.group_of(number, design::Draws::people);
+    if (!group) continue;
+    const std::string& label = labels[static_cast<std::size_t>(*group)];
+    dealt.push_back({{"enrolment", number}, {"group", label}});
+    text += fmt::format("{:>7}  {}\n", number, label);
+  }
+  if (json) {
+    const nlohmann::ordered_json document = {{"study", key.study.name}, {"groups", dealt}};
+    return json_text(document);
+  }
+  return fmt::format("{}\n number  group\n{}", key.study.name, text) +
+         (key.study.groups.open ? "" : "Keep this from whoever runs sessions.\n");
+}
+
 bool is_divided(const design::StudyKey& key) {
   return key.stations.size() > 1 || key.stations.front().name != design::kOnlyStation;
 }
@@ -110,7 +133,8 @@ std::vector<design::Station> stations_to_fill(const PlanArguments& arguments,
 }
 
 int plan_enrolment(const PlanArguments& arguments) {
-  if (!arguments.extend && arguments.stations == 0 && arguments.names.empty()) {
+  const bool divides = arguments.extend || arguments.stations > 0 || !arguments.names.empty();
+  if (!divides && !arguments.groups) {
     throw UsageError("plan: the stations are missing; give --stations N, or their --names");
   }
   const design::Study study = design::load_study(arguments.study);
@@ -121,8 +145,19 @@ int plan_enrolment(const PlanArguments& arguments) {
                     "that has it, or for a new study run `touchtrial prepare` first");
   }
   design::StudyKey key = design::load_study_key(place.key);
+  if (arguments.groups) {
+    print(groups_text(key, arguments.participants, arguments.json));
+    return 0;
+  }
   std::vector<design::Station> stations = stations_to_fill(arguments, key, place.key);
   design::hand_out_enrolments(stations, arguments.participants);
+  if (stations.size() > 1 && study.registration.analysis &&
+      !study.registration.analysis->looks.empty()) {
+    spdlog::warn("{}", one_line(arguments.study.string() +
+                                ": the registration has interim looks, which a study of several "
+                                "stations cannot make; take them out and prepare again, or the "
+                                "study ends at its planned number"));
+  }
   design::divide(key, std::move(stations));
   design::save_study_key(place.key, key);
   save_station_files(key, place);
@@ -156,6 +191,12 @@ void add_plan_command(CLI::App& program, Action& action) {
                  "Add numbers to the existing plan, and keep its own")
       ->excludes(stations)
       ->excludes(names);
+  command
+      ->add_flag("--groups", arguments->groups,
+                 "Show which number is in which group, instead of dividing the study")
+      ->excludes(stations)
+      ->excludes(names)
+      ->excludes("--extend");
   add_pack_option(*command, arguments->pack);
   add_passphrase_option(*command);
   add_json_flag(*command, arguments->json);

@@ -167,9 +167,38 @@ std::string explanation_text(const design::PrepareReport& report) {
   return text + totals_text(totals_of(report));
 }
 
+// A hand strokes a plane of this size from a forearm's rest.
+constexpr double kSmallestPlaneMm = 20.0;
+constexpr double kLargestPlaneMm = 250.0;
+
+/// \return what is to be said about a plane that is not a hand's; else empty
+std::string remark_on(const PlaneGeometry& plane) {
+  if (std::min(plane.width_mm(), plane.height_mm()) < kSmallestPlaneMm) {
+    return fmt::format(
+        "too small to be stroked, below {:g} mm: take larger pictures, or raise "
+        "/rendering/pitch_mm",
+        kSmallestPlaneMm);
+  }
+  if (std::max(plane.width_mm(), plane.height_mm()) > kLargestPlaneMm) {
+    return fmt::format(
+        "larger than a hand reaches, above {:g} mm: crop the pictures with `touchtrial stimuli "
+        "import`, or lower /rendering/pitch_mm",
+        kLargestPlaneMm);
+  }
+  return "";
+}
+
+std::string plane_text(const PlaneGeometry& plane) {
+  const std::string remark = remark_on(plane);
+  return fmt::format("plane    {:.6g} x {:.6g} mm, {} x {} pixels of {:g} mm{}\n", plane.width_mm(),
+                     plane.height_mm(), plane.width_px, plane.height_px, plane.pitch_mm,
+                     remark.empty() ? "" : ": " + remark);
+}
+
 /// The whole report, with its stages if it has any. Fields: docs/data-dictionary.md,
 /// "prepare --json".
-std::string prepare_json(const design::PrepareReport& report, const design::PackPlace& place) {
+std::string prepare_json(const design::PrepareReport& report, const design::PackPlace& place,
+                         const PlaneGeometry& plane) {
   Json stimuli = Json::array();
   for (const design::PreparedStimulus& stimulus : report.stimuli)
     stimuli.push_back(stimulus_json(stimulus));
@@ -179,6 +208,10 @@ std::string prepare_json(const design::PrepareReport& report, const design::Pack
   }
   Json object = {{"pack", place.pack.string()},
                  {"key", place.key.string()},
+                 {"plane",
+                  {{"width_mm", plane.width_mm()},
+                   {"height_mm", plane.height_mm()},
+                   {"remark", remark_on(plane)}}},
                  {"stimuli", stimuli},
                  {"skipped", skipped},
                  {"warnings", report.warnings}};
@@ -340,6 +373,7 @@ std::string places_text(const design::StudyKey& key, const design::PackPlace& pl
 int prepare(const PrepareArguments& arguments) {
   const design::Study study = design::load_study(arguments.study);
   design::check_images_exist(study);
+  const PlaneGeometry plane = design::plane_of(study);
   const design::PackPlace place = pack_place_for(arguments.study, arguments.pack);
   if (arguments.passphrase && is_there(place.key) && !design::is_protected(place.key)) {
     design::protect(place.key, new_passphrase(place.key, passphrase_files()));
@@ -352,11 +386,12 @@ int prepare(const PrepareArguments& arguments) {
       key, place.pack, progress_bar("preparing"), {.explain = arguments.explain});
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
   if (arguments.json) {
-    print(prepare_json(report, place));
+    print(prepare_json(report, place, plane));
     return 0;
   }
   print((arguments.explain ? explanation_text(report) + "\n" : "") + table_of(report) +
-        gains_of(report, study.rendering.model) + line_of_totals(report) + places_text(key, place));
+        gains_of(report, study.rendering.model) + line_of_totals(report) + plane_text(plane) +
+        places_text(key, place));
   if (arguments.loop_work) print(loop_work_table(study));
   return 0;
 }

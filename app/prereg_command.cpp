@@ -40,7 +40,7 @@ int preregister(const PreregArguments& arguments) {
   }
   const design::StudyKey key = design::load_study_key(place.key);
   const engine::Pack pack(place.pack);
-  session::require_prepared(study, key, pack);
+  session::require_prepared(study, key, place.key, pack);
   for (const std::string& unsaid : session::unstated(study.registration)) {
     spdlog::warn("{}: {} is not stated; add it before depositing the page",
                  arguments.study.string(), unsaid);

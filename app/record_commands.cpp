@@ -1,19 +1,25 @@
 // Commands that record something beside the sessions: exclude, replace, withdraw, note, close and
 // unblind; and migrate, which brings an older database up to date.
+#include "analysis/looks.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/nearest_name.hpp"
+#include "core/text.hpp"
+#include "protocols/design/deviation_codes.hpp"
 #include "protocols/store/personal_data.hpp"
 #include "protocols/store/study_store.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
@@ -58,10 +64,12 @@ struct PeopleArguments {
   std::string with;
   std::string deviation;
   std::string text;
+  bool own_code = false;
   bool after_outcomes = false;
   bool keep_data = false;
   bool erase = false;
   bool erase_safety = false;
+  bool yes = false;
 };
 
 std::string place_of(const PeopleArguments& arguments) {
@@ -87,16 +95,24 @@ int session_of(const store::StudyStore& store, const PeopleArguments& arguments)
 
 int exclude(const PeopleArguments& arguments) {
   store::StudyStore store = opened(arguments.database, arguments.files);
-  const int session = session_of(store, arguments);
-  const bool seen = store.state().shows(session);
+  // Of several visits, all that were not excluded already.
+  std::vector<int> sessions = {session_of(store, arguments)};
+  for (const store::SessionRow& row : sessions_of(store, arguments)) {
+    const bool is_other = row.session != sessions.front() && !row.excluded;
+    if (is_other && row.replaced_by.empty()) sessions.push_back(row.session);
+  }
+  const store::StudyState state = store.state();
+  const bool seen =
+      std::ranges::any_of(sessions, [&](int session) { return state.shows(session); });
   if (seen && !arguments.after_outcomes) {
     throw StoreError(
         one_line(place_of(arguments) +
                  " cannot be excluded without notice: outcomes have been seen; give "
                  "--after-outcomes to exclude anyway, which is recorded with the reason"));
   }
-  store.exclude(session, utc_now(), arguments.reason);
-  print(place_of(arguments) + ": excluded (session " + std::to_string(session) + ")\n");
+  for (const int session : sessions) store.exclude(session, utc_now(), arguments.reason);
+  print(place_of(arguments) + ": excluded (session " +
+        listed(sessions, ", ", [](int session) { return std::to_string(session); }) + ")\n");
   print_head(store, arguments.database);
   return 0;
 }
@@ -111,7 +127,20 @@ int replace(const PeopleArguments& arguments) {
   return 0;
 }
 
+/// A mistyped code would be missing wherever the right one is counted.
+/// \throws UsageError with the codes that there are
+void check_code(const PeopleArguments& arguments) {
+  const std::string& code = arguments.deviation;
+  if (code.empty() || arguments.own_code || design::is_deviation_code(code)) return;
+  const auto nearest = nearest_name(code, design::kDeviationCodes);
+  throw UsageError("note: --deviation " + one_line(code) + " is none of the program's codes" +
+                   (nearest ? "; did you mean " + std::string(*nearest) + "?" : ": ") +
+                   (nearest ? " There are " : "") + listed(design::kDeviationCodes) +
+                   ", no-day-sheet-NUMBER; for a code of the study's own add --own-code");
+}
+
 int note(const PeopleArguments& arguments) {
+  check_code(arguments);
   store::StudyStore store = opened(arguments.database, arguments.files);
   store.note(session_of(store, arguments), utc_now(), arguments.deviation, arguments.text);
   print(place_of(arguments) + ": noted\n");
@@ -149,6 +178,33 @@ std::vector<int> not_erased(const store::StudyStore& store, const std::string& p
   return those_with(store, participant, [](const store::SessionRow& row) { return !row.erased; });
 }
 
+/// "session 3 with 25 answers", for each of these sessions.
+std::string with_answers(const store::StudyStore& store, const std::vector<int>& sessions) {
+  const std::vector<store::TrialRow> trials = store.trials();
+  std::vector<std::string> words;
+  for (const int session : sessions) {
+    const auto answers = std::ranges::count_if(trials, [session](const store::TrialRow& trial) {
+      return trial.session == session && trial.state == store::TrialState::answered;
+    });
+    words.push_back(fmt::format("session {} with {}", session, counted(answers, "answer")));
+  }
+  return listed(words);
+}
+
+/// Asks before an erasure that would destroy something.
+void confirm_erasure(const store::StudyStore& store, const std::vector<int>& sessions,
+                     const PeopleArguments& arguments) {
+  const fs::path path = store::personal_data_path(arguments.database);
+  std::string lost = with_answers(store, sessions);
+  if (is_there(path) && store::PersonalData(path).find(arguments.participant)) {
+    lost += std::string(lost.empty() ? "" : ", ") + "and the personal data (consent, contact)";
+  }
+  if (lost.empty()) return;
+  confirm(place_of(arguments) + ": " + lost +
+              ": nobody can ever read them again; the safety record stays",
+          arguments.yes);
+}
+
 /// Destroys the keys of these sessions, and what an earlier call left of keys in the log.
 /// \return what is left of the keys, and the remedy; empty if nothing is
 /// \throws StoreError if the withdrawal was not recorded
@@ -169,6 +225,11 @@ int keep_data(const PeopleArguments& arguments) {
   const std::vector<int> sessions = those_with(
       store, arguments.participant, [](const store::SessionRow& row) { return !row.withdrawn; });
   if (sessions.empty()) throw StoreError(one_line(place_of(arguments) + " has already withdrawn"));
+  confirm(
+      place_of(arguments) +
+          ": takes no further part, for good, and an open session cannot go on; the data stay (" +
+          with_answers(store, sessions) + ")",
+      arguments.yes);
   store.withdraw(sessions, utc_now(), arguments.reason, store::Kept::data);
   print(place_of(arguments) +
         ": withdrawn; takes no further part, and the data stay: they are analysed as the study "
@@ -187,6 +248,10 @@ int erase_safety(const PeopleArguments& arguments) {
   if (sessions.empty()) {
     throw StoreError(one_line(place_of(arguments) + ": the safety record is already erased"));
   }
+  confirm(place_of(arguments) +
+              ": nobody can ever read the texts of the safety record again (stops, faults, largest "
+              "forces, reasons of deviations)",
+          arguments.yes);
   store.withdraw(sessions, utc_now(), "", store::Kept::nothing, kNotErased);
   print(place_of(arguments) + ": the texts of the safety record cannot be read again by anybody\n" +
         kOtherCopies);
@@ -201,6 +266,7 @@ int erase(const PeopleArguments& arguments) {
   store::StudyStore store = opened(arguments.database, arguments.files);
   const bool has_session = !store.sessions_of(arguments.participant).empty();
   const std::vector<int> sessions = not_erased(store, arguments.participant);
+  confirm_erasure(store, sessions, arguments);
   // The key first: a fault of the file of personal data must not prevent a withdrawal.
   std::string left = has_session ? destroy_keys(store, sessions, arguments) : "";
   bool removed = false;
@@ -256,6 +322,8 @@ struct UnblindArguments {
   std::string participant;
   std::string reason;
   bool interim = false;
+  bool unregistered = false;
+  bool yes = false;
 };
 
 /// The participants whose sessions are open and could be continued; empty if there are none.
@@ -271,12 +339,22 @@ std::string left_open(const store::StudyStore& store) {
 struct CloseArguments {
   fs::path database;
   SigningFiles files;
+  bool yes = false;
 };
 
 int close(const CloseArguments& arguments) {
   const fs::path& database = arguments.database;
   store::StudyStore store = opened(database, arguments.files);
   const std::string open = left_open(store);
+  if (!store.state().closed) {
+    confirm(fmt::format("{}: takes no session any more, for good; it has {}{}", database.string(),
+                        store.sessions().size(),
+                        open.empty() ? ", and none is open"
+                                     : ", and those of these participants are open and cannot be "
+                                       "continued: " +
+                                           open),
+            arguments.yes);
+  }
   store.close_study(utc_now());
   if (!open.empty()) {
     spdlog::warn("{}", one_line(database.string() +
@@ -289,6 +367,49 @@ int close(const CloseArguments& arguments) {
   return 0;
 }
 
+/// Whether the look is to be at the registered question alone.
+/// \throws StoreError if the registration has looks, and none of them is at this many participants
+bool is_registered_look(const store::StudyStore& store, const UnblindArguments& arguments) {
+  if (!arguments.interim || arguments.unregistered || store.state().closed) return false;
+  const design::StudyKey key = key_of_database(store, arguments.database, arguments.files.key);
+  const auto& analysis = key.study.registration.analysis;
+  if (!analysis || analysis->looks.empty()) return false;
+  const analysis::LookRecord looked = analysis::look_record(store, key);
+  if (looked.may_look) return true;
+  std::vector<std::string> registered;
+  for (const int look : analysis->looks) registered.push_back(std::to_string(look));
+  const std::string why =
+      key.stations.size() > 1
+          ? "a study of several stations has no registered looks, because one at a merged file "
+            "would not be in the next merge"
+          : counted(looked.participants, "participant") +
+                (looked.participants == 1 ? " is" : " are") + " complete, and the registered " +
+                (registered.size() == 1 ? "look is at " : "looks are at ") +
+                listed(registered, " and ");
+  throw StoreError(one_line(arguments.database.string() + ": " + why +
+                            "; wait, or look at everything with --unregistered, which the report "
+                            "lists as a departure from the plan"));
+}
+
+/// Asks before outcomes are seen, which nobody can forget. The store refuses what may not be.
+/// \param registered  the look is at the registered question alone
+void confirm_look(const store::StudyStore& store, const UnblindArguments& arguments,
+                  bool registered) {
+  const bool one = !arguments.participant.empty();
+  if (!one && store.state().closed == arguments.interim) return;
+  const std::string who = one ? "participant " + arguments.participant
+                          : arguments.interim
+                              ? "every session that has ended"
+                              : fmt::format("all {} sessions", store.sessions().size());
+  const std::string what =
+      registered ? "the answer to the registered question, from " : "the outcomes of ";
+  const std::string when = !one && arguments.interim ? ", while collection goes on" : "";
+  confirm(arguments.database.string() + ": this lets " + what + who + " be seen" + when +
+              "; it is recorded and cannot be taken back; whoever sees them is no longer blind, "
+              "and later exclusions say that outcomes had been seen",
+          arguments.yes);
+}
+
 int unblind(const UnblindArguments& arguments) {
   store::StudyStore store = opened(arguments.database);
   // Outcomes cannot be shown without the key: it signs that they are looked at.
@@ -296,6 +417,8 @@ int unblind(const UnblindArguments& arguments) {
                   {.key = key_path_for(arguments.database, arguments.files.key),
                    .station = {},
                    .accept_loss = arguments.files.accept_loss});
+  const bool registered = arguments.participant.empty() && is_registered_look(store, arguments);
+  confirm_look(store, arguments, registered);
   if (!arguments.participant.empty()) {
     store.look_at(arguments.participant, utc_now(), arguments.reason);
     print(arguments.database.string() + ": the look at participant " + arguments.participant +
@@ -304,9 +427,16 @@ int unblind(const UnblindArguments& arguments) {
     print_head(store, arguments.database);
     return 0;
   }
-  store.unblind(utc_now(), arguments.reason, arguments.interim);
-  print(arguments.database.string() + ": unblinded" +
-        (arguments.interim ? " for an interim look\n" : "\n"));
+  const std::string database = arguments.database.string();
+  if (registered) {
+    store.look_at_question(utc_now(), arguments.reason);
+    print(database +
+          ": unblinded for a registered look; `touchtrial report` shows the answer to the "
+          "registered question, and nothing else\n");
+  } else {
+    store.unblind(utc_now(), arguments.reason, arguments.interim);
+    print(database + ": unblinded" + (arguments.interim ? " for an interim look\n" : "\n"));
+  }
   print_head(store, arguments.database);
   return 0;
 }
@@ -365,9 +495,14 @@ void add_people_commands(CLI::App& program, Action& action) {
   withdrawn.command->add_flag("--erase-safety", withdrawn.arguments->erase_safety,
                               "Make the safety record of an erased person unreadable too, when the "
                               "study's years have passed");
+  add_yes_flag(*withdrawn.command, withdrawn.arguments->yes);
   const PeopleCommand noted = people_command(
       program, action, "note", "Record a remark or a deviation from the protocol", note);
-  noted.command->add_option("--deviation", noted.arguments->deviation, "Code of the deviation");
+  noted.command->add_option(
+      "--deviation", noted.arguments->deviation,
+      "Code of the deviation: " + listed(design::kDeviationCodes) + ", no-day-sheet-NUMBER");
+  noted.command->add_flag("--own-code", noted.arguments->own_code,
+                          "The deviation's code is the study's own");
   noted.command->add_option("TEXT", noted.arguments->text, "What happened")->required();
 }
 
@@ -376,6 +511,7 @@ void add_close_command(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("close", "End collection: no session can be added");
   add_database_argument(*command, arguments->database);
   add_signing_options(*command, arguments->files);
+  add_yes_flag(*command, arguments->yes);
   command->callback([=, &action] { action = [=] { return close(*arguments); }; });
 }
 
@@ -387,13 +523,20 @@ void add_unblind_command(CLI::App& program, Action& action) {
   add_reason(*command, arguments->reason);
   CLI::Option* interim =
       command->add_flag("--interim", arguments->interim,
-                        "Look at the sessions that have ended, before collection is closed");
+                        "Look at the sessions that have ended, before collection is closed; at a "
+                        "registered look, at the registered question alone");
+  command
+      ->add_flag("--unregistered", arguments->unregistered,
+                 "With --interim: look at everything, whatever looks were registered; the report "
+                 "lists it as a departure from the plan")
+      ->needs(interim);
   command
       ->add_option("--participant", arguments->participant,
                    "Look at this participant's outcomes alone, at any time")
       ->excludes(interim);
   add_key_option(*command, arguments->files.key);
   add_accept_loss_option(*command, arguments->files.accept_loss);
+  add_yes_flag(*command, arguments->yes);
   command->callback([=, &action] { action = [=] { return unblind(*arguments); }; });
 }
 

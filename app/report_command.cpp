@@ -59,14 +59,15 @@ analysis::Provenance provenance_for(const store::StudyStore& store,
 }
 
 /// Refuses --trial and --cues yes, which show what was presented, and --public.
-void refuse_while_blind(const ReportArguments& arguments) {
+void refuse_while_blind(const store::StudyState& state, const ReportArguments& arguments) {
+  const std::string place =
+      one_line(collect::study_name(arguments.database.string())) + ": " + blind_words(state);
   if (arguments.is_public) {
-    throw UsageError(one_line(collect::study_name(arguments.database.string())) +
-                     ": not unblinded, and only results are published; omit --public");
+    throw UsageError(place + ", and only results are published; omit --public");
   }
   if (arguments.trial.empty() && arguments.cues != "yes") return;
-  throw UsageError(one_line(collect::study_name(arguments.database.string())) +
-                   ": not unblinded, and --trial and --cues yes show outcomes; run `touchtrial "
+  throw UsageError(place +
+                   ", and --trial and --cues yes show outcomes; run `touchtrial "
                    "close` and `touchtrial unblind`, or omit them");
 }
 
@@ -110,27 +111,48 @@ int write_outcomes(const store::StudyStore& store, const analysis::Outcomes& out
   return 0;
 }
 
+void print_results(const store::StudyStore& store, const analysis::Results& results,
+                   const ReportArguments& arguments) {
+  print(arguments.json
+            ? results.json()
+            : analysis::document_text(results.document(provenance_for(store, arguments), {}),
+                                      columns_of_output()));
+}
+
+/// After a registered interim look.
+int report_question(const store::StudyStore& store, const ReportArguments& arguments) {
+  const design::StudyKey key = key_of_database(store, arguments.database, arguments.key);
+  const analysis::Outcomes outcomes = analysis::load_for_question(store, key);
+  const auto all = analysis::analysis_of(outcomes.design).results(outcomes, {});
+  const auto answer = analysis::question_alone(*all, store);
+  if (arguments.folder.empty()) {
+    print_results(store, *answer, arguments);
+  } else {
+    write_report(arguments,
+                 analysis::report_files(answer->document(provenance_for(store, arguments), {}),
+                                        answer->json()));
+  }
+  return 0;
+}
+
 int report(const ReportArguments& arguments) {
   const store::StudyStore store = collect::open_study(arguments.database.string());
   if (!arguments.folder.empty()) {
     analysis::refuse_other_study(arguments.folder, store.commitment().study);
     analysis::refuse_strangers(arguments.folder);
   }
-  if (!store.state().unblinded) {
-    refuse_while_blind(arguments);
-    return report_quality(store, arguments);
-  }
+  const store::StudyState state = store.state();
+  if (!state.unblinded) refuse_while_blind(state, arguments);
+  if (state.question) return report_question(store, arguments);
+  if (!state.unblinded) return report_quality(store, arguments);
   const design::StudyKey key = key_of_database(store, arguments.database, arguments.key);
-  analysis::Outcomes outcomes = analysis::load_outcomes(store, key);
+  analysis::Outcomes outcomes = outcomes_of(store, key);
   if (arguments.is_public) outcomes = analysis::without_identities(std::move(outcomes));
   const analysis::TraceSource traces{store, key};
   const auto results =
       analysis::analysis_of(outcomes.design).results(outcomes, wishes_of(arguments, traces));
   if (!arguments.folder.empty()) return write_outcomes(store, outcomes, *results, arguments);
-  print(arguments.json
-            ? results->json()
-            : analysis::document_text(results->document(provenance_for(store, arguments), {}),
-                                      columns_of_output()));
+  print_results(store, *results, arguments);
   return 0;
 }
 
@@ -154,9 +176,9 @@ void add_report_command(CLI::App& program, Action& action) {
           "Read all traces for ideal observers; auto: with --out, if there are at most 2,500")
       ->check(CLI::IsMember({"auto", "yes", "no"}))
       ->capture_default_str();
-  CLI::Option* is_public = command->add_flag(
-      "--public", arguments->is_public,
-      "Leave out participants' ids, serial numbers, and every reason, note and remark");
+  CLI::Option* is_public = command->add_flag("--public", arguments->is_public,
+                                             "Leave out participants' ids, serial numbers, times "
+                                             "of day, and every reason, note and remark");
   command
       ->add_option(
           "--trial", arguments->trial,

@@ -2,33 +2,13 @@
 #include "app/console.hpp"
 #include "app/run/run_session.hpp"
 #include "core/errors.hpp"
-#include "core/text.hpp"
 #include "protocols/design/station.hpp"
 
 #include <memory>
 #include <string>
-#include <string_view>
-#include <utility>
 
 namespace touchtrial::app {
 namespace {
-
-/// Two sides of 320 to 16,384 pixels, typed as 1280x720.
-std::pair<int, int> size_of(const std::string& text) {
-  const auto side = [](std::string_view part) {
-    const auto number = number_in<int>(part);
-    return number && *number >= 320 && *number <= 16'384 ? *number : 0;
-  };
-  const std::string_view view = text;
-  const std::size_t cross = view.find('x');
-  const bool has_cross = cross != std::string_view::npos;
-  const std::pair size{side(view.substr(0, cross)), has_cross ? side(view.substr(cross + 1)) : 0};
-  if (size.first == 0 || size.second == 0) {
-    throw CLI::ValidationError(
-        "--window", "'" + text + "' is not a size; give WIDTHxHEIGHT, for instance 1280x720");
-  }
-  return size;
-}
 
 OnExisting policy_of(const std::string& text) {
   if (text == "refuse") return OnExisting::refuse;
@@ -44,12 +24,21 @@ void check(const RunOptions& options) {
     throw UsageError(
         "run: --headless is for simulated participants; add --subject, or omit --headless");
   }
+  if (options.headless && options.device != RunOptions{}.device) {
+    throw UsageError("run: --device is for people; omit it with --headless");
+  }
+  if (options.is_simulated() && options.participant.empty()) {
+    throw UsageError(
+        "run: nobody can be asked for a simulated participant's id; give --participant, for "
+        "instance S01");
+  }
 }
 
 void add_session_options(CLI::App& command, RunOptions& options) {
   add_study_argument(command, options.study);
-  command.add_option("--participant", options.participant, "Id, for instance P07; not a name")
-      ->required();
+  command.add_option("--participant", options.participant,
+                     "Id, for instance P07; not a name (default: asked for in a window, with the "
+                     "consent)");
   command.add_option("--db", options.database, "Database; made if it does not exist")
       ->check(place_validator())
       ->required();
@@ -75,6 +64,11 @@ void add_session_options(CLI::App& command, RunOptions& options) {
                   "Enrolment number, one of this station's (default: its next)")
       ->check(CLI::Range(1, design::kMostEnrolments));
   command
+      .add_option("--visit", options.visit,
+                  "Which visit of the participant this is, in a study with several")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command
       .add_option("--station", options.station,
                   "Name of this station, whose file is <study>.NAME.station")
       ->excludes(file);
@@ -91,12 +85,13 @@ void add_device_options(CLI::App& command, RunOptions& options) {
                   "Monitor of the experimenter's window, from 1")
       ->check(CLI::Range(1, 16));
   command.add_flag("!--no-sound", options.sound, "Play neither masking noise nor tones");
-  command.add_option("--monitor", options.monitor, "The participant's monitor, from 1")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
-  command.add_option_function<std::string>(
-      "--window", [&options](const std::string& text) { options.window_px = size_of(text); },
-      "Size WIDTHxHEIGHT of a window instead of the whole monitor, pixels");
+  add_window_options(command, options.monitor, options.window_px);
+  command
+      .add_option("--text-scale", options.text_scale,
+                  "Size of this participant's letters, in place of the study's; recorded")
+      ->check(CLI::Range(1.0, design::kLargestTextScale));
+  command.add_flag("--high-contrast", options.high_contrast,
+                   "Black on white for this participant; recorded");
 }
 
 void add_simulation_options(CLI::App& command, RunOptions& options) {

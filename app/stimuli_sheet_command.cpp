@@ -54,8 +54,7 @@ design::StudyKey key_of(const design::Study& study, const fs::path& path) {
   // The key may be elsewhere, for instance on a USB stick: pictures are found from the study file.
   design::StudyKey key = design::rekeyed(stored, study);
   if (key.seal != stored.seal) {
-    throw VerificationError(one_line(path.string()) + ": is not the key of " + study.source +
-                            " as it is now; run touchtrial prepare, or name another with --key");
+    throw VerificationError(design::misfit_of(study, stored, path, "--key"));
   }
   return key;
 }

@@ -2,20 +2,24 @@
 
 #include "analysis/sealed_sessions.hpp"
 #include "app/console.hpp"
+#include "app/texts/study_texts.hpp"
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/public_keys.hpp"
+#include "device/device_settings.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
 #include "protocols/design/key_protection.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
@@ -28,15 +32,80 @@ std::filesystem::path key_path_for(const std::filesystem::path& database,
   return beside;
 }
 
+namespace {
+
+/// Where keys were, by database; empty if the system knows no home.
+std::filesystem::path memory_path() {
+  const std::filesystem::path settings = device::default_device_settings_path();
+  return settings.empty() ? settings : settings.parent_path() / "keys.json";
+}
+
+std::string absolute_name(const std::filesystem::path& file) {
+  std::error_code none;
+  const std::filesystem::path whole = std::filesystem::weakly_canonical(file, none);
+  return whole.empty() ? file.string() : whole.string();
+}
+
+/// What is damaged is forgotten.
+nlohmann::json remembered_keys() {
+  constexpr std::uintmax_t kLargest = 1U << 20U;
+  const std::filesystem::path path = memory_path();
+  if (path.empty() || !is_there(path)) return nlohmann::json::object();
+  nlohmann::json keys = nlohmann::json::parse(text_of(read_file(path, kLargest)), nullptr, false);
+  return keys.is_object() ? keys : nlohmann::json::object();
+}
+
+/// A home that cannot be written, such as a service's, remembers nothing.
+void keep_place_of_key(const std::filesystem::path& database, const std::filesystem::path& key) {
+  const std::filesystem::path path = memory_path();
+  const std::string place = absolute_name(database);
+  const std::string key_place = absolute_name(key);
+  try {
+    nlohmann::json keys = remembered_keys();
+    if (path.empty() || keys.value(place, "") == key_place) return;
+    keys[place] = key_place;
+    std::filesystem::create_directories(path.parent_path());
+    replace_file(path, json_text(keys), FileMode::owner_only);
+  } catch (const FileError&) {
+  } catch (const std::filesystem::filesystem_error&) {
+  } catch (const nlohmann::json::exception&) {
+  }
+}
+
+}  // namespace
+
+std::filesystem::path remembered_key(const std::filesystem::path& database) {
+  try {
+    const nlohmann::json keys = remembered_keys();
+    const auto known = keys.find(absolute_name(database));
+    if (known == keys.end() || !known->is_string()) return {};
+    return known->get<std::string>();
+  } catch (const FileError&) {
+    return {};
+  }
+}
+
+std::filesystem::path key_in_use(const std::filesystem::path& database,
+                                 const std::filesystem::path& given) {
+  std::filesystem::path path = key_path_for(database, given);
+  if (path != key_path_for(database, {}) || is_there(path)) return path;
+  std::filesystem::path remembered = remembered_key(database);
+  return !remembered.empty() && is_there(remembered) ? remembered : path;
+}
+
 design::StudyKey key_of_database(const store::StudyStore& store,
                                  const std::filesystem::path& database,
                                  const std::filesystem::path& given) {
   if (given.empty() && collect::is_address(database.string())) {
     throw FileError("a study on a server has no key beside it; name the study's key with --key");
   }
-  const std::filesystem::path path = key_path_for(database, given);
-  if (path == key_path_for(database, {}) && !is_there(path)) {
-    throw FileError(path.string() + ": there is no key beside the database; name it with --key");
+  const std::filesystem::path path = key_in_use(database, given);
+  const bool is_beside = path == key_path_for(database, {});
+  if (is_beside && !is_there(path)) {
+    const std::filesystem::path last = remembered_key(database);
+    throw FileError(path.string() + ": there is no key beside the database" +
+                    (last.empty() ? "" : ", and none at " + last.string() + " as last time") +
+                    "; name it with --key");
   }
   design::StudyKey key = design::load_study_key(path);
   try {
@@ -45,7 +114,30 @@ design::StudyKey key_of_database(const store::StudyStore& store,
     throw VerificationError(path.string() + ": is not the key of " +
                             one_line(collect::study_name(database.string())) + ": " + wrong.what());
   }
+  if (!is_beside && !collect::is_address(database.string())) keep_place_of_key(database, path);
   return key;
+}
+
+analysis::Outcomes outcomes_of(const store::StudyStore& store, const design::StudyKey& key,
+                               const std::string& participant) {
+  analysis::Outcomes outcomes = analysis::load_outcomes(store, key, participant);
+  const session::SessionTexts texts = session_texts(outcomes.design);
+  outcomes.asked.clear();
+  for (const auto& questionnaire : {texts.handedness, texts.closing}) {
+    if (questionnaire) outcomes.asked.push_back(*questionnaire);
+  }
+  return outcomes;
+}
+
+std::vector<store::PersonalRecord> consents_beside(const std::filesystem::path& database) {
+  if (collect::is_address(database.string())) return {};
+  const std::filesystem::path path = store::personal_data_path(database);
+  if (!is_there(path)) return {};
+  return store::PersonalData(path).all();
+}
+
+std::string blind_words(const store::StudyState& state) {
+  return state.question ? "blind but for the registered question" : "not unblinded";
 }
 
 namespace {
@@ -100,6 +192,10 @@ Signer signer_for(const store::StudyStore& store, const std::filesystem::path& d
   if (const auto key = station_key_in(folders, store.commitment(), damaged)) {
     return key->signer();
   }
+  if (const std::filesystem::path last = remembered_key(database);
+      !last.empty() && is_there(last)) {
+    return key_of_database(store, database, last).signer();
+  }
   throw StoreError(one_line(database.string()) +
                    ": what is recorded is signed, and neither the database's folder nor this one "
                    "has its station's file; name it with --station-file, or the investigator's key "
@@ -147,6 +243,7 @@ design::StudyKey simulated_key(const design::Study& study,
 }
 
 void prepare_simulated_pack(const design::StudyKey& key, bool wait) {
+  static_cast<void>(design::plane_of(key.study));
   const design::PrepareReport prepared = design::prepare_pack(
       key, key.pack_folder, progress_bar("preparing"), {.statistics = false, .wait = wait});
   for (const std::string& warning : prepared.warnings) spdlog::warn("{}", warning);

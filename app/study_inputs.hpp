@@ -1,14 +1,18 @@
 /// \file What several commands read: the keys of databases, the packs of studies, subject models.
 #pragma once
 
+#include "analysis/outcomes.hpp"
 #include "app/heads.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "protocols/store/personal_data.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace touchtrial::app {
 
@@ -16,13 +20,37 @@ namespace touchtrial::app {
 [[nodiscard]] std::filesystem::path key_path_for(const std::filesystem::path& database,
                                                  const std::filesystem::path& given);
 
-/// Loads the key at key_path_for, and checks that it belongs to the database.
+/// The key that was named for a database file the last time that one was: its path, and nothing
+/// else, which the user's configuration folder has (touchtrial/keys.json, for the user alone).
+/// \return empty if none is known
+[[nodiscard]] std::filesystem::path remembered_key(const std::filesystem::path& database);
+
+/// The key that key_of_database loads: that of key_path_for, or, where no key is beside the
+/// database and none is given, the remembered one if it is there.
+[[nodiscard]] std::filesystem::path key_in_use(const std::filesystem::path& database,
+                                               const std::filesystem::path& given);
+
+/// Loads the key at key_in_use, checks that it belongs to the database, and remembers where it is.
 /// \param database  a file, or the address of a study, which has no key beside it
 /// \throws FileError if the key is missing or damaged
 /// \throws VerificationError, naming both files, if the key is not the database's
 [[nodiscard]] design::StudyKey key_of_database(const store::StudyStore& store,
                                                const std::filesystem::path& database,
                                                const std::filesystem::path& given);
+
+/// analysis::load_outcomes, with the wording of the program's own questions.
+[[nodiscard]] analysis::Outcomes outcomes_of(const store::StudyStore& store,
+                                             const design::StudyKey& key,
+                                             const std::string& participant = {});
+
+/// Every consent in the personal data beside a database; none beside a study on a server.
+/// \throws FileError if others may read the personal data
+/// \throws StoreError if they cannot be read
+[[nodiscard]] std::vector<store::PersonalRecord> consents_beside(
+    const std::filesystem::path& database);
+
+/// Why outcomes are not shown: "not unblinded", or that a look shows one answer alone.
+[[nodiscard]] std::string blind_words(const store::StudyState& state);
 
 /// Loads the file of a database's station. That a protected file is another station's is said
 /// before anybody is asked for its passphrase; of others, loading does not tell.
@@ -40,8 +68,9 @@ struct SigningFiles {
 };
 
 /// Lets somebody record on the file's chain, and signs what is recorded: with the investigator's
-/// key or the station's file that the user named; otherwise with the key beside the database, or
-/// with the file of the database's station in the folder of the database or in the current folder.
+/// key or the station's file that the user named; otherwise with the key beside the database, with
+/// the file of the database's station in the folder of the database or in the current folder, or
+/// with the remembered key.
 /// If the database has a head file, it is kept.
 /// \throws FileError if a named file is missing or damaged
 /// \throws StoreError with the remedy if no file is there, or it is not the database's
@@ -64,7 +93,7 @@ void save_station_files(const design::StudyKey& key, const design::PackPlace& pl
 
 /// Makes what is missing of the key's pack, with a progress bar, and prints the warnings.
 /// \param wait  whether to wait while another process prepares the pack
-/// \throws as prepare_pack
+/// \throws as plane_of and prepare_pack
 void prepare_simulated_pack(const design::StudyKey& key, bool wait = false);
 
 /// Refuses to overwrite another key, of which there may be no copy. The same key may stay when its

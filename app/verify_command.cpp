@@ -48,7 +48,7 @@ std::string head_of(const VerifyArguments& arguments) {
 /// The key file; empty for a study on a server, which has none beside it.
 fs::path key_for(const VerifyArguments& arguments) {
   if (arguments.key.empty() && collect::is_address(arguments.database.string())) return {};
-  return key_path_for(arguments.database, arguments.key);
+  return key_in_use(arguments.database, arguments.key);
 }
 
 int verify(const VerifyArguments& arguments) {

@@ -5,8 +5,8 @@ set(TOUCHTRIAL_UNHURRIED -O1 -Wno-maybe-uninitialized)
 option(TOUCHTRIAL_UNITY "Compile several files at a time: sooner done, but less is rebuilt alone" OFF)
 
 # How many files, of the product and of its tests.
-set(TOUCHTRIAL_BATCH 8)
-set(TOUCHTRIAL_TEST_BATCH 8)
+set(TOUCHTRIAL_BATCH 24)
+set(TOUCHTRIAL_TEST_BATCH 16)
 # Only a test that hangs takes so long: on a busy machine all of them may wait for their turn.
 set(TOUCHTRIAL_TEST_TIMEOUT_S 1800)
 

@@ -110,7 +110,7 @@ class PlaceTracker {
   what = what.substr(0, what.find("; last read"));
   refuse_byte(text, at, source,
               (what.empty() ? "is not JSON" : what) +
-                  "; give plain JSON, without comments or trailing commas");
+                  "; give JSON without trailing commas; // begins a comment");
 }
 
 /// The parser takes a zero byte for the end of the text, and ignores what follows.
@@ -191,7 +191,8 @@ JsonValue parse_strict_json(std::string_view text, const std::string& source) {
     return true;
   };
   try {
-    auto document = std::make_shared<const json>(json::parse(text.begin(), text.end(), follow));
+    auto document = std::make_shared<const json>(json::parse(
+        text.begin(), text.end(), follow, /*allow_exceptions=*/true, /*ignore_comments=*/true));
     const json* root = document.get();
     return JsonValue(std::make_shared<const JsonValue::Node>(
         JsonValue::Node{std::move(document), root, source, ""}));
@@ -200,6 +201,14 @@ JsonValue parse_strict_json(std::string_view text, const std::string& source) {
   } catch (const json::out_of_range&) {
     refuse_at(source, tracker.pointer(), "is a number too large to hold; give a smaller one");
   }
+}
+
+std::string without_comments(std::string_view text) {
+  if (json::accept(text)) return std::string(text);
+  return nlohmann::ordered_json::parse(text, nullptr, /*allow_exceptions=*/true,
+                                       /*ignore_comments=*/true)
+             .dump(2) +
+         "\n";
 }
 
 void JsonValue::refuse(const std::string& what) const {

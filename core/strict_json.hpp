@@ -99,15 +99,28 @@ class JsonObject {
   JsonValue place_;
 };
 
-/// Parses plain JSON (RFC 8259). Besides errors of grammar, it refuses a key that appears twice in
-/// an object, nesting deeper than kMaxJsonDepth, numbers that exceed a double, and zero bytes.
+/// Parses JSON (RFC 8259) with comments: from // to the end of the line, or between /* and */.
+/// Besides errors of grammar, it refuses a key that appears twice in an object, nesting deeper than
+/// kMaxJsonDepth, numbers that exceed a double, and zero bytes.
 /// \param source  the file's name, for messages
 /// \return the whole document
 /// \throws StudyError with line and column, or with the JSON pointer
 [[nodiscard]] JsonValue parse_strict_json(std::string_view text, const std::string& source);
 
+/// A document for readers that know no comments.
+/// \param text  a document that parse_strict_json has read
+/// \return the same text if it has no comment, else the document written anew
+[[nodiscard]] std::string without_comments(std::string_view text);
+
 /// A number as JSON writes it: the shortest form, with a decimal point in every locale.
 [[nodiscard]] std::string number_text(double number);
+
+/// A document as files and commands have it: indented, ending with a line feed. Bytes that are not
+/// UTF-8 become replacement characters.
+template <typename Json>
+[[nodiscard]] std::string json_text(const Json& document) {
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 /// A user's text for a message: in quotes, on one line, cut after about 60 bytes.
 [[nodiscard]] std::string in_quotes(std::string_view text);

@@ -31,11 +31,6 @@ struct PlanePlacement {
 }
 ///@}
 
-[[nodiscard]] constexpr Vec3 to_plane_position_mm(Vec3 device_mm,
-                                                  const PlanePlacement& placement) noexcept {
-  return to_plane_direction(device_mm - placement.origin_mm, placement.orientation);
-}
-
 /// A device as the servo needs it: the same device in the plane frame. Lengths and magnitudes of
 /// forces stay the same. Threads as HapticDevice.
 class PlacedDevice final : public HapticDevice {
@@ -47,7 +42,8 @@ class PlacedDevice final : public HapticDevice {
   [[nodiscard]] DeviceInfo info() const override { return device_.info(); }
   [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
     const DeviceStatus status = device_.read(sample);
-    sample.position_mm = to_plane_position_mm(sample.position_mm, placement_);
+    sample.position_mm =
+        to_plane_direction(sample.position_mm - placement_.origin_mm, placement_.orientation);
     sample.velocity_mm_s = to_plane_direction(sample.velocity_mm_s, placement_.orientation);
     return status;
   }

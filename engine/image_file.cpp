@@ -51,6 +51,17 @@ GreyImage read_grey_image(const std::filesystem::path& path) {
   return decode_grey_image(read_file(path), path.string());
 }
 
+std::pair<int, int> size_of_image(const std::filesystem::path& path) {
+  try {
+    const MappedFile file(path);
+    if (kind_of_image(file.bytes()) == ImageKind::png) return size_of_png(file.bytes());
+  } catch (const ImageFault&) {
+    // Reading it says what is wrong.
+  }
+  const GreyImage image = read_grey_image(path);
+  return {image.width(), image.height()};
+}
+
 GreyImage decode_grey_image(ByteView file, const std::string& name) {
   try {
     return decode_file(file);

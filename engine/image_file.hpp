@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 namespace touchtrial::engine {
 
@@ -26,7 +27,12 @@ inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
 /// must not become shorter meanwhile; its cost depends on the picture, not on the size of the file.
 [[nodiscard]] GreyImage read_grey_image(const std::filesystem::path& path);
 
-/// The same from a file's bytes.
+/// Width and height of a picture, pixels. Takes a moment for a PNG, whose header alone is read, and
+/// as long as read_grey_image for other kinds.
+/// \throws as read_grey_image
+[[nodiscard]] std::pair<int, int> size_of_image(const std::filesystem::path& path);
+
+/// The same as read_grey_image from a file's bytes.
 /// \param name  stands for the path in messages
 [[nodiscard]] GreyImage decode_grey_image(ByteView file, const std::string& name);
 

@@ -89,6 +89,14 @@ const design::Study& recovered_study() {
   return study;
 }
 
+/// Adds a bulk transfer without the FTDI's status bytes.
+void add_payload(ByteView transfer, std::vector<std::uint8_t>& payload) {
+  for (std::size_t at = 0; at < transfer.size(); ++at) {
+    if (at % device::falcon::kUsbPacketSize >= device::falcon::kFtdiStatusSize)
+      payload.push_back(transfer[at]);
+  }
+}
+
 /// Counts replies at every position, not only where the stream looks.
 std::uint64_t replies_in(ByteView payload) {
   std::uint64_t found = 0;
@@ -190,9 +198,7 @@ void read_as_falcon(ByteView bytes) {
   while (!bytes.empty()) {
     const std::size_t size = std::min<std::size_t>(bytes[0], bytes.size() - 1);
     const ByteView transfer = bytes.subspan(1, size);
-    std::vector<std::uint8_t> part(size);
-    part.resize(device::falcon::ftdi_payload(transfer, part));
-    payload.insert(payload.end(), part.begin(), part.end());
+    add_payload(transfer, payload);
     if (stream.push_transfer(transfer) > 0) check_pose(stream.newest());
     bytes = bytes.subspan(1 + size);
   }

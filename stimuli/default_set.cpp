@@ -78,6 +78,7 @@ std::string file_of(std::string_view label, int exemplar) {
 std::vector<StimulusEntry> chosen_entries(const StimuliChoice& choice) {
   std::vector<StimulusEntry> entries;
   for (const StimulusRecipe& recipe : stimulus_recipes()) {
+    if (choice.kind && recipe.kind != *choice.kind) continue;
     const bool one_is_enough = recipe.kind == StimulusKind::flat;
     const int wanted =
         one_is_enough ? 1 : choice.exemplars.value_or(shipped_exemplars(recipe.kind));

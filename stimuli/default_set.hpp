@@ -60,9 +60,11 @@ struct StimuliChoice {
   int size_px = kDefaultStimulusSizePx;
   /// Exemplars of each label; empty: as many as the shipped set has. A flat label has one only.
   std::optional<int> exemplars;
+  /// Pictures of this kind alone; empty: of every kind.
+  std::optional<StimulusKind> kind{};
 };
 
-/// Makes every recipe and writes it as <label>.png, further exemplars as
+/// Makes every recipe of the chosen kind and writes it as <label>.png, further exemplars as
 /// exemplars/<label>-<number>.png, and manifest.json last. Each file replaces an older one of the
 /// same set only when it is complete. Then removes the pictures that only the older set had, unless
 /// somebody has changed them. Other files in the folder stay.

@@ -1,6 +1,8 @@
 #include "analysis/exports/dataset.hpp"
 
-#include "analysis/session_rules.hpp"
+#include "analysis/collection.hpp"
+#include "analysis/quality.hpp"
+#include "analysis/results.hpp"
 #include "analysis/text_figures.hpp"
 
 #include <algorithm>
@@ -21,6 +23,21 @@ using Meanings = std::map<std::string, ColumnMeaning>;
 
 ColumnMeaning yes_or_no(std::string description) {
   return {std::move(description), "", {{"0", "no"}, {"1", "yes"}}};
+}
+
+Levels incident_levels() {
+  return {{"interrupted", "a presentation was broken off"},
+          {"break-taken", "a break that the study prescribes"},
+          {"paused", "the experimenter paused the session"},
+          {"resumed", "the session went on"},
+          {"stopped", "the session was ended early"},
+          {"noted", "the experimenter took a note"},
+          {"deviated", "something differed from what the study asks for"},
+          {"block-restarted", "a block was begun anew"},
+          {"participant-noted", "a note or deviation after the session"},
+          {"participant-excluded", "the session was excluded"},
+          {"participant-replaced", "somebody else took the participant's place"},
+          {"participant-withdrawn", "the participant withdrew"}};
 }
 
 Meanings of_trials() {
@@ -123,6 +140,36 @@ Meanings of_collection() {
       {"servo_hz", {"Servo rate that was asked for", "Hz"}},
       {"scheduling", {"Scheduling that the servo's thread obtained"}},
       {"visual", yes_or_no("Whether textures were shown on a screen instead of felt")},
+      {"interruptions", {"Presentations that were interrupted, repeated or not"}},
+      {"pauses", {"Times that the session was paused"}},
+      {"notes", {"Notes that were taken during the session"}},
+  };
+}
+
+Meanings of_what_was_said() {
+  return {
+      {"questionnaire", {"Name of the questionnaire"}},
+      {"question", {"Id of the question"}},
+      {"question_kind",
+       {"What answers the question",
+        "",
+        {{"choice", "one of several options"}, {"number", "a number"}, {"text", "words"}}}},
+      {"wording", {"The question as it was asked"}},
+      {"answer", {"A number, or the place of the chosen option, from 0"}},
+      {"words", {"Text of the chosen option, or what was typed"}},
+      {"event", {"Place of the event in its chain"}},
+      {"incident", {"What happened", "", incident_levels()}},
+      {"at_s", {"Time since the session's opening", "s"}},
+      {"onset", {"Time since the session's opening", "s"}},
+      {"duration", {"Not recorded", "s"}},
+      {"code",
+       {"Why: the reason of an interruption, the program's reason for a stop, the code of a "
+        "deviation, what a session was resumed after"}},
+      {"safety_fault", {"Fault that the safety chain found"}},
+      {"device_fault", {"Fault that the device reported"}},
+      {"text", {"What was typed"}},
+      {"consent", {"Number of the participant's consent, from 1"}},
+      {"consent_version", {"Version of the consent form that was signed"}},
   };
 }
 
@@ -158,6 +205,7 @@ Meanings all_meanings() {
   all.merge(of_sessions());
   all.merge(of_collection());
   all.merge(of_participants());
+  all.merge(of_what_was_said());
   all.merge(of_traces());
   return all;
 }
@@ -211,6 +259,15 @@ std::string about_study(const DatasetSource& study) {
             "sealed, and practice, lead-ins and catch trials cannot be told from scored "
             "trials.\n\n";
   return text;
+}
+
+std::string report_in_dataset(const DatasetSource& study, Typed typed) {
+  if (study.outcomes == nullptr) return quality_json(make_quality(study.store));
+  Outcomes outcomes = *study.outcomes;
+  if (typed == Typed::left_out) {
+    for (QuestionAnswer& answer : outcomes.answers) answer.words.clear();
+  }
+  return analysis_of(outcomes.design).results(outcomes, {})->json();
 }
 
 const ColumnMeaning& meaning_of(const std::string& column) {

@@ -2,6 +2,7 @@
 /// chooses, labels, and the meanings of columns.
 #pragma once
 
+#include "analysis/exports/said_tables.hpp"
 #include "analysis/outcomes.hpp"
 
 #include <filesystem>
@@ -26,6 +27,8 @@ struct DatasetOptions {
   bool traces = false;               ///< includes positions and forces of every trial
   bool stimuli = false;              ///< includes the study's images
   std::filesystem::path database{};  ///< a database to copy into the dataset; empty: none
+  Typed typed = Typed::left_out;     ///< answers in words, notes and reasons, which may name people
+  std::vector<store::PersonalRecord> consents{};  ///< of the personal data, if they are known
   std::function<void(int done, int of)> progress{};
 };
 
@@ -40,6 +43,10 @@ struct DatasetOptions {
 /// The part of a README that every format has: how the data were collected, and what is still
 /// sealed.
 [[nodiscard]] std::string about_study(const DatasetSource& study);
+
+/// The report as JSON; before unblinding, the report on quality.
+/// \param typed  left_out: without answers in words
+[[nodiscard]] std::string report_in_dataset(const DatasetSource& study, Typed typed);
 
 /// What an exported column means; docs/data-dictionary.md, "Exports", says the same.
 struct ColumnMeaning {

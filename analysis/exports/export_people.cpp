@@ -2,11 +2,13 @@
 
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/export_tables.hpp"
+#include "analysis/exports/said_tables.hpp"
 #include "analysis/exports/study_tables.hpp"
 #include "analysis/exports/trial_tables.hpp"
+#include "analysis/incidents.hpp"
 #include "analysis/sealed_sessions.hpp"
-#include "analysis/verification/chain_notes.hpp"
 #include "core/errors.hpp"
+#include "core/utc.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
@@ -53,12 +55,15 @@ DataTable visits_of(const store::StudyStore& store, const std::vector<store::Ses
   return table;
 }
 
-DataTable personal_table(const store::PersonalRecord& person) {
+/// One row for each consent, with what was given then.
+DataTable personal_table(const std::vector<store::PersonalRecord>& consents) {
   DataTable table{{"participant", "consent_version", "consented_utc", "age", "gender", "contact"},
                   {}};
-  table.rows.push_back({person.participant, person.consent_version, person.consented_utc,
-                        person.age ? DataCell(std::int64_t{*person.age}) : DataCell(),
-                        person.gender, person.contact});
+  for (const store::PersonalRecord& one : consents) {
+    table.rows.push_back({one.participant, one.consent_version, one.consented_utc,
+                          one.age ? DataCell(std::int64_t{*one.age}) : DataCell(), one.gender,
+                          one.contact});
+  }
   return table;
 }
 
@@ -67,50 +72,9 @@ DataTable personal_table(const store::PersonalRecord& person) {
 constexpr std::array kSafetyKinds = {EventKind::interrupted, EventKind::stopped,
                                      EventKind::deviated};
 
-/// What is told of one event.
-struct SafetyFacts {
-  std::optional<int> trial{};
-  std::string code{};
-  std::string safety_fault{};
-  std::string device_fault{};
-  std::string text{};  ///< empty also if it does not open
-};
-
-/// \return nothing if the event does not belong to the safety record
-std::optional<SafetyFacts> facts_of(const store::Event& event) {
-  switch (event.kind) {
-    case EventKind::interrupted: {
-      store::TrialBody body = store::trial_from_json(event.body);
-      return SafetyFacts{.trial = body.trial,
-                         .code = std::move(body.reason),
-                         .safety_fault = std::move(body.safety_fault),
-                         .device_fault = std::move(body.device_fault)};
-    }
-    case EventKind::stopped: {
-      store::StopBody body = store::stop_from_json(event.body);
-      return SafetyFacts{.code = std::move(body.code), .text = std::move(body.text)};
-    }
-    case EventKind::deviated: {
-      store::DeviationBody body = store::deviation_from_json(event.body);
-      return SafetyFacts{.code = std::move(body.code), .text = std::move(body.text)};
-    }
-    case EventKind::participant_noted: {
-      store::NoteBody body = store::note_from_json(event.body);
-      if (body.code.empty()) return std::nullopt;  // a remark
-      return SafetyFacts{.code = std::move(body.code), .text = std::move(body.text)};
-    }
-    case EventKind::participant_excluded: {
-      store::ParticipantBody body = store::participant_from_json(event.body);
-      return SafetyFacts{.code = body.after_outcomes ? "after-outcomes" : "",
-                         .text = std::move(body.reason)};
-    }
-    case EventKind::participant_replaced:
-      return SafetyFacts{.text = store::replacement_from_json(event.body).reason};
-    case EventKind::participant_withdrawn:
-      return SafetyFacts{.text = store::withdrawal_from_json(event.body).reason};
-    default:
-      return std::nullopt;
-  }
+/// A remark without a code is no part of the safety record.
+bool is_of_safety(const Incident& incident) {
+  return incident.kind != EventKind::participant_noted || !incident.code.empty();
 }
 
 /// Over which presentations a session's largest force was found.
@@ -158,7 +122,7 @@ class SafetyRecord {
                     {}};
     for (const auto& [number, one] : sessions_) {
       table.rows.push_back({one.row.participant, std::int64_t{number},
-                            std::string(text_of(one.row.state)), flag(one.row.excluded),
+                            std::string(name_of(one.row.state)), flag(one.row.excluded),
                             flag(one.row.withdrawn), flag(one.row.erased), one.row.device,
                             one.interruptions, one.stops, one.deviations,
                             one.largest_force_n ? DataCell(*one.largest_force_n) : DataCell(),
@@ -201,20 +165,17 @@ class SafetyRecord {
     if (found == sessions_.end()) return;
     Session& session = found->second;
     const store::Event event = readable(stored, session.row);
-    const std::optional<SafetyFacts> facts = facts_of(event);
-    if (!facts) return;
+    const std::optional<Incident> incident = incident_of(event, session.row);
+    if (!incident || !is_of_safety(*incident)) return;
     session.interruptions += event.kind == EventKind::interrupted ? 1 : 0;
     session.stops += event.kind == EventKind::stopped ? 1 : 0;
     session.deviations +=
         event.kind == EventKind::deviated || event.kind == EventKind::participant_noted ? 1 : 0;
-    const bool on_file = event.session == 0;
-    events_.rows.push_back({session.row.participant, std::int64_t{session.row.session},
-                            event.sequence, std::string(name_of(event.kind)),
-                            on_file || !event.sealed.empty() ? DataCell() : DataCell(event.at),
-                            on_file ? utc_cell(event.at, session.row.simulated) : DataCell(),
-                            facts->trial ? DataCell(std::int64_t{*facts->trial}) : DataCell(),
-                            facts->code, facts->safety_fault, facts->device_fault, facts->text,
-                            flag(session.row.simulated)});
+    std::vector<DataCell>& row = events_.rows.emplace_back(incident_cells(*incident));
+    const DataCell utc =
+        incident->utc ? utc_cell(*incident->utc, session.row.simulated) : DataCell();
+    row.insert(row.begin() + 5, utc);
+    row.push_back(flag(session.row.simulated));
   }
 
   /// With its text, if the safety key opens it. Interruptions are never opened: their sealed part
@@ -237,11 +198,11 @@ class SafetyRecord {
 
 std::vector<std::filesystem::path> export_participant(
     const DatasetSource& study, const std::string& participant,
-    const std::optional<store::PersonalRecord>& person, const std::filesystem::path& folder) {
+    const std::vector<store::PersonalRecord>& consents, const std::filesystem::path& folder) {
   const store::StudyStore& store = study.store;
   const store::StudyCommitment& commitment = store.commitment();
   const std::vector<store::SessionRow> rows = store.sessions_of(participant);
-  if (rows.empty() && !person) {
+  if (rows.empty() && consents.empty()) {
     throw StoreError(one_line("participant " + participant +
                               " has no session and no personal data; check the participant id"));
   }
@@ -262,11 +223,13 @@ std::vector<std::filesystem::path> export_participant(
   add("deviations.csv",
       rows_with(deviations_table(collection, commitment.simulated), "participant", id));
   add("servo.csv", rows_with(servo_table(collection, commitment.simulated), "session", sessions));
-  if (person) {
-    files.push_back(text_file(prefix + "personal.csv", csv_text(personal_table(*person)),
-                              FileMode::owner_only));
+  const DataTable incidents = rows_with(incidents_table(store, outcomes), "participant", id);
+  files.push_back(said_file(prefix + "incidents.csv", incidents, outcomes.has_value()));
+  if (!consents.empty()) {
+    files.push_back(said_file(prefix + "personal.csv", personal_table(consents), true));
   }
   if (outcomes) {
+    files.push_back(said_file(prefix + "answers.csv", answers_table(*outcomes), true));
     add("unscored_trials.csv", unscored_table(*outcomes));
     for (ExportFile& file : event_files(store, *study.key, *outcomes, prefix)) {
       files.push_back(std::move(file));

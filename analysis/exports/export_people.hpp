@@ -6,25 +6,24 @@
 #include "protocols/store/personal_data.hpp"
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace touchtrial::analysis {
 
 /// Writes what a study holds about one participant: the rows of participants.csv, trials.csv,
-/// deviations.csv and servo.csv, the times of the sessions, and the personal data. With outcomes
-/// also the unscored trials and the events with flight records. The id is the beginning of every
-/// file's name.
+/// deviations.csv, incidents.csv and servo.csv, the times of the sessions, and every consent with
+/// the personal data. With outcomes also the unscored trials, answers to questions, and the events
+/// with flight records. The id is the beginning of every file's name.
 /// \param study  with outcomes: load_outcomes of this participant; without, only what is in clear
-/// \param person  empty: none is recorded
+/// \param consents  of this participant; empty: none is recorded
 /// \return the files, in the order written
 /// \throws StoreError if the participant has no session and no personal data
 /// \throws VerificationError, naming the event, if a sealed part does not open
 /// \throws FileError if the folder or a file cannot be written
 std::vector<std::filesystem::path> export_participant(
     const DatasetSource& study, const std::string& participant,
-    const std::optional<store::PersonalRecord>& person, const std::filesystem::path& folder);
+    const std::vector<store::PersonalRecord>& consents, const std::filesystem::path& folder);
 
 /// Writes safety_sessions.csv and safety_events.csv: stops, faults, largest forces, reasons and
 /// deviations of all participants, also of those whose data were erased. Never holds an outcome.

@@ -4,8 +4,6 @@
 #include "analysis/exports/study_tables.hpp"
 #include "analysis/exports/trial_tables.hpp"
 #include "analysis/json_figures.hpp"
-#include "analysis/quality.hpp"
-#include "analysis/results.hpp"
 
 #include <algorithm>
 
@@ -65,7 +63,8 @@ std::string psych_ds_readme(const DatasetSource& study) {
   return "# " + study.store.commitment().study + "\n\n" + about_study(study) +
          "`data/*_description-trials_data.csv` has one row a trial, its key the columns `session` "
          "and `trial`; `data/*_description-participants_data.csv` one row a session, its key "
-         "`session`. `dataset_description.json` says what each column means.\n";
+         "`session`; the others one row for each answer to a question, incident or consent. "
+         "`dataset_description.json` says what each column means.\n";
 }
 
 /// The table of participants.csv without participants whose data were erased. Columns that have the
@@ -114,10 +113,13 @@ std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
   add_data("trials", trials_table(study.store, outcomes));
   if (outcomes) add_data("unscored", unscored_table(*outcomes));
   add_data("participants", people_table(study.store, collection_of(study.store, outcomes)));
-  files.push_back(outcomes
-                      ? text_file("results/report.json",
-                                  analysis_of(outcomes->design).results(*outcomes, {})->json())
-                      : text_file("results/quality.json", quality_json(make_quality(study.store))));
+  if (outcomes) add_data("answers", answers_table(*outcomes, options.typed));
+  add_data("incidents", incidents_table(study.store, outcomes, options.typed));
+  if (!options.consents.empty()) {
+    add_data("consents", consents_table(study.store, options.consents));
+  }
+  files.push_back(text_file(outcomes ? "results/report.json" : "results/quality.json",
+                            report_in_dataset(study, options.typed)));
   files.push_back(text_file("README.md", psych_ds_readme(study)));
   files.push_back(text_file("CHANGES.md", changes_text(commitment)));
   files.push_back(text_file(".psychds-ignore", std::string(kExportMark) + "\n"));

@@ -9,8 +9,8 @@
 
 namespace touchtrial::analysis {
 
-/// Uses only `authors` and `license` of the options. Before unblinding, the trials contain no more
-/// than those of the CSV export.
+/// Uses only `authors`, `license`, `typed` and `consents` of the options. Before unblinding, the
+/// trials contain no more than those of the CSV export.
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written, or the folder holds files of
 /// something else

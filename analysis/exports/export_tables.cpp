@@ -1,11 +1,13 @@
 #include "analysis/exports/export_tables.hpp"
 
 #include "analysis/exports/export_folder.hpp"
+#include "analysis/exports/said_tables.hpp"
 #include "analysis/exports/study_tables.hpp"
 #include "analysis/exports/trial_tables.hpp"
 #include "analysis/json_figures.hpp"
 #include "analysis/results.hpp"
 #include "analysis/sealed_sessions.hpp"
+#include "core/strict_json.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <array>
@@ -98,7 +100,8 @@ Json rows_json(const DataTable& table) {
 
 std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
                                               const std::optional<Outcomes>& outcomes,
-                                              const std::filesystem::path& folder) {
+                                              const std::filesystem::path& folder,
+                                              const std::vector<store::PersonalRecord>& consents) {
   const store::StudyCommitment& commitment = store.commitment();
   const Collection collection = collection_of(store, outcomes);
   std::vector<ExportFile> files;
@@ -109,6 +112,7 @@ std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
   add("participants.csv", participants_table(store, collection));
   add("deviations.csv", deviations_table(collection, commitment.simulated));
   add("servo.csv", servo_table(collection, commitment.simulated));
+  for (ExportFile& file : said_files(store, outcomes, consents)) files.push_back(std::move(file));
   if (outcomes) {
     for (const auto& [file, table] : analysis_of(outcomes->design).tables(*outcomes)) {
       add(file, table);
@@ -117,9 +121,19 @@ std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
     add("looks.csv", looks_table(*outcomes));
   }
   add("study.csv", study_table(store, outcomes, collection));
-  if (outcomes) files.push_back(text_file("study_file.json", outcomes->design.text));
+  if (outcomes)
+    files.push_back(text_file("study_file.json", without_comments(outcomes->design.text)));
   files.push_back(text_file("export.json", contents_json(commitment, !outcomes, files)));
   return write_export(folder, {commitment.study, commitment.study_id, "csv"}, files);
+}
+
+std::vector<std::filesystem::path> export_said(const store::StudyStore& store,
+                                               const Outcomes& outcomes,
+                                               const std::filesystem::path& folder,
+                                               const std::vector<store::PersonalRecord>& consents) {
+  const store::StudyCommitment& commitment = store.commitment();
+  return write_export(folder, {commitment.study, commitment.study_id, "r, what was said"},
+                      said_files(store, outcomes, consents));
 }
 
 std::vector<ExportFile> event_files(const store::StudyStore& store, const design::StudyKey& key,
@@ -166,7 +180,8 @@ std::vector<std::filesystem::path> export_events(const store::StudyStore& store,
 
 std::filesystem::path export_json(const store::StudyStore& store,
                                   const std::optional<Outcomes>& outcomes,
-                                  const std::filesystem::path& folder) {
+                                  const std::filesystem::path& folder,
+                                  const std::vector<store::PersonalRecord>& consents) {
   const store::StudyCommitment& commitment = store.commitment();
   Json document{{"study", commitment.study}, {"protocol", commitment.protocol}};
   put_stamp(document, commitment.simulated);
@@ -182,8 +197,12 @@ std::filesystem::path export_json(const store::StudyStore& store,
   document["servo"] = rows_json(servo_table(collection, commitment.simulated));
   document["trials"] = rows_json(trials_table(store, outcomes));
   if (outcomes) document["unscored_trials"] = rows_json(unscored_table(*outcomes));
+  if (outcomes) document["answers"] = rows_json(answers_table(*outcomes));
+  document["incidents"] = rows_json(incidents_table(store, outcomes));
+  if (!consents.empty()) document["consents"] = rows_json(consents_table(store, consents));
+  const FileMode mode = outcomes ? FileMode::owner_only : FileMode::everyone;
   return write_export(folder, {commitment.study, commitment.study_id, "json"},
-                      {text_file("study.json", json_text(document))})
+                      {text_file("study.json", json_text(document), mode)})
       .front();
 }
 

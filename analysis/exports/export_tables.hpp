@@ -4,6 +4,7 @@
 
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/outcomes.hpp"
+#include "protocols/store/personal_data.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -12,17 +13,26 @@
 
 namespace touchtrial::analysis {
 
-/// Writes trials.csv, participants.csv, deviations.csv, servo.csv and study.csv. With outcomes it
-/// also writes the tables of the protocol's analysis (for example, confusion_<method>.csv for each
-/// presented method), unscored_trials.csv and study_file.json. The last file is export.json, which
-/// lists the others and says whether they are simulated. Creates the folder if necessary; files
-/// that no export wrote stay. Equal studies give equal bytes.
+/// Writes trials.csv, participants.csv, deviations.csv, servo.csv, said_files and study.csv. With
+/// outcomes it also writes the tables of the protocol's analysis (for example,
+/// confusion_<method>.csv for each presented method), unscored_trials.csv and study_file.json. The
+/// last file is export.json, which lists the others and says whether they are simulated. Creates
+/// the folder if necessary; files that no export wrote stay. Equal studies give equal bytes.
 /// \param outcomes  of this store; nothing before unblinding
+/// \param consents  of the personal data, if they are known
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written
-std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
-                                              const std::optional<Outcomes>& outcomes,
-                                              const std::filesystem::path& folder);
+std::vector<std::filesystem::path> export_csv(
+    const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
+    const std::filesystem::path& folder, const std::vector<store::PersonalRecord>& consents = {});
+
+/// Writes said_files beside those of the protocol's `export_model`.
+/// \return the files, in the order written
+/// \throws FileError if the folder or a file cannot be written
+std::vector<std::filesystem::path> export_said(const store::StudyStore& store,
+                                               const Outcomes& outcomes,
+                                               const std::filesystem::path& folder,
+                                               const std::vector<store::PersonalRecord>& consents);
 
 /// Writes events.csv and one file for each flight record. Contains the sessions whose outcomes may
 /// be shown, without those of participants whose data were erased. Requires unblinding, because the
@@ -50,6 +60,7 @@ std::vector<std::filesystem::path> export_events(const store::StudyStore& store,
 /// \return the file
 std::filesystem::path export_json(const store::StudyStore& store,
                                   const std::optional<Outcomes>& outcomes,
-                                  const std::filesystem::path& folder);
+                                  const std::filesystem::path& folder,
+                                  const std::vector<store::PersonalRecord>& consents = {});
 
 }  // namespace touchtrial::analysis

@@ -1,8 +1,13 @@
 #include "analysis/exports/study_tables.hpp"
 
-#include "analysis/session_rules.hpp"
+#include "analysis/collection.hpp"
+#include "core/utc.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
+#include <set>
+#include <utility>
 
 #include <fmt/ranges.h>
 
@@ -19,6 +24,11 @@ template <int PracticeRecord::*kNumber>
 DataCell practised(const SessionRecord& record) {
   if (!record.practice) return std::monostate{};
   return std::int64_t{(*record.practice).*kNumber};
+}
+
+template <int SessionRecord::*kNumber>
+DataCell counted_in(const SessionRecord& record) {
+  return std::int64_t{record.*kNumber};
 }
 
 template <std::string store::StationRecord::*kText>
@@ -55,11 +65,10 @@ constexpr RecordColumn kRecordColumns[] = {
        if (!record.practice) return std::monostate{};
        return flag(record.practice->passed);
      }},
-    {"resumed",
-     [](const SessionRecord& record) -> DataCell { return std::int64_t{record.resumed}; }},
+    {"resumed", counted_in<&SessionRecord::resumed>},
     {"stop_reason", [](const SessionRecord& record) -> DataCell { return record.stop_reason; }},
     {"exclusion_reason",
-     [](const SessionRecord& record) -> DataCell { return record.exclusion_reason; }},
+     [](const SessionRecord& record) -> DataCell { return exclusion_words(record); }},
     {"replacement_reason",
      [](const SessionRecord& record) -> DataCell { return record.replacement_reason; }},
     {"withdrawal_reason",
@@ -86,6 +95,15 @@ constexpr RecordColumn kRecordColumns[] = {
        if (!record.station) return std::monostate{};
        return flag(record.station->visual);
      }},
+    {"interruptions", counted_in<&SessionRecord::interruptions>},
+    {"pauses", counted_in<&SessionRecord::pauses>},
+    {"notes", counted_in<&SessionRecord::notes>},
+    {"handedness_score",
+     [](const SessionRecord& record) -> DataCell {
+       if (!record.handedness_score) return std::monostate{};
+       return *record.handedness_score;
+     },
+     true},
 };
 
 void add_record(std::vector<DataCell>& row, const SessionRecord& record, bool unblinded) {
@@ -108,19 +126,19 @@ std::string decided_after_look(const LookRecord& looked, int session) {
   return fmt::format("{}", fmt::join(decided, "; "));
 }
 
-std::vector<DataCell> session_cells(const store::SessionRow& row, const store::StudyStore& store,
-                                    const store::StudyState& state, const LookRecord& looked) {
+std::vector<DataCell> session_cells(const store::SessionRow& row, const store::StudyState& state,
+                                    const LookRecord& looked, const std::set<int>& counted) {
   const bool shown = !state.unblinded || state.reports(row.session);
   return {row.participant,
           std::int64_t{row.session},
           std::int64_t{row.enrolment},
-          std::string(text_of(row.state)),
+          std::string(name_of(row.state)),
           flag(row.excluded),
           flag(row.withdrawn),
           flag(row.erased),
           flag(row.pilot),
           flag(row.simulated),
-          flag(shown && session_counts(row, store.commitment())),
+          flag(counted.contains(row.session)),
           row.device,
           row.replaced_by,
           decided_after_look(looked, row.session),
@@ -139,6 +157,8 @@ void add_prescription(DataTable& study, const Prescription& prescription) {
   add("sight", prescription.sight);
   add("masking_wanted", flag(prescription.masking_wanted));
   add("masking_dbfs", prescription.masking_dbfs);
+  if (prescription.visits > 1) add("visits", std::int64_t{prescription.visits});
+  for (const std::string& group : prescription.groups) add("group", group);
 }
 
 void add_labels(DataTable& table, const Outcomes& outcomes) {
@@ -192,11 +212,38 @@ DataTable participants_table(const store::StudyStore& store, const Collection& c
   for (const RecordColumn& column : kRecordColumns) {
     if (state.unblinded || !column.after_unblinding) table.columns.emplace_back(column.name);
   }
-  for (const store::SessionRow& row : store.sessions()) {
-    table.rows.push_back(session_cells(row, store, state, looked));
+  const std::vector<store::SessionRow> rows = store.sessions();
+  std::vector<store::SessionRow> shown;
+  std::ranges::copy_if(rows, std::back_inserter(shown), [&](const store::SessionRow& row) {
+    return !state.unblinded || state.reports(row.session);
+  });
+  const std::set<int> counted = counted_sessions(shown, store.commitment());
+  for (const store::SessionRow& row : rows) {
+    table.rows.push_back(session_cells(row, state, looked, counted));
     add_record(table.rows.back(), *records.at(row.session), state.unblinded);
   }
+  add_visit_and_group(table, collection);
   return table;
+}
+
+void add_visit_and_group(DataTable& table, const Collection& collection) {
+  const bool has_visits = collection.prescription.visits > 1;
+  const bool has_groups = !collection.prescription.groups.empty();
+  if (has_visits) table.columns.emplace_back("visit");
+  if (has_groups) table.columns.emplace_back("group");
+  if (!has_visits && !has_groups) return;
+  std::map<std::int64_t, const SessionRecord*> records;
+  for (const SessionRecord& record : collection.sessions) records[record.row.session] = &record;
+  const auto column = std::ranges::find(table.columns, "session") - table.columns.begin();
+  for (std::vector<DataCell>& row : table.rows) {
+    const SessionRecord& own =
+        *records.at(std::get<std::int64_t>(row[static_cast<std::size_t>(column)]));
+    const auto add = [&](DataCell cell) {
+      row.push_back(own.row.erased ? DataCell() : std::move(cell));
+    };
+    if (has_visits) add(std::int64_t{own.row.visit});
+    if (has_groups) add(own.group.empty() ? DataCell() : DataCell(own.group));
+  }
 }
 
 DataTable deviations_table(const Collection& collection, bool simulated) {
@@ -228,7 +275,7 @@ DataTable looks_table(const Outcomes& outcomes) {
   DataTable table{{"at", "kind", "participants", "participant", "station", "reason", "simulated"},
                   {}};
   for (const Look& look : outcomes.looked.looks) {
-    table.rows.push_back({iso_date(look.at), name_of(look.kind), std::int64_t{look.participants},
+    table.rows.push_back({utc_text(look.at), name_of(look.kind), std::int64_t{look.participants},
                           look.participant, std::int64_t{look.station}, look.reason,
                           flag(outcomes.simulated)});
   }
@@ -237,18 +284,6 @@ DataTable looks_table(const Outcomes& outcomes) {
 
 Collection collection_of(const store::StudyStore& store, const std::optional<Outcomes>& outcomes) {
   return outcomes ? outcomes->collection : load_collection(store);
-}
-
-const char* text_of(store::SessionState state) {
-  switch (state) {
-    case store::SessionState::completed:
-      return "completed";
-    case store::SessionState::stopped:
-      return "stopped";
-    case store::SessionState::open:
-      break;
-  }
-  return "open";
 }
 
 }  // namespace touchtrial::analysis

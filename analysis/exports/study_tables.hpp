@@ -23,6 +23,10 @@ namespace touchtrial::analysis {
 [[nodiscard]] DataTable participants_table(const store::StudyStore& store,
                                            const Collection& collection);
 
+/// Adds `visit` to a table with a column `session`, and `group`, if the study has several visits or
+/// groups. Without a group that may be shown, the cell is empty.
+void add_visit_and_group(DataTable& table, const Collection& collection);
+
 /// One row for each deviation from the protocol, ordered by session and then by when it was noted.
 [[nodiscard]] DataTable deviations_table(const Collection& collection, bool simulated);
 
@@ -35,8 +39,5 @@ namespace touchtrial::analysis {
 /// The collection of the outcomes; without outcomes, the collection that the store holds in clear.
 [[nodiscard]] Collection collection_of(const store::StudyStore& store,
                                        const std::optional<Outcomes>& outcomes);
-
-/// "completed", "stopped" or "open".
-[[nodiscard]] const char* text_of(store::SessionState state);
 
 }  // namespace touchtrial::analysis

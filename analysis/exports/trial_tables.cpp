@@ -1,5 +1,7 @@
 #include "analysis/exports/trial_tables.hpp"
 
+#include "analysis/exports/study_tables.hpp"
+
 #include <array>
 #include <map>
 
@@ -52,19 +54,7 @@ DataCell kind_of(const TrialView& trial) {
 }
 
 DataCell state_of(const TrialView& trial) {
-  switch (trial.row.state) {
-    case store::TrialState::answered:
-      return std::string("answered");
-    case store::TrialState::timed_out:
-      return std::string("timed-out");
-    case store::TrialState::interrupted:
-      return std::string("interrupted");
-    case store::TrialState::voided:
-      return std::string("voided");
-    case store::TrialState::presented:
-      break;
-  }
-  return std::string("presented");
+  return std::string(name_of(trial.row.state));
 }
 
 template <std::optional<int> store::TrialRow::*kNumber>
@@ -182,6 +172,7 @@ DataTable trials_that_are(bool scored, const Outcomes& outcomes) {
     if (trial.scored != scored) continue;
     add_trial(table, {trial.participant, trial.row, outcomes.simulated, &outcomes, &trial});
   }
+  add_visit_and_group(table, outcomes.collection);
   return table;
 }
 
@@ -202,7 +193,12 @@ const std::string& image_of(const Outcomes& study, const TrialOutcome& trial) {
 }
 
 DataTable trials_table(const store::StudyStore& store, const std::optional<Outcomes>& outcomes) {
-  return outcomes ? trials_that_are(true, *outcomes) : blinded_trials(store);
+  if (outcomes) return trials_that_are(true, *outcomes);
+  DataTable table = blinded_trials(store);
+  const Prescription study = prescription_from_json(store.commitment().configuration);
+  const bool has_more = study.visits > 1 || !study.groups.empty();
+  if (has_more) add_visit_and_group(table, load_collection(store));
+  return table;
 }
 
 DataTable unscored_table(const Outcomes& outcomes) {

@@ -41,7 +41,8 @@ struct TrialColumn {
 /// (participants_table tells). Without outcomes, the rows are all presented trials, because the
 /// seal also covers which of them were practice or lead-ins. The table then has no columns about
 /// stimuli, answers and times, and the columns that could tell stimuli apart by how they felt
-/// (contact_s, path_mm, force_rms_n, saturated_share) are empty.
+/// (contact_s, path_mm, force_rms_n, saturated_share) are empty. The last columns are those of
+/// add_visit_and_group.
 [[nodiscard]] DataTable trials_table(const store::StudyStore& store,
                                      const std::optional<Outcomes>& outcomes);
 

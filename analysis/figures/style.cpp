@@ -201,10 +201,6 @@ std::string chance_line(int classes) {
   return dashed_line(100.0 / std::max(classes, 1));
 }
 
-std::string chance_words(int classes) {
-  return fmt::format("chance (1 of {})", classes);
-}
-
 NamesBelow::NamesBelow(std::span<const std::string> names, double axis_cm,
                        std::size_t slanted_columns) {
   const double slot_cm = axis_cm / static_cast<double>(std::max<std::size_t>(names.size(), 1));
@@ -236,7 +232,8 @@ LegendEntry mark_entry(int mark, std::string_view colour, std::string text) {
 }
 
 LegendEntry chance_entry(int classes) {
-  return {LegendEntry::Kind::dashes, std::string(kInk), 7, chance_words(classes)};
+  return {LegendEntry::Kind::dashes, std::string(kInk), 7,
+          fmt::format("chance (1 of {})", classes)};
 }
 
 Legend::Legend(const Sheet& sheet, double left_cm, std::span<const LegendEntry> entries) {

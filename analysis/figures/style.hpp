@@ -88,10 +88,8 @@ void add_dots(std::vector<std::vector<double>>& rows, double x, double width,
 [[nodiscard]] std::string accuracy_axis(const std::string& label);
 /// A dashed line across the panel.
 [[nodiscard]] std::string dashed_line(double height);
-/// A dashed line at 1 / classes across the panel; `chance_words` explain it.
+/// A dashed line at 1 / classes across the panel; `chance_entry` explains it.
 [[nodiscard]] std::string chance_line(int classes);
-/// "chance (1 of 5)"
-[[nodiscard]] std::string chance_words(int classes);
 
 /// The columns of slanted names below a panel at the sheet's left edge.
 inline constexpr std::size_t kSlantedColumns = 18;

@@ -190,7 +190,7 @@ std::string evaluation_text(std::span<const EvaluatedImage> images) {
 std::string evaluation_json(std::span<const EvaluatedImage> images) {
   Json list = Json::array();
   for (const EvaluatedImage& image : images) list.push_back(image_json(image));
-  return json_text({{"images", list}});
+  return json_text(Json{{"images", list}});
 }
 
 std::string order_sweep_script(std::span<const EvaluatedImage> images) {

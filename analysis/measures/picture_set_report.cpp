@@ -1,5 +1,6 @@
 #include "analysis/json_figures.hpp"
 #include "analysis/measures/picture_set.hpp"
+#include "analysis/text_figures.hpp"
 #include "analysis/text_table.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +23,7 @@ std::string pictures_text(const MeasuredPictures& measured) {
          fmt::format("{:.2f}", p.original.entropy), fmt::format("{:.0f}", p.original.contrast),
          fmt::format("{:.3f}", p.original.correlation), fmt::format("{:.0f}", p.texture.contrast),
          fmt::format("{:.3f}", p.texture.correlation), fmt::format("{:.1f}", 1e3 * p.force_rms_n),
-         fmt::format("{:.1f} %", 100.0 * p.renderable_share)});
+         percent_of_share(p.renderable_share)});
   }
   constexpr std::size_t kOneBlock = 140;
   return table.text(kOneBlock);
@@ -53,11 +54,8 @@ std::string rms_alone_text(const MeasuredPictures& measured) {
   for (const SetMeasures& set : measured.sets) {
     for (const RmsAlone& score : set.rms_alone) {
       table.add({set.set, std::to_string(score.classes), std::to_string(score.sets),
-                 fmt::format("{:.1f} %", 100.0 / score.classes),
-                 fmt::format("{:.1f} %", 100.0 * score.unseen_patch),
-                 score.unseen_picture < 0.0
-                     ? "-"
-                     : fmt::format("{:.1f} %", 100.0 * score.unseen_picture)});
+                 percent_of_share(1.0 / score.classes), percent_of_share(score.unseen_patch),
+                 score.unseen_picture < 0.0 ? "-" : percent_of_share(score.unseen_picture)});
     }
   }
   return table.text();
@@ -128,8 +126,8 @@ std::string measures_json(const MeasuredPictures& measured) {
     pictures.push_back(picture_json(picture));
   Json sets = Json::array();
   for (const SetMeasures& set : measured.sets) sets.push_back(set_json(set));
-  return json_text(
-      {{"tangential_gain_n", measured.tangential_gain_n}, {"pictures", pictures}, {"sets", sets}});
+  return json_text(Json{
+      {"tangential_gain_n", measured.tangential_gain_n}, {"pictures", pictures}, {"sets", sets}});
 }
 
 }  // namespace touchtrial::analysis

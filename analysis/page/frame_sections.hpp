@@ -28,6 +28,9 @@ void say_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sectio
 /// Times, forces and speeds.
 /// \return without blocks if no trial counts
 [[nodiscard]] Section exploration_section(const StudyHead& head);
+/// Answers to closing questions: counts of options, quartiles of numbers, and texts.
+/// \return without blocks if nobody answered any
+[[nodiscard]] Section said_section(const StudyHead& head);
 /// What was registered before the study.
 [[nodiscard]] Section registration_section(const design::Registration& registration);
 /// The timing of the servo over the trials that ran in real time.

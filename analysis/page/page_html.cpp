@@ -31,9 +31,23 @@ struct Writer {
   int figures = 0;
 };
 
+/// The text escaped, with no line break within "p < 0.001" or "N = 20".
+std::string html_text(const std::string& text) {
+  constexpr const char* kNoBreak = "\u00a0";
+  std::string html = xml_escaped(text);
+  for (const std::string sign : {"=", "&lt;"}) {
+    for (std::size_t at = html.find(sign + " "); at != std::string::npos;
+         at = html.find(sign + " ", at + 1)) {
+      html.replace(at + sign.size(), 1, kNoBreak);
+      if (at > 0 && html[at - 1] == ' ') html.replace(at - 1, 1, kNoBreak);
+    }
+  }
+  return html;
+}
+
 std::string cited_html(const Writer& writer, const Cited& cited) {
-  std::string text = xml_escaped(cited.text);
-  if (!cited.lead.empty()) text = "<strong>" + xml_escaped(cited.lead) + "</strong> " + text;
+  std::string text = html_text(cited.text);
+  if (!cited.lead.empty()) text = "<strong>" + html_text(cited.lead) + "</strong> " + text;
   for (std::size_t i = 0; i < cited.sources.size(); ++i) {
     const std::size_t number = reference_number(cited.sources[i], writer.references);
     text += fmt::format("{}<a href=\"#reference-{}\" aria-label=\"reference {}\">{}</a>",
@@ -48,22 +62,22 @@ std::string html_of(Writer& writer, const Cited& paragraph) {
 }
 
 std::string html_of(Writer& /*writer*/, const Subheading& heading) {
-  return "<h3 id=\"" + heading.id + "\">" + xml_escaped(heading.title) + "</h3>\n";
+  return "<h3 id=\"" + heading.id + "\">" + html_text(heading.title) + "</h3>\n";
 }
 
 std::string html_of(Writer& /*writer*/, const Warnings& warnings) {
   if (warnings.sentences.empty()) return "";
   std::string html = "<div class=\"warnings\">\n";
-  if (!warnings.title.empty()) html += "<p>" + xml_escaped(warnings.title) + "</p>\n";
+  if (!warnings.title.empty()) html += "<p>" + html_text(warnings.title) + "</p>\n";
   html += "<ul>\n";
-  for (const std::string& one : warnings.sentences) html += "<li>" + xml_escaped(one) + "</li>\n";
+  for (const std::string& one : warnings.sentences) html += "<li>" + html_text(one) + "</li>\n";
   return html + "</ul>\n</div>\n";
 }
 
 std::string html_of(Writer& /*writer*/, const Definitions& definitions) {
   std::string html = "<dl>\n";
   for (const auto& [name, meaning] : definitions.entries) {
-    html += "<dt>" + xml_escaped(name) + "</dt><dd>" + xml_escaped(meaning) + "</dd>\n";
+    html += "<dt>" + html_text(name) + "</dt><dd>" + html_text(meaning) + "</dd>\n";
   }
   return definitions.entries.empty() ? "" : html + "</dl>\n";
 }
@@ -71,9 +85,8 @@ std::string html_of(Writer& /*writer*/, const Definitions& definitions) {
 std::string header_row(const Table& table) {
   std::string html = "<thead><tr>";
   for (const Column& column : table.columns) {
-    html +=
-        fmt::format("<th scope=\"col\"{}>{}</th>",
-                    column.align == Align::left ? " class=\"l\"" : "", xml_escaped(column.title));
+    html += fmt::format("<th scope=\"col\"{}>{}</th>",
+                        column.align == Align::left ? " class=\"l\"" : "", html_text(column.title));
   }
   return html + "</tr></thead>\n";
 }
@@ -82,8 +95,7 @@ std::string cell_html(const Column& column, const Cell& cell, bool wide) {
   std::string kinds = column.align == Align::left ? "l" : "";
   if (wide) kinds += " wide";
   if (cell.strong) kinds += kinds.empty() ? "s" : " s";
-  return (kinds.empty() ? "<td>" : "<td class=\"" + kinds + "\">") + xml_escaped(cell.text) +
-         "</td>";
+  return (kinds.empty() ? "<td>" : "<td class=\"" + kinds + "\">") + html_text(cell.text) + "</td>";
 }
 
 bool is_wide(const Table& table, std::size_t column) {
@@ -98,7 +110,7 @@ std::string body_rows(const Table& table) {
   for (std::size_t i = 0; i < table.columns.size(); ++i) wide.push_back(is_wide(table, i));
   std::string html = "<tbody>\n";
   for (const std::vector<Cell>& row : table.rows) {
-    html += "<tr><th scope=\"row\">" + xml_escaped(row[0].text) + "</th>";
+    html += "<tr><th scope=\"row\">" + html_text(row[0].text) + "</th>";
     for (std::size_t i = 1; i < row.size(); ++i) {
       html += cell_html(table.columns[i], row[i], wide[i]);
     }
@@ -120,9 +132,8 @@ std::string notes_html(const Writer& writer, const Table& table) {
 }
 
 std::string html_of(Writer& writer, const Table& table) {
-  const std::string caption =
-      fmt::format("{}{}", number_of(writer, "Table", ++writer.tables),
-                  xml_escaped(stamped(table.caption, writer.document.stamp)));
+  const std::string caption = fmt::format("{}{}", number_of(writer, "Table", ++writer.tables),
+                                          html_text(stamped(table.caption, writer.document.stamp)));
   std::string html = fmt::format(
       "<div class=\"scroll\" role=\"region\" tabindex=\"0\" "
       "aria-labelledby=\"table-{0}-caption\">\n"
@@ -147,39 +158,39 @@ std::string html_of(Writer& writer, const Picture& picture) {
     html += fmt::format(
         "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Figure {}\">"
         "<div class=\"plot\" role=\"img\" aria-label=\"{}\">\n{}\n</div></div>\n",
-        number, xml_escaped(picture.alt), svg);
+        number, html_text(picture.alt), svg);
   }
   if (svg.empty()) {
     // The caption would describe marks and bars that are missing, so the description stands
     // instead.
     return html + fmt::format("<figcaption>{}<b>Not drawn.</b> {}</figcaption>\n</figure>\n",
                               number_of(writer, "Figure", number),
-                              xml_escaped(stamped(picture.alt, writer.document.stamp)));
+                              html_text(stamped(picture.alt, writer.document.stamp)));
   }
   html += fmt::format("<figcaption>{}{}</figcaption>\n", number_of(writer, "Figure", number),
-                      xml_escaped(stamped(picture.caption, writer.document.stamp)));
+                      html_text(stamped(picture.caption, writer.document.stamp)));
   return html +
          fmt::format("<details><summary>{}In words</summary><p>{}</p></details>\n",
-                     number_of(writer, "Figure", number), xml_escaped(picture.alt)) +
+                     number_of(writer, "Figure", number), html_text(picture.alt)) +
          "</figure>\n";
 }
 
 std::string html_of(Writer& writer, const Flow& flow) {
   std::string html = "<figure class=\"flow\" id=\"figure-" + flow.id + "\">\n<ol>\n";
   for (const FlowStep& step : flow.steps) {
-    html += "<li><div class=\"box\">" + xml_escaped(step.text) + "</div>";
+    html += "<li><div class=\"box\">" + html_text(step.text) + "</div>";
     if (!step.leaving.empty()) html += "<ul class=\"leaving\">";
-    for (const std::string& one : step.leaving) html += "<li>" + xml_escaped(one) + "</li>";
+    for (const std::string& one : step.leaving) html += "<li>" + html_text(one) + "</li>";
     html += step.leaving.empty() ? "</li>\n" : "</ul></li>\n";
   }
   return html + fmt::format("</ol>\n<figcaption><b>Figure {}.</b> {}</figcaption>\n</figure>\n",
                             ++writer.figures,
-                            xml_escaped(stamped(flow.caption, writer.document.stamp)));
+                            html_text(stamped(flow.caption, writer.document.stamp)));
 }
 
 std::string section_html(Writer& writer, const Section& section) {
   std::string html = fmt::format("<section aria-labelledby=\"{0}\">\n<h2 id=\"{0}\">{1}</h2>\n",
-                                 section.id, xml_escaped(section.title));
+                                 section.id, html_text(section.title));
   for (const Block& block : section.blocks) {
     html += std::visit([&](const auto& one) { return html_of(writer, one); }, block);
   }
@@ -193,7 +204,7 @@ std::string references_html(const Writer& writer) {
       "<ol class=\"references\">\n";
   for (std::size_t i = 0; i < writer.references.size(); ++i) {
     html += fmt::format("<li id=\"reference-{}\">{}</li>\n", i + 1,
-                        xml_escaped(std::string(citation_of(writer.references[i]))));
+                        html_text(std::string(citation_of(writer.references[i]))));
   }
   return html + "</ol>\n</section>\n";
 }
@@ -202,19 +213,19 @@ std::string navigation(const Writer& writer) {
   std::string html =
       "<nav aria-labelledby=\"contents\">\n<h2 id=\"contents\">Contents</h2>\n<ul>\n";
   for (const Section& section : writer.document.sections) {
-    html += "<li><a href=\"#" + section.id + "\">" + xml_escaped(section.title) + "</a></li>\n";
+    html += "<li><a href=\"#" + section.id + "\">" + html_text(section.title) + "</a></li>\n";
   }
   if (!writer.references.empty()) html += "<li><a href=\"#references\">References</a></li>\n";
-  html += "<li><a href=\"#this-report\">" + xml_escaped(writer.document.about) + "</a></li>\n";
+  html += "<li><a href=\"#this-report\">" + html_text(writer.document.about) + "</a></li>\n";
   return html + "</ul>\n</nav>\n";
 }
 
 std::string header_html(const Writer& writer) {
   std::string html = "<header>\n";
   for (const std::string& banner : writer.document.banners) {
-    html += "<p class=\"banner\">" + xml_escaped(banner) + "</p>\n";
+    html += "<p class=\"banner\">" + html_text(banner) + "</p>\n";
   }
-  return html + "<h1>" + xml_escaped(writer.document.title) + "</h1>\n</header>\n";
+  return html + "<h1>" + html_text(writer.document.title) + "</h1>\n</header>\n";
 }
 
 /// The sections, with the contents behind the first: whoever opens the page sees the result.
@@ -227,7 +238,7 @@ std::string main_html(Writer& writer) {
   }
   html += references_html(writer);
   return html + "<section aria-labelledby=\"this-report\">\n<h2 id=\"this-report\">" +
-         xml_escaped(writer.document.about) + "</h2>\n" + html_of(writer, writer.document.header) +
+         html_text(writer.document.about) + "</h2>\n" + html_of(writer, writer.document.header) +
          "</section>\n</main>\n";
 }
 
@@ -235,10 +246,10 @@ std::string main_html(Writer& writer) {
 
 std::string page_html(const Document& document) {
   Writer writer{document, references_of(document)};
-  const std::string title = xml_escaped(stamped(document.title, document.stamp));
+  const std::string title = html_text(stamped(document.title, document.stamp));
   std::string html = kHead + ("<title>" + title + "</title>\n<style>") + kPageStyle +
                      "</style>\n</head>\n<body>\n";
-  html += header_html(writer) + main_html(writer) + "<footer>" + xml_escaped(document.colophon) +
+  html += header_html(writer) + main_html(writer) + "<footer>" + html_text(document.colophon) +
           "</footer>\n";
   return html + "</body>\n</html>\n";
 }

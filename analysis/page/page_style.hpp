@@ -72,6 +72,7 @@ th:last-child, td:last-child { padding-right: .25rem; }
 th.l, td.l { text-align: left; }
 td.l, tbody th { white-space: normal; overflow-wrap: break-word; min-width: 7ch; max-width: 34rem; }
 td.wide { min-width: 24ch; }
+td, tbody th { vertical-align: top; }
 tbody th { font-weight: 400; text-align: left; }
 tbody tr:nth-child(even) { background: var(--panel); }
 tbody tr td.s { background: var(--strong); font-weight: 600; }
@@ -107,6 +108,12 @@ footer { border-top: 1px solid var(--line); margin-top: 3rem; padding-top: .8rem
   dd { margin: 0 0 .5rem; }
   table { font-size: .82rem; }
   th, td { padding: .25rem .35rem; }
+  td.l, tbody th { min-width: 4ch; }
+  td.wide { min-width: 12ch; }
+}
+@media (max-width: 28rem) {
+  table { font-size: .76rem; }
+  th, td { padding: .25rem .22rem; }
 }
 @page { size: A4; margin: 16mm 15mm; }
 @media print {

@@ -4,6 +4,7 @@
 #include "analysis/page/wording.hpp"
 #include "analysis/text_figures.hpp"
 #include "core/text.hpp"
+#include "core/utc.hpp"
 
 #include <algorithm>
 #include <map>
@@ -13,18 +14,6 @@
 
 namespace touchtrial::analysis {
 namespace {
-
-const char* words_of(store::SessionState state) {
-  switch (state) {
-    case store::SessionState::open:
-      return "open";
-    case store::SessionState::completed:
-      return "completed";
-    case store::SessionState::stopped:
-      return "stopped";
-  }
-  return "";
-}
 
 void add_leaving(int n, const std::string& why, FlowStep& step) {
   if (n > 0) step.leaving.push_back(fmt::format("{} {}", n, why));
@@ -83,19 +72,28 @@ std::string devices_of(const std::vector<SessionRecord>& sessions) {
   return text;
 }
 
-/// The days of the first and of the last session.
-std::string dates_of(const std::vector<SessionRecord>& sessions) {
-  constexpr std::size_t kDay = 10;  // "2026-01-31"
-  std::string first;
-  std::string last;
-  for (const SessionRecord& one : sessions) {
-    if (one.row.erased || one.opened_utc.size() < kDay) continue;
-    const std::string day = one.opened_utc.substr(0, kDay);
-    if (first.empty() || day < first) first = day;
-    last = std::max(last, day);
-  }
-  if (first.empty()) return "none: no session was in real time";
-  return first == last ? first : first + " to " + last;
+/// "3 interruptions in 1 session, 2 pauses in 2 sessions"; empty without any.
+std::string incidents_of(const std::vector<SessionRecord>& sessions) {
+  std::vector<std::string> parts;
+  const auto add = [&](int SessionRecord::*kind, const char* name) {
+    int all = 0;
+    int with = 0;
+    for (const SessionRecord& one : sessions) {
+      all += one.*kind;
+      with += one.*kind > 0 ? 1 : 0;
+    }
+    if (all > 0) parts.push_back(counted(all, name) + " in " + counted(with, "session"));
+  };
+  add(&SessionRecord::interruptions, "interruption");
+  add(&SessionRecord::pauses, "pause");
+  add(&SessionRecord::notes, "note");
+  return listed(parts);
+}
+
+std::string dates_text(const std::vector<SessionRecord>& sessions) {
+  const auto dates = dates_of(sessions);
+  if (!dates) return "none: no session was in real time";
+  return dates->first == dates->last ? dates->first : dates->first + " to " + dates->last;
 }
 
 std::string timeout_words(const std::string& on_timeout) {
@@ -107,7 +105,9 @@ Definitions conditions_of(const Collection& collection) {
   Definitions definitions;
   auto& entries = definitions.entries;
   entries.emplace_back("sessions", std::to_string(collection.sessions.size()));
-  entries.emplace_back("dates", dates_of(collection.sessions));
+  entries.emplace_back("dates", dates_text(collection.sessions));
+  if (rule.visits > 1) entries.emplace_back("visits", std::to_string(rule.visits));
+  if (!rule.groups.empty()) entries.emplace_back("groups", listed(rule.groups));
   entries.emplace_back("order", fmt::format("{}, {} of each stimulus", rule.order,
                                             counted(rule.repeats, "presentation")));
   entries.emplace_back("exploration",
@@ -119,6 +119,8 @@ Definitions conditions_of(const Collection& collection) {
   entries.emplace_back("masking noise", rule.masking_wanted
                                             ? plain_figure(rule.masking_dbfs, 0) + " dBFS"
                                             : "not prescribed");
+  const std::string incidents = incidents_of(collection.sessions);
+  if (!incidents.empty()) entries.emplace_back("besides trials", incidents);
   const std::string devices = devices_of(collection.sessions);
   if (!devices.empty()) entries.emplace_back("device", devices);
   return definitions;
@@ -169,7 +171,7 @@ std::optional<Table> deviations_table(const Collection& collection) {
 
 std::string remark_of(const SessionRecord& one) {
   std::vector<std::string> parts;
-  if (!one.exclusion_reason.empty()) parts.push_back("excluded: " + one.exclusion_reason);
+  if (!one.exclusion_reason.empty()) parts.push_back("excluded: " + exclusion_words(one));
   if (!one.row.replaced_by.empty()) {
     parts.push_back("replaced by " + one.row.replaced_by +
                     (one.replacement_reason.empty() ? "" : ": " + one.replacement_reason));
@@ -179,6 +181,8 @@ std::string remark_of(const SessionRecord& one) {
     parts.push_back("withdrew, data kept" +
                     (one.withdrawal_reason.empty() ? "" : ": " + one.withdrawal_reason));
   }
+  if (one.interruptions > 0) parts.push_back(counted(one.interruptions, "interruption"));
+  if (one.pauses > 0) parts.push_back(counted(one.pauses, "pause"));
   if (one.resumed > 0) parts.push_back("resumed " + counted(one.resumed, "time"));
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
@@ -197,7 +201,8 @@ std::string practice_of(const SessionRecord& one) {
 /// Tells whether the table of sessions has more to say about a session than that it was completed.
 bool is_remarkable(const SessionRecord& one) {
   return one.row.withdrawn || one.row.excluded || one.row.state != store::SessionState::completed ||
-         one.resumed > 0 || !one.row.replaced_by.empty() || one.practice.has_value();
+         one.resumed > 0 || one.interruptions > 0 || one.pauses > 0 ||
+         !one.row.replaced_by.empty() || one.practice.has_value();
 }
 
 std::optional<Table> sessions_table(const Collection& collection) {
@@ -215,7 +220,7 @@ std::optional<Table> sessions_table(const Collection& collection) {
     if (!is_remarkable(one)) continue;
     table.rows.push_back({std::to_string(one.row.session),
                           one.row.erased ? kNoFigure : one.row.participant,
-                          one.row.erased ? "erased" : words_of(one.row.state),
+                          one.row.erased ? "erased" : std::string(name_of(one.row.state)),
                           one.row.erased ? kNoFigure : practice_of(one),
                           one.row.erased ? kNoFigure : remark_of(one)});
   }
@@ -232,7 +237,7 @@ Table looks_table(const std::vector<Look>& looks, bool is_public) {
     if (!look.participant.empty() && !is_public) kind += ", " + look.participant;
     const bool is_dated = look.at.count() > 0;  // not in virtual time
     if (look.station > 0) kind += fmt::format(", station {}", look.station);
-    table.rows.push_back({is_dated ? date_text(look.at) : kNoFigure,
+    table.rows.push_back({is_dated ? utc_words(look.at) : kNoFigure,
                           std::to_string(look.participants), kind, look.reason});
   }
   if (is_public) keep_columns({0, 1, 2}, table);
@@ -244,7 +249,7 @@ Table people_table(const StudyHead& head) {
   const int planned = head.course.planned;
   Table table{"people",
               "How many people took part",
-              {{"", Align::left},
+              {{"number of", Align::left},
                {"planned"},
                {"enrolled"},
                {"completed"},
@@ -358,6 +363,51 @@ Table explorations_table(const StudyHead& head, std::size_t index) {
 }
 
 }  // namespace
+
+namespace {
+
+/// "No (12), Sometimes (5)", or the quartiles of numbers.
+std::string said_in(const QuestionSummary& of) {
+  if (of.kind == design::QuestionKind::number) {
+    return of.numbers.median
+               ? fmt::format("median {}, quartiles {} and {}", plain_figure(of.numbers.median, 1),
+                             plain_figure(of.numbers.lower, 1), plain_figure(of.numbers.upper, 1))
+               : kNoFigure;
+  }
+  if (of.kind == design::QuestionKind::text) return "in words";
+  std::vector<std::string> parts;
+  for (const Band& option : of.options) {
+    parts.push_back(fmt::format("{} ({})", option.name, option.people));
+  }
+  if (of.others > 0) {
+    parts.push_back(fmt::format("others ({}; options of fewer than {} are not shown)", of.others,
+                                kFewestOfBand));
+  }
+  return parts.empty() ? kNoFigure : listed(parts);
+}
+
+}  // namespace
+
+Section said_section(const StudyHead& head) {
+  Section section{"said", "What participants said", {}};
+  if (head.said.empty()) return section;
+  Table questions{"questions",
+                  "Answers to the questions after the session",
+                  {{"question", Align::left}, {"participants"}, {"answers", Align::left}}};
+  Table texts{"answers-in-words",
+              "Answers in words",
+              {{"question", Align::left}, {"participant", Align::left}, {"answer", Align::left}}};
+  for (const QuestionSummary& one : head.said) {
+    const std::string& wording = one.wording.empty() ? one.question : one.wording;
+    questions.rows.push_back({wording, std::to_string(one.answered), said_in(one)});
+    for (const auto& [participant, text] : one.texts) {
+      texts.rows.push_back({one.question, participant, text});
+    }
+  }
+  section.blocks.emplace_back(std::move(questions));
+  if (!texts.rows.empty()) section.blocks.emplace_back(std::move(texts));
+  return section;
+}
 
 Section exploration_section(const StudyHead& head) {
   Section section{"exploration", "Exploration", {}};

@@ -37,7 +37,8 @@ Table trials_table(const TrialQuality& quality) {
   add("presented", quality.presented, quality.presented);
   add("answered", quality.answered, quality.presented);
   add("no response: time ran out", quality.no_response, quality.presented);
-  add("interrupted, and not repeated yet", quality.interrupted, quality.presented);
+  add("interrupted presentations, repeated or not", quality.interrupted, 0);
+  add("interrupted, and not repeated yet", quality.not_repeated, quality.presented);
   add("with a trace", quality.with_trace, quality.presented);
   add("valid by the study's rule, as far as it is in clear", quality.valid, quality.with_trace);
   add("with servo ticks that came late", quality.with_overruns, quality.with_trace);
@@ -89,13 +90,16 @@ Table hands_table(const Collection& collection) {
                           std::to_string(outside.force), std::to_string(outside.speed),
                           session.saturated ? std::to_string(*session.saturated) : kNoFigure});
   }
-  table.notes = {
-      {"Contact: less than 5 s at the plane, at most 3 mm above it. Path: less than 300 mm along "
-       "it. "
-       "Force: a mean push below 0.2 N or above 2 N. Speed: a mean below 50 or above 150 mm/s. "
-       "Saturated: the force was at its limit in 1% of the time in contact or more; known once the "
-       "session has ended. Somebody who does not press or does not move shows here; what was "
-       "presented does not."}};
+  const design::ValidityRule& rule = collection.prescription.validity;
+  table.notes = {{fmt::format(
+      "Contact: less than {} s at the plane, at most 3 mm above it. Path: less than {} mm along "
+      "it. "
+      "Force: a mean push below {} N or above {} N. Speed: a mean below {} or above {} mm/s. "
+      "Saturated: the force was at its limit in {}% of the time in contact or more; known once the "
+      "session has ended. Somebody who does not press or does not move shows here; what was "
+      "presented does not.",
+      rule.least_contact_s, rule.least_path_mm, rule.least_median_n, rule.largest_median_n,
+      design::kSlowestMmS, design::kFastestMmS, 100.0 * rule.saturated_share)}};
   return table;
 }
 

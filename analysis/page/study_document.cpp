@@ -17,6 +17,10 @@ namespace touchtrial::analysis {
 namespace {
 
 std::string state_words(const store::StudyState& state) {
+  if (state.question) {
+    return std::string(state.closed ? "closed" : "collecting") +
+           "; blind but for the registered question (" + state.unblinding_reason + ")";
+  }
   if (!state.unblinded) return state.closed ? "closed, still blind" : "collecting, blind";
   const std::string reason =
       state.unblinding_reason.empty() ? "" : " (" + state.unblinding_reason + ")";
@@ -28,7 +32,8 @@ std::string joined(const std::string& first, const std::string& second) {
 }
 
 bool is_interim(const Provenance& provenance) {
-  return provenance.state.unblinded && !provenance.state.closed;
+  const store::StudyState& state = provenance.state;
+  return (state.unblinded && !state.closed) || state.question;
 }
 
 std::vector<std::string> banners_of(const StudyHead& report, const Provenance& provenance) {
@@ -41,15 +46,14 @@ std::vector<std::string> banners_of(const StudyHead& report, const Provenance& p
   if (report.pilot) {
     banners.emplace_back("PILOT: not to be pooled with the study's data, nor reported as it.");
   }
-  if (is_interim(provenance)) {
-    const bool registered =
-        !report.looks.empty() && report.looks.back().kind == LookKind::registered;
+  if (provenance.state.question) {
     banners.emplace_back(
-        registered
-            ? "INTERIM LOOK, as registered: the study is still open. The registered question "
-              "alone may decide whether it ends here."
-            : "INTERIM LOOK: the study is still open. What it shows must not decide when the "
-              "study ends.");
+        "INTERIM LOOK at the registered question: it alone is shown, and it alone may decide "
+        "whether collecting ends here. Everything else stays blind until the study is closed.");
+  } else if (is_interim(provenance)) {
+    banners.emplace_back(
+        "INTERIM LOOK: the study is still open. What it shows must not decide when the study "
+        "ends.");
   }
   return banners;
 }
@@ -74,17 +78,26 @@ Definitions header_of(const StudyHead& report, const Provenance& provenance, boo
 }  // namespace
 
 Provenance provenance_of(const store::StudyStore& store, const std::string& database) {
-  return {database, std::string(program_version()), to_hex(store.commitment().seal),
-          store.file_head(), store.state()};
+  return {database,
+          std::string(program_version()),
+          to_hex(store.commitment().seal),
+          store.file_head(),
+          store.state(),
+          prescription_from_json(store.commitment().configuration).draft};
 }
 
 Definitions evidence_header(const Provenance& provenance) {
-  return {{{"state", state_words(provenance.state)},
-           {"database", provenance.database},
-           {"seal of the study", provenance.seal},
-           {"head of the file's chain",
-            fmt::format("{} (event {})", to_hex(provenance.head.hash), provenance.head.length)},
-           {"program", "touchtrial " + provenance.program_version}}};
+  Definitions header{
+      {{"state", state_words(provenance.state)},
+       {"database", provenance.database},
+       {"seal of the study", provenance.seal},
+       {"head of the file's chain",
+        fmt::format("{} (event {})", to_hex(provenance.head.hash), provenance.head.length)},
+       {"program", "touchtrial " + provenance.program_version}}};
+  if (!provenance.texts.empty()) {
+    header.entries.emplace_back("what participants read", provenance.texts);
+  }
+  return header;
 }
 
 std::string further_stamp(bool pilot, const Provenance& provenance) {
@@ -107,9 +120,12 @@ Document framed_document(const StudyHead& head, Section headline, std::vector<Se
   std::vector<Block> verdict = verdict_blocks(head);
   headline.blocks.insert(headline.blocks.begin(), std::make_move_iterator(verdict.begin()),
                          std::make_move_iterator(verdict.end()));
-  std::vector<Section> sections = {
-      std::move(headline), participants_section(head.collection, &head), exploration_section(head),
-      warnings_section(head.warnings), registration_section(head.registration)};
+  std::vector<Section> sections = {std::move(headline),
+                                   participants_section(head.collection, &head),
+                                   exploration_section(head),
+                                   said_section(head),
+                                   warnings_section(head.warnings),
+                                   registration_section(head.registration)};
   std::ranges::move(results, std::back_inserter(sections));
   say_unadjusted(head.looks, sections);
   for (Section& section : sections) {

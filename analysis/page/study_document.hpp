@@ -17,6 +17,7 @@ struct Provenance {
   std::string seal;             ///< commitment made before trial 1, hexadecimal
   store::ChainHead head;        ///< head of the file's chain
   store::StudyState state;
+  std::string texts{};  ///< what has to be said of the participants' texts; may be empty
 };
 
 /// \param database  file name to show

@@ -24,9 +24,14 @@ std::string row_of(const std::vector<Cell>& row) {
   return line_of(cells);
 }
 
+/// Columns of a paragraph in a page; the paragraphs of single tables are lines.
+constexpr std::size_t kMarkdownWidth = 110;
+constexpr std::size_t kWhole = std::string::npos;
+
 std::string table_text(const Table& table, const std::string& stamp,
-                       const std::vector<Source>& references) {
-  std::string text = "**" + markdown_escaped(stamped(table.caption, stamp)) + "**\n\n";
+                       const std::vector<Source>& references, std::size_t width = kWhole) {
+  std::string text =
+      wrapped("", "**" + markdown_escaped(stamped(table.caption, stamp)) + "**", width) + '\n';
   std::vector<std::string> titles;
   std::vector<std::string> rules;
   for (const Column& column : table.columns) {
@@ -36,17 +41,19 @@ std::string table_text(const Table& table, const std::string& stamp,
   text += line_of(titles) + line_of(rules);
   for (const std::vector<Cell>& row : table.rows) text += row_of(row);
   for (const Cited& note : table.notes) {
-    text += '\n' + markdown_escaped(note.text) + markdown_escaped(citation_mark(note, references)) +
-            '\n';
+    text +=
+        '\n' +
+        wrapped("", markdown_escaped(note.text) + markdown_escaped(citation_mark(note, references)),
+                width);
   }
   return text;
 }
 
-std::string references_text(const std::vector<Source>& references) {
+std::string references_text(const std::vector<Source>& references, std::size_t width = kWhole) {
   std::string text;
   for (std::size_t i = 0; i < references.size(); ++i) {
-    text +=
-        fmt::format("{}. {}\n", i + 1, markdown_escaped(std::string(citation_of(references[i]))));
+    text += wrapped(fmt::format("{}. ", i + 1),
+                    markdown_escaped(std::string(citation_of(references[i]))), width);
   }
   return text;
 }
@@ -56,9 +63,6 @@ std::string warnings_text(const Warnings& warnings) {
   for (const std::string& one : warnings.sentences) text += "- " + markdown_escaped(one) + '\n';
   return text + '\n';
 }
-
-/// Columns of a paragraph in the Markdown file.
-constexpr std::size_t kMarkdownWidth = 110;
 
 /// The blocks of a document in Markdown, each with an empty line after it.
 struct MarkdownWriter {
@@ -74,7 +78,7 @@ struct MarkdownWriter {
            '\n';
   }
   [[nodiscard]] std::string operator()(const Table& table) const {
-    return table_text(table, document.stamp, references) + '\n';
+    return table_text(table, document.stamp, references, kMarkdownWidth) + '\n';
   }
   [[nodiscard]] std::string operator()(const Picture& picture) const {
     if (picture.svg.empty()) return (*this)(Cited{"Not drawn: " + picture.alt});
@@ -117,7 +121,7 @@ std::string document_markdown(const Document& document, const std::string& pictu
     for (const Block& block : section.blocks) text += std::visit(writer, block);
   }
   if (!writer.references.empty()) {
-    text += "## References\n\n" + references_text(writer.references) + '\n';
+    text += "## References\n\n" + references_text(writer.references, kMarkdownWidth) + '\n';
   }
   return text + markdown_escaped(document.colophon) + '\n';
 }

@@ -22,8 +22,10 @@ std::string estimand_figure(const PrimaryResult& primary, std::optional<double> 
   return is_difference(primary) ? points_figure(value) + " points" : share_figure(value);
 }
 
+/// "95%", and never "100%".
 std::string level_words(double level) {
-  return fmt::format("{:.4g}%", 100.0 * level);
+  const std::string text = fmt::format("{:.4g}%", 100.0 * level);
+  return text == "100%" ? fmt::format("{:.10g}%", 100.0 * level) : text;
 }
 
 std::string first_letter_raised(std::string text) {
@@ -184,7 +186,8 @@ Table choices_table(const StudyHead& head) {
   add_stations(primary, table);
   table.notes = {
       {"p belongs to the first row alone; the others show what a choice changes. Each "
-       "participant weighs the same, however many trials it has."}};
+       "participant weighs the same, however many trials it has. Intervals are cut where possible "
+       "values end."}};
   table.notes.insert(table.notes.end(), repeated.begin(), repeated.end());
   if (head.course.excluded_afterwards > 0) {
     table.notes.push_back({counted(head.course.excluded_afterwards, "session") +

@@ -1,5 +1,7 @@
 #include "analysis/paper/paper_claims.hpp"
 
+#include "core/text.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,6 +9,7 @@
 #include <numeric>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace touchtrial::analysis {
 namespace {
@@ -91,26 +94,13 @@ void count_change(CellChanges& changes, double before, double after) {
   if (after < before) ++changes.falling;
 }
 
-/// The smallest and the largest of a number over pictures, for example "0.02 to 0.18"; "-" if it is
-/// finite for none.
-template <typename Number>
-std::string range_over(const std::vector<MeasuredPicture>& pictures, int decimals,
-                       const Number& number) {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  for (const MeasuredPicture& one : pictures) {
-    low = std::min(low, number(one));
-    high = std::max(high, number(one));
-  }
-  if (low > high) return "-";
-  const std::string least = fmt::format("{:.{}f}", low, decimals);
-  const std::string most = fmt::format("{:.{}f}", high, decimals);
-  return least == most ? least : least + " to " + most;
-}
-
 template <typename Condition>
 int number_with(const std::vector<MeasuredPicture>& pictures, const Condition& condition) {
   return static_cast<int>(std::count_if(pictures.begin(), pictures.end(), condition));
+}
+
+std::string published_orders() {
+  return fmt::format("orders {:g} to {:g}", kPublishedLowestOrder, kPublishedHighestOrder);
 }
 
 bool is_in_published_range(double order) {
@@ -128,7 +118,7 @@ double order_of_entropy(const engine::Evaluation& evaluation) {
       ->order;
 }
 
-/// The rms of the texture of order 0.3 over the adaptive one's; 0 if that is flat.
+/// The rms of the texture of the lowest order over the adaptive one's; 0 if that is flat.
 double weakest_share(const MeasuredPicture& one) {
   return one.adaptive.rms_grey > 0.0 ? one.fixed[0].rms_grey / one.adaptive.rms_grey : 0.0;
 }
@@ -137,9 +127,10 @@ void add_orders(std::vector<PaperClaim>& claims, const PaperMeasures& measures) 
   const auto& pictures = measures.pictures;
   const int n = static_cast<int>(pictures.size());
   claims.push_back({"weakest", "Fig. 1",
-                    "Of orders 0.3, 0.55, 0.7 and adaptive, 0.3 gives the weakest texture.",
-                    fmt::format("Order 0.3 has {} of the adaptive texture's rms.",
-                                range_over(pictures, 2, weakest_share)),
+                    fmt::format("Of orders {:g} and adaptive, {:g} gives the weakest texture.",
+                                fmt::join(kPaperOrders, ", "), kPaperOrders.front()),
+                    fmt::format("Order {:g} has {} of the adaptive texture's rms.",
+                                kPaperOrders.front(), range_over(pictures, 2, weakest_share)),
                     number_with(pictures,
                                 [](const MeasuredPicture& one) {
                                   return one.fixed[0].rms_grey < one.fixed[1].rms_grey &&
@@ -149,11 +140,14 @@ void add_orders(std::vector<PaperClaim>& claims, const PaperMeasures& measures) 
                     n});
   claims.push_back(
       {"fine-lost", "Fig. 1", "Higher orders sharpen large textures and lose small ones.",
-       fmt::format("The share of the finest sub-bands is {} at order 0.3 and {} at 0.7.",
-                   range_over(pictures, 3,
-                              [](const MeasuredPicture& one) { return one.fixed[0].fine_share; }),
-                   range_over(pictures, 3,
-                              [](const MeasuredPicture& one) { return one.fixed[2].fine_share; })),
+       fmt::format(
+           "The share of the finest sub-bands is {} at order {:g} and {} at {:g}.",
+           range_over(pictures, 3,
+                      [](const MeasuredPicture& one) { return one.fixed.front().fine_share; }),
+           kPaperOrders.front(),
+           range_over(pictures, 3,
+                      [](const MeasuredPicture& one) { return one.fixed.back().fine_share; }),
+           kPaperOrders.back()),
        number_with(pictures,
                    [](const MeasuredPicture& one) {
                      return one.fixed[1].fine_share < one.fixed[0].fine_share &&
@@ -164,19 +158,20 @@ void add_orders(std::vector<PaperClaim>& claims, const PaperMeasures& measures) 
       {"best", "Fig. 1", "The adaptive texture is the best of the four.",
        "The paper defines no measure of a good texture apart from likeness to the adaptive one.", 0,
        0});
-  claims.push_back(
-      {"entropy-orders", "Fig. 3", "The adaptive texture's entropy is that of orders 0.5 to 0.7.",
-       fmt::format(
-           "It is nearest to that of order {}.",
-           range_over(pictures, 2,
-                      [](const MeasuredPicture& one) { return order_of_entropy(one.evaluation); })),
-       number_with(pictures,
-                   [](const MeasuredPicture& one) {
-                     return is_in_published_range(order_of_entropy(one.evaluation));
-                   }),
-       n});
+  claims.push_back({"entropy-orders", "Fig. 3",
+                    "The adaptive texture's entropy is that of " + published_orders() + ".",
+                    fmt::format("It is nearest to that of order {}.",
+                                range_over(pictures, 2,
+                                           [](const MeasuredPicture& one) {
+                                             return order_of_entropy(one.evaluation);
+                                           })),
+                    number_with(pictures,
+                                [](const MeasuredPicture& one) {
+                                  return is_in_published_range(order_of_entropy(one.evaluation));
+                                }),
+                    n});
   claims.push_back({"likeness-orders", "Fig. 3",
-                    "MS-SSIM with the adaptive texture is largest at orders 0.5 to 0.7.",
+                    "MS-SSIM with the adaptive texture is largest at " + published_orders() + ".",
                     fmt::format("It is largest at order {}, where it is {}.",
                                 range_over(pictures, 2,
                                            [](const MeasuredPicture& one) {
@@ -216,8 +211,7 @@ void add_change(std::vector<PaperClaim>& claims, const PaperMeasures& measures, 
 
 /// How wide the exact intervals of the reported accuracies are.
 std::string exact_widths() {
-  constexpr int kTrials =
-      kPublishedPeople * kPublishedTrials / static_cast<int>(kPublishedPercents.size());
+  constexpr int kTrials = kPublishedPeople * kPublishedTrialsOfClass;
   double low = 1.0;
   double high = 0.0;
   for (const int percent : kPublishedPercents) {
@@ -248,18 +242,20 @@ void add_table(std::vector<PaperClaim>& claims, const PaperMeasures& measures) {
              false);
   add_change(claims, measures, "correlation", "Correlation falls by extraction.",
              kPaperStatistics[3], false);
-  claims.push_back({"third-picture", "Table 1", "Its third picture: contrast rises, ASM does not.",
-                    fmt::format("Contrast is {} times the original's.",
-                                range_over(pictures, 2,
-                                           [](const MeasuredPicture& one) {
-                                             return summary_of_measures(one).contrast_ratio;
-                                           })),
-                    number_with(pictures,
-                                [](const MeasuredPicture& one) {
-                                  const TableSummary summary = summary_of_measures(one);
-                                  return summary.contrast_rises && !summary.asm_rises;
-                                }),
-                    n});
+  claims.push_back(
+      {"third-picture", "Table 1",
+       fmt::format("Its picture {}: contrast rises, ASM does not.", kPublishedContradiction + 1),
+       fmt::format("Contrast is {} times the original's.",
+                   range_over(pictures, 2,
+                              [](const MeasuredPicture& one) {
+                                return summary_of_measures(one).contrast_ratio;
+                              })),
+       number_with(pictures,
+                   [](const MeasuredPicture& one) {
+                     const TableSummary summary = summary_of_measures(one);
+                     return summary.contrast_rises && !summary.asm_rises;
+                   }),
+       n});
   claims.push_back(
       {"correlation-level", "Table 1",
        fmt::format("Correlations of textures have means over the directions of {:.2f} and more.",
@@ -351,12 +347,28 @@ bool is_like_contradiction(const TableSummary& summary) {
          summary.correlation_after >= published_least_correlation();
 }
 
+std::string range_over(const std::vector<MeasuredPicture>& pictures, int decimals,
+                       const std::function<double(const MeasuredPicture&)>& number) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const MeasuredPicture& one : pictures) {
+    low = std::min(low, number(one));
+    high = std::max(high, number(one));
+  }
+  if (low > high) return "-";
+  const std::string least = fmt::format("{:.{}f}", low, decimals);
+  const std::string most = fmt::format("{:.{}f}", high, decimals);
+  return least == most ? least : least + " to " + most;
+}
+
 std::vector<PaperClaim> paper_claims(const PaperMeasures& measures) {
   std::vector<PaperClaim> claims;
   add_orders(claims, measures);
   add_table(claims, measures);
   claims.push_back({"accuracies", "Fig. 6",
-                    "People name the five textures in 87, 72, 81, 91 and 83 % of presentations.",
+                    fmt::format("People name the textures in {} % of presentations.",
+                                listed(kPublishedPercents, " and ",
+                                       [](int percent) { return std::to_string(percent); })),
                     exact_widths() + " No person has been tested with this program.", 0, 0});
   claims.push_back(
       {"decibel", "Conclusions",

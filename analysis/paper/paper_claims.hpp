@@ -7,6 +7,7 @@
 #include "analysis/statistics/proportion.hpp"
 
 #include <array>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -81,6 +82,11 @@ struct TableSummary {
 /// Whether a texture's table is like the paper's contradicting picture: contrast rises in every
 /// direction, ASM in none, and the mean correlation is at least the paper's smallest.
 [[nodiscard]] bool is_like_contradiction(const TableSummary& summary);
+
+/// The smallest and the largest of a number over pictures, for example "0.02 to 0.18"; "-" if it is
+/// finite for none.
+[[nodiscard]] std::string range_over(const std::vector<MeasuredPicture>& pictures, int decimals,
+                                     const std::function<double(const MeasuredPicture&)>& number);
 
 /// Every statement, in the order of the paper.
 [[nodiscard]] std::vector<PaperClaim> paper_claims(const PaperMeasures& measures);

@@ -4,6 +4,7 @@
 #include "analysis/paper/paper_intervals.hpp"
 #include "analysis/paper/published.hpp"
 #include "analysis/statistics/proportion.hpp"
+#include "analysis/text_figures.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,22 +19,15 @@
 namespace touchtrial::analysis {
 namespace {
 
-constexpr int kClasses = static_cast<int>(kPublishedPercents.size());
-/// Presentations of one picture, if each person feels every picture equally often.
-constexpr int kTrialsOfClass = kPublishedTrials / kClasses;
 constexpr std::array<double, 3> kSpreads = {0.0, 0.10, 0.20};
 /// Table 3: presentations per person and method, if four pictures are felt five times each.
-constexpr int kTrialsOfMethod = 4 * kTrialsOfClass;
+constexpr int kTrialsOfMethod = 4 * kPublishedTrialsOfClass;
 
 /// Deviations of one picture that differ by less are the same number, rounded.
 constexpr double kAgreement_percent = 1.0;
 
 std::string decimal(double number, int decimals) {
   return std::isfinite(number) ? fmt::format("{:.{}f}", number, decimals) : "-";
-}
-
-std::string share_words(double share) {
-  return fmt::format("{:.1f} %", 100.0 * share);
 }
 
 std::string percent_range(const Interval& interval) {
@@ -279,26 +273,22 @@ std::string count_in_reading(const PaperMeasures& measures, std::size_t reading,
 
 std::string range_in_reading(const PaperMeasures& measures, std::size_t reading,
                              double TableSummary::*number, int decimals) {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  for (const MeasuredPicture& one : measures.pictures) {
-    const TableSummary summary = summary_of(one.evaluation.original.glcm, one.readings[reading]);
-    low = std::min(low, summary.*number);
-    high = std::max(high, summary.*number);
-  }
-  return decimal(low, decimals) + " to " + decimal(high, decimals);
+  return range_over(measures.pictures, decimals, [&](const MeasuredPicture& one) {
+    return summary_of(one.evaluation.original.glcm, one.readings[reading]).*number;
+  });
 }
 
 Table readings_table(const PaperMeasures& measures) {
   const double least = published_least_correlation();
-  Table table{.id = "paper-readings",
-              .caption = "The paper's Table 1 under other readings of what the paper leaves open",
-              .columns = {{"reading of the adaptive method", Align::left},
-                          {"contrast, after / before"},
-                          {"correlation after"},
-                          {"as the text says"},
-                          {fmt::format("and correlation {:.2f} or more", least)},
-                          {"like the paper's picture 3"}}};
+  Table table{
+      .id = "paper-readings",
+      .caption = "The paper's Table 1 under other readings of what the paper leaves open",
+      .columns = {{"reading of the adaptive method", Align::left},
+                  {"contrast, after / before"},
+                  {"correlation after"},
+                  {"as the text says"},
+                  {fmt::format("and correlation {:.2f} or more", least)},
+                  {fmt::format("like the paper's picture {}", kPublishedContradiction + 1)}}};
   for (std::size_t i = 0; i < kTableReadings.size(); ++i) {
     table.rows.push_back(
         {kTableReadings[i].words, range_in_reading(measures, i, &TableSummary::contrast_ratio, 2),
@@ -311,9 +301,10 @@ Table readings_table(const PaperMeasures& measures) {
          count_in_reading(measures, i, is_like_contradiction)});
   }
   table.notes = {
-      {"Like picture 3: contrast rises in every direction, ASM in none, and the mean "
-       "correlation is at least the paper's smallest. docs/method.md, \"Options\", "
-       "defines the readings."}};
+      {fmt::format("Like picture {}: contrast rises in every direction, ASM in none, and the mean "
+                   "correlation is at least the paper's smallest. docs/method.md, \"Options\", "
+                   "defines the readings.",
+                   kPublishedContradiction + 1)}};
   return table;
 }
 
@@ -331,7 +322,7 @@ std::string readings_with(const PaperMeasures& measures, const Condition& condit
   return words.empty() ? "none" : words;
 }
 
-std::string third_picture_words(const PaperMeasures& measures) {
+std::string contradiction_words(const PaperMeasures& measures) {
   const TableSummary third = summary_of(kPublishedTable[kPublishedContradiction]);
   double low = std::numeric_limits<double>::infinity();
   double high = 0.0;
@@ -342,17 +333,19 @@ std::string third_picture_words(const PaperMeasures& measures) {
     high = std::max(high, other.deviation_after / other.deviation_before);
   }
   return fmt::format(
-      "The paper's third picture contradicts its text: contrast grows {:.1f}-fold and ASM rises in "
-      "no direction. The texture keeps {:.0f} % of the picture's standard deviation, where the "
-      "other four keep {:.0f} to {:.0f} %. The standard deviations that its cells of contrast and "
-      "correlation imply differ by at most {:.1f} % between directions, so {}. How strong a "
-      "texture "
-      "is depends on a normalisation that the paper does not give: contrast here becomes {} times "
-      "as large with the mask as defined, and {} times with the mask divided by its sum. Readings "
-      "under which one of our pictures has a growing contrast, no rising ASM and a correlation as "
-      "high as the paper's: {}.",
-      third.contrast_ratio, 100.0 * third.deviation_after / third.deviation_before, 100.0 * low,
-      100.0 * high, third.disagreement_percent,
+      "Picture {} of the paper's table contradicts the text: contrast grows {:.1f}-fold and ASM "
+      "rises in no direction. The texture keeps {:.0f} % of the picture's standard deviation, "
+      "where "
+      "the other four keep {:.0f} to {:.0f} %. The standard deviations that its cells of contrast "
+      "and correlation imply differ by at most {:.1f} % between directions, so {}. How strong a "
+      "texture is depends on a normalisation that the paper does not give: contrast here becomes "
+      "{} "
+      "times as large with the mask as defined, and {} times with the mask divided by its sum. "
+      "Readings under which one of our pictures has a growing contrast, no rising ASM and a "
+      "correlation as high as the paper's: {}.",
+      kPublishedContradiction + 1, third.contrast_ratio,
+      100.0 * third.deviation_after / third.deviation_before, 100.0 * low, 100.0 * high,
+      third.disagreement_percent,
       third.disagreement_percent < kAgreement_percent ? "no single cell can be a misprint"
                                                       : "some of these cells may be misprints",
       range_in_reading(measures, kReadingAsDefined, &TableSummary::contrast_ratio, 2),
@@ -377,7 +370,7 @@ std::string correlation_words(const PaperMeasures& measures) {
 Section table_1(const PaperMeasures& measures) {
   return {"table-1",
           "Table 1: co-occurrence statistics",
-          {changes_table(measures), summary_table(measures), Cited{third_picture_words(measures)},
+          {changes_table(measures), summary_table(measures), Cited{contradiction_words(measures)},
            Cited{correlation_words(measures)}, readings_table(measures), cells_of_paper(),
            cells_of_ours(measures)}};
 }
@@ -396,13 +389,13 @@ Section figure_4(const PaperPictures& pictures) {
 
 double published_mean() {
   return std::accumulate(kPublishedPercents.begin(), kPublishedPercents.end(), 0.0) /
-         (100.0 * kClasses);
+         (100.0 * kPublishedClasses);
 }
 
 void add_interval_row(Table& table, std::string name, double share, int trials_of_person) {
   const int n = kPublishedPeople * trials_of_person;
   const Proportion proportion{n, static_cast<int>(std::lround(share * n))};
-  std::vector<Cell> row = {std::move(name), share_words(share),
+  std::vector<Cell> row = {std::move(name), percent_of_share(share),
                            fmt::format("{} of {}", proportion.correct, proportion.n),
                            percent_range(clopper_pearson_interval(proportion))};
   for (const double spread : kSpreads) {
@@ -426,14 +419,14 @@ Table accuracy_table() {
   table.columns.push_back({"people always right or always wrong"});
   for (std::size_t i = 0; i < kPublishedPercents.size(); ++i) {
     add_interval_row(table, fmt::format("picture {}", i + 1), kPublishedPercents[i] / 100.0,
-                     kTrialsOfClass);
+                     kPublishedTrialsOfClass);
   }
   add_interval_row(table, "mean of all", published_mean(), kPublishedTrials);
   table.notes = {
       {fmt::format(
           "Assumes that each of {} people felt every picture {} times ({} presentations in "
           "all); the paper says only that a computer drew them at random.",
-          kPublishedPeople, kTrialsOfClass, kPublishedTrials)},
+          kPublishedPeople, kPublishedTrialsOfClass, kPublishedTrials)},
       {"Exact: the interval of Clopper and Pearson, which treats all presentations as "
        "independent.",
        {Source::clopper_pearson, Source::brown_cai_dasgupta}},
@@ -448,27 +441,27 @@ double least_lower_end() {
   double least = 1.0;
   for (const int percent : kPublishedPercents) {
     const double share = percent / 100.0;
-    least = std::min(
-        least,
-        assumed_interval(share, widest_spread(share), {kPublishedPeople, kTrialsOfClass}).low);
+    least = std::min(least, assumed_interval(share, widest_spread(share),
+                                             {kPublishedPeople, kPublishedTrialsOfClass})
+                                .low);
   }
   return least;
 }
 
 Section figure_6() {
-  const double chance = 1.0 / kClasses;
+  const double chance = 1.0 / kPublishedClasses;
   const double least = least_lower_end();
   return {
       "figure-6",
-      "Figure 6: accuracies of the classification",
+      "Figure 6: accuracies of the first experiment",
       {Cited{"The paper reports one percentage per picture, without a spread between people, an "
              "interval or a test. How certain they are therefore depends on how much people "
              "differed."},
        accuracy_table(),
        Cited{fmt::format("Even with the largest spread that is possible, the lowest interval "
                          "ends at {}, which is {} chance ({}).",
-                         share_words(least), least > chance ? "above" : "not above",
-                         share_words(chance))},
+                         percent_of_share(least), least > chance ? "above" : "not above",
+                         percent_of_share(chance))},
        Cited{"We have no numbers to set beside these: no person has been tested with this program. "
              "Simulated participants can run the same study (docs/stimuli.md), but they "
              "describe a model of a hand and of a sense, not people."}}};
@@ -532,7 +525,7 @@ Section table_3(const PaperMeasures& measures, const PaperPictures& pictures) {
            "which accuracies are not, and the paper does not say whether it averaged ratios or "
            "accuracies. Without numbers of people and trials, without knowing whether the same "
            "people felt both methods, and without a spread, no interval follows from it.",
-           kPublishedDecibel, ratio, share_words(adaptive), share_words(tv_gabor))},
+           kPublishedDecibel, ratio, percent_of_share(adaptive), percent_of_share(tv_gabor))},
        decibel_table(adaptive, tv_gabor)}};
 }
 

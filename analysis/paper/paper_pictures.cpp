@@ -5,6 +5,7 @@
 #include "analysis/paper/published.hpp"
 #include "analysis/text_table.hpp"
 #include "core/bytes.hpp"
+#include "core/text.hpp"
 #include "engine/pictures/colour_image.hpp"
 #include "engine/pictures/force_arrows.hpp"
 
@@ -104,15 +105,13 @@ GreyImage drawn_texture(const GreyImage& image, engine::Method method, double or
   return engine::texture_picture(engine::extract_texture<double>(image, options).texture);
 }
 
-std::string names_of(std::span<const PaperPicture> pictures) {
-  std::string names;
-  for (const PaperPicture& one : pictures) names += (names.empty() ? "" : ", ") + one.name;
-  return names;
-}
-
 Picture picture_of_tiles(std::string id, std::string caption, std::string alt, const Tiles& tiles) {
   std::string svg = svg_of_tiles(tiles, alt);
   return {std::move(id), std::move(caption), std::move(alt), std::move(svg)};
+}
+
+std::string alt_of(const Tiles& tiles) {
+  return "Rows: " + listed(tiles.labels) + ". Columns: " + listed(tiles.titles) + ".";
 }
 
 Picture orders_picture(std::span<const PaperPicture> pictures) {
@@ -134,8 +133,7 @@ Picture orders_picture(std::span<const PaperPicture> pictures) {
       fmt::format("The middle of each picture, {0} x {0} pixels, its textures of the fixed orders "
                   "of the paper's Fig. 1, and its adaptive texture, as in the paper's Table 2.",
                   kShownSide_px),
-      "Rows: " + names_of(pictures) + ". Columns: original, orders 0.3, 0.55 and 0.7, adaptive.",
-      tiles);
+      alt_of(tiles), tiles);
 }
 
 Picture forces_picture(const PaperPicture& picture) {
@@ -174,9 +172,10 @@ Picture methods_picture(std::span<const PaperPicture> pictures) {
   }
   return picture_of_tiles(
       "paper-methods",
-      "Pictures, made smaller, and the middle of their textures by both methods, 100 x 100 pixels, "
-      "as in the paper's Table 3.",
-      "Rows: " + names_of(pictures) + ". Columns: original, adaptive, TV-Gabor.", tiles);
+      fmt::format("Pictures, made smaller, and the middle of their textures by both methods, "
+                  "{0} x {0} pixels, as in the paper's Table 3.",
+                  kShownSide_px),
+      alt_of(tiles), tiles);
 }
 
 std::vector<LegendEntry> legend_of_orders(std::span<const MeasuredPicture> pictures) {
@@ -186,7 +185,9 @@ std::vector<LegendEntry> legend_of_orders(std::span<const MeasuredPicture> pictu
         mark_entry(series_mark(i), series_colour(i), fitted(pictures[i].name, kCellWidth)));
   }
   legend.push_back({LegendEntry::Kind::dashes, std::string(kFaint), 0, "adaptive texture"});
-  legend.push_back({LegendEntry::Kind::field, std::string(kFaint), 0, "orders 0.5 to 0.7"});
+  legend.push_back(
+      {LegendEntry::Kind::field, std::string(kFaint), 0,
+       fmt::format("orders {:g} to {:g}", kPublishedLowestOrder, kPublishedHighestOrder)});
   return legend;
 }
 

@@ -59,6 +59,9 @@ inline constexpr std::size_t kPublishedContradiction = 2;
 inline constexpr std::array<int, 5> kPublishedPercents = {87, 72, 81, 91, 83};
 inline constexpr int kPublishedPeople = 20;
 inline constexpr int kPublishedTrials = 25;
+inline constexpr int kPublishedClasses = static_cast<int>(kPublishedPercents.size());
+/// Presentations of one picture, if each person feels every picture equally often.
+inline constexpr int kPublishedTrialsOfClass = kPublishedTrials / kPublishedClasses;
 
 /// The improvement of the average accuracy over TV-Gabor, 10 log10 of a ratio.
 inline constexpr double kPublishedDecibel = 0.4;

@@ -2,6 +2,7 @@
 
 #include "analysis/text_figures.hpp"
 #include "analysis/text_table.hpp"
+#include "core/strict_json.hpp"
 #include "protocols/simulation/subject_model.hpp"
 
 #include <cmath>
@@ -211,10 +212,6 @@ Json confusions_json(const SubjectFit& fit) {
   return all;
 }
 
-std::string shown(const Json& object) {
-  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
 }  // namespace
 
 std::string fit_json(const SubjectFit& fit, const FitOrigin& origin) {
@@ -235,7 +232,7 @@ std::string fit_json(const SubjectFit& fit, const FitOrigin& origin) {
                                {"bootstraps", fit.bootstraps}};
   object["confusions"] = confusions_json(fit);
   object["warnings"] = fit.warnings;
-  return shown(object);
+  return json_text(object);
 }
 
 std::string fit_json(const AccuracyFit& fit, const FitOrigin& origin) {
@@ -251,7 +248,7 @@ std::string fit_json(const AccuracyFit& fit, const FitOrigin& origin) {
   object["best_log_likelihood"] = number(fit.best_log_likelihood);
   object["warnings"] = fit.warnings;
   object["fitted"] = Json::parse(simulation::subject_model_json(fit.subject));
-  return shown(object);
+  return json_text(object);
 }
 
 }  // namespace touchtrial::planning

@@ -5,6 +5,7 @@
 #include "analysis/statistics/chance_test.hpp"
 #include "analysis/text_figures.hpp"
 #include "analysis/text_table.hpp"
+#include "core/strict_json.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -319,7 +320,7 @@ std::string power_json(const PowerReport& report) {
   object["methods"] = methods_object(report);
   object["program"] = {
       {"version", setting.program}, {"seal", setting.seal}, {"fields", setting.fields}};
-  return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(object);
 }
 
 }  // namespace touchtrial::planning

@@ -4,7 +4,6 @@
 #include "analysis/statistics/paired_tests.hpp"
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
-#include "core/text.hpp"
 #include "protocols/design/protocol.hpp"
 
 #include <algorithm>
@@ -14,17 +13,12 @@
 namespace touchtrial::planning {
 namespace {
 
-std::string labels_of(const design::Study& study) {
-  const auto presented = static_cast<std::size_t>(study.presented_methods());
-  return listed(std::span(study.methods).first(presented), ", ", &design::StudyMethod::label);
-}
-
 int method_of(const design::Study& study, const std::string& label) {
   for (int i = 0; i < study.presented_methods(); ++i) {
     if (study.methods[i].label == label) return i;
   }
   throw UsageError("--methods: the study has no method " + in_quotes(label) +
-                   "; it presents: " + labels_of(study));
+                   "; it presents: " + study.presented_labels());
 }
 
 PrimaryTest pair_test(const design::Study& study, const std::optional<MethodLabels>& methods) {
@@ -32,17 +26,18 @@ PrimaryTest pair_test(const design::Study& study, const std::optional<MethodLabe
       analysis::identification::primary_question(study, study.presented_methods());
   if (!methods) {
     if (test) return *test;
-    throw UsageError(
-        "the study compares " + std::to_string(study.presented_methods()) +
-        " methods; name the two of its primary test with --methods, of: " + labels_of(study));
+    throw UsageError("the study compares " + std::to_string(study.presented_methods()) +
+                     " methods; name the two of its primary test with --methods, of: " +
+                     study.presented_labels());
   }
   // Two methods have the usual test of a comparison.
   if (!test) test = analysis::identification::primary_question(study, 2);
   test->first = method_of(study, methods->first);
   test->second = method_of(study, methods->second);
   if (test->first == test->second) {
-    throw UsageError("--methods: " + in_quotes(methods->first) +
-                     " is given twice; a comparison needs two methods, of: " + labels_of(study));
+    throw UsageError(
+        "--methods: " + in_quotes(methods->first) +
+        " is given twice; a comparison needs two methods, of: " + study.presented_labels());
   }
   return *test;
 }

@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "protocols/simulation/felt_decision.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -55,9 +56,11 @@ void require_answers(const design::Study& study, const simulation::SubjectModel&
       subject.source, subject.explore_s, study.trials.explore_limit_s)));
 }
 
-analysis::SessionOutcome completed_session(int number, int order_block) {
+analysis::SessionOutcome completed_session(int number, int session_number, int visit,
+                                           int order_block) {
   analysis::SessionOutcome session;
-  session.row.session = number;
+  session.row.session = session_number;
+  session.row.visit = visit;
   session.row.participant = participant_name(number);
   session.row.enrolment = number;
   session.row.state = store::SessionState::completed;
@@ -67,11 +70,13 @@ analysis::SessionOutcome completed_session(int number, int order_block) {
   return session;
 }
 
-analysis::TrialOutcome answered_trial(int number, const design::Presentation& presentation,
+analysis::TrialOutcome answered_trial(int number, int session, int visit,
+                                      const design::Presentation& presentation,
                                       const design::Schedule& schedule, int position) {
   analysis::TrialOutcome trial;
   trial.participant = participant_name(number);
-  trial.row.session = number;
+  trial.visit = visit;
+  trial.row.session = session;
   trial.row.trial = presentation.trial;
   trial.row.block = presentation.block;
   trial.row.state = store::TrialState::answered;
@@ -150,20 +155,24 @@ RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::Sub
       test_(test),
       feelings_(feelings),
       first_half_loss_(first_half_loss),
+      visits_(study.visits.count),
       of_method_(stimuli_of_method(study, test.first)),
       empty_(nobody_yet(study)) {
   require_answers(study, subject);
   const design::StudyKey key = design::simulated_study_key(study);
-  for (int number = 1; number <= most_participants; ++number) {
+  for (int i = 0; i < most_participants * visits_; ++i) {
+    const int number = 1 + i / visits_;
     PlannedSchedule& planned = schedules_.emplace_back();
-    planned.schedule = design::make_schedule(study, key.draw_of(number, design::Draws::rehearsal));
+    planned.schedule = design::make_schedule(
+        study, key.draw_of(number, design::Draws::rehearsal, 1 + i % visits_));
     for (const int class_index : planned.schedule.layout) {
       planned.pictures.push_back(study.classes[class_index].label);
     }
     planned.scored = static_cast<int>(std::ranges::count(planned.schedule.presentations,
                                                          design::PresentationKind::scored,
                                                          &design::Presentation::kind));
-    planned.order_block = design::order_block_of(study, key.stations, number);
+    planned.order_block =
+        design::order_block_of(study, key.stations, number, design::Draws::rehearsal);
   }
   if (!test_.margin) return;
   const double accuracy = accuracy_if_alike();
@@ -178,7 +187,7 @@ RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::Sub
 
 double RehearsedStudy::accuracy_if_alike() const {
   constexpr int kParticipants = 400;
-  const auto size = std::min(static_cast<int>(schedules_.size()), kParticipants);
+  const auto size = std::min(static_cast<int>(schedules_.size()) / visits_, kParticipants);
   analysis::Proportion right;
   for (int made = 0; made < kParticipants; made += size) {
     RandomStream seeds(0, "power: methods alike", static_cast<std::uint64_t>(made));
@@ -214,12 +223,8 @@ design::StimulusIndex RehearsedStudy::felt_stimulus(const design::StimulusIndex&
 
 void RehearsedStudy::add_participant(int number, const Answering& answering,
                                      analysis::Outcomes& outcomes) const {
-  const PlannedSchedule& planned = schedules_[static_cast<std::size_t>(number) - 1];
-  const design::Schedule& schedule = planned.schedule;
   const simulation::Individual individual(subject_, answering.study_seed, number);
   const simulation::FeltDecision decision(individual, answering.knowledge);
-  const simulation::SeenPictures seen =
-      simulation::see(planned.pictures, subject_, individual, answering.knowledge);
   // One stream for each participant: making a stream takes longer than the rest of a trial.
   RandomStream draws(answering.study_seed, "power: feelings", static_cast<std::uint64_t>(number));
   std::optional<RandomStream> losses;
@@ -227,24 +232,35 @@ void RehearsedStudy::add_participant(int number, const Answering& answering,
     losses.emplace(answering.study_seed, "power: losses", static_cast<std::uint64_t>(number));
   }
   FeltTrial trial{answering.study_seed, number, 0, 0};
-  int place = -1;
-  for (const design::Presentation& presentation : schedule.presentations) {
-    ++trial.nth;
-    trial.draw = draws.bits();
-    const std::uint64_t instead = draws.bits();
-    if (presentation.kind != design::PresentationKind::scored) continue;
-    ++place;
-    const design::StimulusIndex felt =
-        felt_stimulus(presentation.stimulus, answering.hypothesis, instead);
-    RandomStream random = simulation::stream_of_trial(trial.study_seed, simulation::kAnswerPurpose,
-                                                      trial.participant, trial.nth);
-    int position = decision.answer(feelings_.felt(felt, trial), seen, random).position;
-    const double loss = loss_of(planned, place, presentation.stimulus.method, answering.hypothesis);
-    const bool is_right = schedule.layout[position] == presentation.stimulus.class_index;
-    if (loss > 0.0 && is_right && losses->uniform() < loss) {
-      position = another_position(position, schedule.layout.size(), *losses);
+  for (int visit = 1; visit <= visits_; ++visit) {
+    const int session = (number - 1) * visits_ + visit;
+    const PlannedSchedule& planned = schedules_[static_cast<std::size_t>(session) - 1];
+    const design::Schedule& schedule = planned.schedule;
+    const simulation::SeenPictures seen =
+        simulation::see(planned.pictures, subject_, individual, answering.knowledge);
+    outcomes.sessions.push_back(completed_session(number, session, visit, planned.order_block));
+    trial.nth = simulation::SimulatedParticipant::trials_before(visit);
+    int place = -1;
+    for (const design::Presentation& presentation : schedule.presentations) {
+      ++trial.nth;
+      trial.draw = draws.bits();
+      const std::uint64_t instead = draws.bits();
+      if (presentation.kind != design::PresentationKind::scored) continue;
+      ++place;
+      const design::StimulusIndex felt =
+          felt_stimulus(presentation.stimulus, answering.hypothesis, instead);
+      RandomStream random = simulation::stream_of_trial(
+          trial.study_seed, simulation::kAnswerPurpose, trial.participant, trial.nth);
+      int position = decision.answer(feelings_.felt(felt, trial), seen, random).position;
+      const double loss =
+          loss_of(planned, place, presentation.stimulus.method, answering.hypothesis);
+      const bool is_right = schedule.layout[position] == presentation.stimulus.class_index;
+      if (loss > 0.0 && is_right && losses->uniform() < loss) {
+        position = another_position(position, schedule.layout.size(), *losses);
+      }
+      outcomes.trials.push_back(
+          answered_trial(number, session, visit, presentation, schedule, position));
     }
-    outcomes.trials.push_back(answered_trial(number, presentation, schedule, position));
   }
 }
 
@@ -255,8 +271,6 @@ analysis::Outcomes RehearsedStudy::outcomes(int participants, Hypothesis hypothe
       feelings_.knowledge(study_seed);
   const Answering answering{*knowledge, hypothesis, study_seed};
   for (int number = 1; number <= participants; ++number) {
-    outcomes.sessions.push_back(
-        completed_session(number, schedules_[static_cast<std::size_t>(number) - 1].order_block));
     add_participant(number, answering, outcomes);
   }
   return outcomes;

@@ -18,10 +18,10 @@ constexpr double kProfiled = 0.9;
 
 /// Moves numbers that end very close to a bound onto it.
 void snap_to_bounds(std::vector<double>& at, const Bounds& bounds) {
-  constexpr double kHair = 1e-6;
+  constexpr double kBeside = 1e-6;
   for (std::size_t i = 0; i < at.size(); ++i) {
-    if (at[i] - bounds.lower[i] < kHair) at[i] = bounds.lower[i];
-    if (bounds.upper[i] - at[i] < kHair) at[i] = bounds.upper[i];
+    if (at[i] - bounds.lower[i] < kBeside) at[i] = bounds.lower[i];
+    if (bounds.upper[i] - at[i] < kBeside) at[i] = bounds.upper[i];
   }
 }
 

@@ -12,7 +12,9 @@
 namespace touchtrial::analysis {
 namespace {
 
-constexpr int kGridSteps = 800;    ///< of Simpson's rule, even
+constexpr int kFewestSteps = 800;    ///< of Simpson's rule
+constexpr double kStepsOfSd = 16.0;  ///< in the standard deviation of an increment, at least
+constexpr double kMostSteps = 100'000;
 constexpr double kFarthest = 9.0;  ///< standard deviations beyond which nothing is left
 
 double above(double z) {
@@ -27,6 +29,13 @@ double spent_one_sided(double alpha, AlphaSpending spending, double share) {
   return 2.0 * above(z / std::sqrt(share));
 }
 
+/// An even number of steps, for which no increment is narrower than a few of them.
+int steps_between(double low, double high, double least_sd) {
+  const double wanted = std::min(kMostSteps, (high - low) * kStepsOfSd / least_sd);
+  const int steps = std::max(kFewestSteps, static_cast<int>(wanted));
+  return steps + steps % 2;
+}
+
 /// The density of the sum so far among studies that went on, on an even grid.
 struct Paths {
   std::vector<double> place{0.0};
@@ -39,21 +48,29 @@ struct Paths {
     return sum;
   }
 
+  /// The density of the sum after another increment.
+  [[nodiscard]] double density(double at, double sd) const {
+    const double reach = kFarthest * sd;
+    auto i = static_cast<std::size_t>(std::ranges::lower_bound(place, at - reach) - place.begin());
+    double sum = 0.0;
+    for (; i < place.size() && place[i] <= at + reach; ++i) {
+      const double z = (at - place[i]) / sd;
+      sum += mass[i] * std::exp(-0.5 * z * z);
+    }
+    return sum / (sd * std::sqrt(2.0 * std::numbers::pi));
+  }
+
   /// Goes on with the sums between low and high.
-  void advance(double sd, double low, double high) {
-    Paths next{std::vector<double>(kGridSteps + 1), std::vector<double>(kGridSteps + 1)};
-    const double step = (high - low) / kGridSteps;
-    const double scale = 1.0 / (sd * std::sqrt(2.0 * std::numbers::pi));
-    for (int k = 0; k <= kGridSteps; ++k) {
+  /// \param next_sd  of the increment after this one
+  void advance(double sd, double next_sd, double low, double high) {
+    const int steps = steps_between(low, high, std::min(sd, next_sd));
+    const double step = (high - low) / steps;
+    Paths next{std::vector<double>(steps + 1), std::vector<double>(steps + 1)};
+    for (int k = 0; k <= steps; ++k) {
       const double at = low + k * step;
-      double density = 0.0;
-      for (std::size_t i = 0; i < place.size(); ++i) {
-        const double z = (at - place[i]) / sd;
-        density += mass[i] * std::exp(-0.5 * z * z);
-      }
-      const double weight = k == 0 || k == kGridSteps ? 1.0 : (k % 2 == 1 ? 4.0 : 2.0);
+      const double weight = k == 0 || k == steps ? 1.0 : (k % 2 == 1 ? 4.0 : 2.0);
       next.place[k] = at;
-      next.mass[k] = scale * density * weight * step / 3.0;
+      next.mass[k] = density(at, sd) * weight * step / 3.0;
     }
     *this = std::move(next);
   }
@@ -87,19 +104,20 @@ std::vector<double> nominal_levels(double alpha, Sides sides, AlphaSpending spen
   const double of_side = sides == Sides::one ? alpha : alpha / 2.0;
   std::vector<double> levels;
   Paths paths;
-  double share = 0.0;
   double spent = 0.0;
-  for (const double next : shares) {
-    const double sd = std::sqrt(next - share);
-    const double allowed = spent_one_sided(of_side, spending, next);
+  double sd = shares.empty() ? 0.0 : std::sqrt(shares.front());
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double root = std::sqrt(shares[i]);
+    const double allowed = spent_one_sided(of_side, spending, shares[i]);
     const double bound = bound_for(paths, sd, allowed - spent);
-    const double z = bound / std::sqrt(next);
-    levels.push_back((sides == Sides::one ? 1.0 : 2.0) * above(z));
-    const double reach = kFarthest * std::sqrt(next);
-    const double high = std::min(bound, reach);
-    paths.advance(sd, sides == Sides::one ? -reach : -high, high);
-    share = next;
+    levels.push_back((sides == Sides::one ? 1.0 : 2.0) * above(bound / root));
     spent = allowed;
+    if (i + 1 == shares.size()) break;
+    const double next_sd = std::sqrt(shares[i + 1] - shares[i]);
+    const double reach = kFarthest * root;
+    const double high = std::min(bound, reach);
+    paths.advance(sd, next_sd, sides == Sides::one ? -reach : -high, high);
+    sd = next_sd;
   }
   return levels;
 }

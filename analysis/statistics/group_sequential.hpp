@@ -21,8 +21,8 @@ enum class AlphaSpending {
 /// many participants. Two-sided tests spend half of alpha on each side.
 /// \param alpha  of all looks together, in (0, 0.5]
 /// \param shares  of the information at the looks, ascending, in (0, 1]
-/// \return one level for each look, on the scale of the test's own p; below 1e-6 inexact by up to
-///   1e-9
+/// \return one level for each look, on the scale of the test's own p; inexact by up to 1e-9 where
+///   looks lie apart by 1e-5 of the information or more
 /// \throws std::invalid_argument if an argument is out of range
 [[nodiscard]] std::vector<double> nominal_levels(double alpha, Sides sides, AlphaSpending spending,
                                                  std::span<const double> shares);

@@ -1,13 +1,13 @@
 #include "analysis/verification/chain_notes.hpp"
 
 #include "core/errors.hpp"
+#include "core/utc.hpp"
 #include "protocols/store/damage.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <chrono>
 #include <span>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 namespace touchtrial::analysis {
@@ -44,14 +44,6 @@ void add_losses(std::vector<std::string>& notes, std::span<const store::Event> c
 }
 
 }  // namespace
-
-std::string utc_text(std::chrono::nanoseconds at) {
-  // Years beyond 9999 come from damage, and are no dates.
-  constexpr seconds kLast{253'402'300'799};
-  const auto whole = std::chrono::floor<seconds>(at);
-  if (whole < seconds(0) || whole > kLast) return fmt::format("{} s", whole.count());
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time_t{whole.count()}));
-}
 
 std::vector<std::string> chain_notes(const store::StudyStore& store) {
   std::vector<std::string> notes;

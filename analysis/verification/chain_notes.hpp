@@ -5,7 +5,6 @@
 
 #include "protocols/store/study_store.hpp"
 
-#include <chrono>
 #include <string>
 #include <vector>
 
@@ -16,8 +15,5 @@ namespace touchtrial::analysis {
 /// them, and so are those of simulated studies, whose times mean nothing.
 /// \throws StoreError if a chain cannot be read
 [[nodiscard]] std::vector<std::string> chain_notes(const store::StudyStore& store);
-
-/// A time since 1970 as ISO 8601; in seconds if it lies outside of the years 1970 to 9999.
-[[nodiscard]] std::string utc_text(std::chrono::nanoseconds at);
 
 }  // namespace touchtrial::analysis

@@ -7,12 +7,14 @@
 #include "analysis/verification/session_course.hpp"
 #include "core/errors.hpp"
 #include "protocols/design/protocol.hpp"
+#include "protocols/store/damage.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -74,10 +76,9 @@ std::string check_configuration(const store::StudyStore& store, const design::St
 /// enrolment number alone.
 SessionCourse course_of(const store::StudyStore& store, const design::StudyKey& key,
                         const store::SessionRow& session) {
-  const design::Draws draws =
-      session.pilot || session.simulated ? design::Draws::rehearsal : design::Draws::people;
   try {
-    SessionCourse course(key.study, key.draw_of(session.enrolment, draws));
+    SessionCourse course(key.study,
+                         key.draw_of(session.enrolment, draws_of(session), session.visit));
     const std::optional<SecretKey> own = participant_key(store, key, session);
     for (const store::Event& event : store.events(session.session)) {
       // How long a session was away is sealed; what else matters here is not.
@@ -89,6 +90,43 @@ SessionCourse course_of(const store::StudyStore& store, const design::StudyKey& 
     throw VerificationError(fmt::format("session {}: the study has no order for enrolment {}: {}",
                                         session.session, session.enrolment, error.what()));
   }
+}
+
+/// The days between a participant's visits on the file's chain. In virtual time they mean nothing.
+void require_days_between(const store::StudyStore& store, const design::StudyKey& key) {
+  if (key.study.visits.count < 2 || store.commitment().simulated) return;
+  std::map<std::pair<int, int>, std::chrono::nanoseconds> opened;  // by enrolment and visit
+  for (const store::Event& event : store.events(0)) {
+    if (event.kind != store::EventKind::session_opened) continue;
+    const auto body = store::body_of(event, store::session_opened_from_json);
+    opened[{body.enrolment, body.visit}] = event.at;
+    const auto before = opened.find({body.enrolment, body.visit - 1});
+    if (before == opened.end()) continue;
+    const double days = design::days_between(before->second, event.at);
+    if (days >= key.study.visits.least_days) continue;
+    throw VerificationError(
+        fmt::format("session {}: was opened {:.2f} days after the visit before, and the study has "
+                    "at least {} between visits",
+                    body.session, days, key.study.visits.least_days));
+  }
+}
+
+/// A group that is told is the one that was dealt, and groups that are not open are not told.
+void require_dealt_groups(const store::StudyStore& store, const design::StudyKey& key) {
+  const design::GroupPlan& groups = key.study.groups;
+  std::map<int, store::SessionRow> rows;
+  for (const store::SessionRow& row : store.sessions()) rows[row.session] = row;
+  store.for_each(store::EventKind::opened, [&](const store::Event& event) {
+    const auto row = rows.find(event.session);
+    if (row == rows.end()) return;
+    const auto group = key.group_of(row->second.enrolment, draws_of(row->second));
+    const std::string dealt =
+        group && groups.open ? groups.labels[static_cast<std::size_t>(*group)] : "";
+    if (store::body_of(event, store::opening_from_json).group == dealt) return;
+    throw VerificationError(
+        fmt::format("session {}: its group is not the one that enrolment {} was dealt",
+                    event.session, row->second.enrolment));
+  });
 }
 
 /// The station that recorded a session; empty if its file names none.
@@ -115,6 +153,8 @@ void require_own_number(const store::StudyStore& store, const design::StudyKey& 
 
 std::string check_schedule(const store::StudyStore& store, const design::StudyKey& key) {
   const std::map<int, design::Schedule> schedules = open_schedules(store, key);
+  require_days_between(store, key);
+  require_dealt_groups(store, key);
   int presentations = 0;
   for (const store::SessionRow& session : store.sessions()) {
     require_own_number(store, key, session);

@@ -1,6 +1,8 @@
 #include "app/experimenter/console_panel.hpp"
 
+#include "app/experimenter/status_words.hpp"
 #include "app/windows/look.hpp"
+#include "protocols/design/deviation_codes.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -95,6 +97,15 @@ void draw_progress(const session::SessionStatus& status, float density) {
   ImGui::ProgressBar(std::min(share, 1.0F), {-1.0F, 10.0F * density}, "");
 }
 
+/// The participant's comfort stop, until it is settled.
+void draw_stop(const session::SessionStatus& status) {
+  if (!status.participant_stopped) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, kVermillion);
+  large("The participant has stopped the force");
+  ImGui::PopStyleColor();
+  ImGui::TextWrapped("%s", stop_advice(status).c_str());
+}
+
 void fact(const char* name, const std::string& value) {
   ImGui::TableNextColumn();
   // The name is closer to its value than to the row above.
@@ -164,6 +175,7 @@ void ConsolePanel::draw(const session::SessionStatus& status, Vec2 size, float d
   ImGui::Begin("console", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
   draw_heading(status);
   draw_progress(status, density);
+  draw_stop(status);
   ImGui::Spacing();
   draw_facts(status);
   ImGui::Spacing();
@@ -217,6 +229,8 @@ void ConsolePanel::draw_draft(float density, bool may_write) {
     ImGui::InputTextWithHint("##code", "code", code_.data(), code_.size());
     is_writing_ = is_writing_ || ImGui::IsItemActive();
     ImGui::SameLine();
+    draw_codes();
+    ImGui::SameLine();
   }
   ImGui::SetNextItemWidth(-1.0F);
   if (is_begun_ && may_write && draft_ != Draft::deviation) ImGui::SetKeyboardFocusHere();
@@ -242,6 +256,19 @@ void ConsolePanel::draw_draft(float density, bool may_write) {
   }
   if (is_sent) send();
   if (is_left) draft_ = Draft::none;
+}
+
+/// The program's codes, from which one can be taken into the field.
+void ConsolePanel::draw_codes() {
+  if (!ImGui::BeginCombo("##codes", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_HeightLarge)) {
+    return;
+  }
+  for (const std::string_view code : design::kDeviationCodes) {
+    if (!ImGui::Selectable(std::string(code).c_str())) continue;
+    code_.fill('\0');
+    std::copy(code.begin(), code.end(), code_.begin());
+  }
+  ImGui::EndCombo();
 }
 
 void ConsolePanel::draw_asked() {

@@ -32,6 +32,7 @@ class ConsolePanel {
   enum class Draft { none, pause_reason, stop_reason, note, deviation, abort };
   void draw_buttons(const session::SessionStatus& status, float density);
   void draw_draft(float density, bool may_write);
+  void draw_codes();
   void draw_asked();
   void begin(Draft draft);
   void send();

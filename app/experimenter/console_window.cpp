@@ -97,6 +97,17 @@ void name_keys(ImGuiIO& io) {
                     ": connect another, or choose one of these");
 }
 
+/// Limits the window's size.
+/// \return the size that it has then
+std::pair<int, int> shrink_to(GLFWwindow* window, int width, int height) {
+  int own_width = 0;
+  int own_height = 0;
+  glfwGetWindowSize(window, &own_width, &own_height);
+  const std::pair size{std::min(own_width, width), std::min(own_height, height)};
+  glfwSetWindowSize(window, size.first, size.second);
+  return size;
+}
+
 /// Moves the window to the middle of the monitor, and limits its size.
 void place(GLFWwindow* window, int wanted) {
   int count = 0;
@@ -107,12 +118,7 @@ void place(GLFWwindow* window, int wanted) {
   int width = 0;
   int height = 0;
   glfwGetMonitorWorkarea(monitors[wanted - 1], &x, &y, &width, &height);
-  int own_width = 0;
-  int own_height = 0;
-  glfwGetWindowSize(window, &own_width, &own_height);
-  own_width = std::min(own_width, width);
-  own_height = std::min(own_height, height);
-  glfwSetWindowSize(window, own_width, own_height);
+  const auto [own_width, own_height] = shrink_to(window, width, height);
   glfwSetWindowPos(window, x + (width - own_width) / 2, y + (height - own_height) / 2);
 }
 
@@ -164,7 +170,12 @@ struct ConsoleWindow::State {
   void open() {
     window = make_window();
     try {
-      if (options.monitor) place(window, *options.monitor);
+      if (options.monitor) {
+        place(window, *options.monitor);
+      } else if (const auto& area = options.area) {
+        shrink_to(window, area->width, area->height);
+        glfwSetWindowPos(window, area->x, area->y);
+      }
     } catch (...) {
       glfwDestroyWindow(window);
       throw;

@@ -11,9 +11,19 @@
 
 namespace touchtrial::app {
 
+/// A part of the screen, in screen coordinates.
+struct ScreenArea {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+};
+
 struct ConsoleWindowOptions {
-  /// From 1, as the system counts monitors; nothing: the system chooses the place.
+  /// From 1, as the system counts monitors; nothing: `area`.
   std::optional<int> monitor;
+  /// The window lies in its corner, and is no larger; nothing: the system chooses the place.
+  std::optional<ScreenArea> area;
   /// Whether the participant is under force; then every key is the participant's. Called on both
   /// threads.
   std::function<bool()> keyboard_is_participants;

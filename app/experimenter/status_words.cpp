@@ -13,9 +13,19 @@ bool begins_character(char byte) {
 
 }  // namespace
 
+std::string stop_advice(const session::SessionStatus& status) {
+  if (!status.participant_stopped) return "";
+  return std::string("Ask how they are, and type a reason as a deviation (code ") +
+         session::kComfortStopCode + "). " +
+         (status.needs_consent
+              ? "The force stays off until you press g at the terminal; abort ends the session."
+              : "They go on by themselves; abort ends the session.");
+}
+
 std::string progress_words(const session::SessionStatus& status) {
   std::string words = status.participant + "  " + status.stage;
   if (status.practice && status.stage != "practice") words += " (practice)";
+  if (status.participant_stopped) words += " by the participant";
   if (status.trial > 0) words += fmt::format("  trial {} of {}", status.trial, status.of);
   if (status.interruptions > 0) words += fmt::format("  interruptions {}", status.interruptions);
   return words;

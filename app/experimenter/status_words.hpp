@@ -11,6 +11,9 @@ namespace touchtrial::app {
 /// depends on a stimulus or an outcome.
 [[nodiscard]] std::string status_line(const session::SessionStatus& status);
 
+/// What the experimenter is to do after the participant's comfort stop; empty if there is none.
+[[nodiscard]] std::string stop_advice(const session::SessionStatus& status);
+
 /// The part of the status that does not change every second.
 [[nodiscard]] std::string progress_words(const session::SessionStatus& status);
 

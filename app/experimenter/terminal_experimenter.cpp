@@ -46,7 +46,17 @@ TerminalExperimenter::TerminalExperimenter(ExperimenterTerminal terminal)
 }
 
 TerminalExperimenter::~TerminalExperimenter() {
+  end_line();
+}
+
+void TerminalExperimenter::end_line() {
   if (terminal_.rewrites && !shown_.empty()) terminal_.write("\n");
+  shown_.clear();
+}
+
+void TerminalExperimenter::acknowledged(int /*trial*/) {
+  if (terminal_.rewrites && !shown_.empty()) terminal_.write("\r\x1b[K");
+  shown_.clear();
 }
 
 void TerminalExperimenter::add(const session::ExperimenterRequest& request) {
@@ -100,6 +110,7 @@ void TerminalExperimenter::rewrite(const std::string& line) {
 }
 
 void TerminalExperimenter::show(const session::SessionStatus& status) {
+  tell_stop(status);
   status_ = first_of(status_line(status), terminal_.columns - 1);
   if (terminal_.rewrites) {
     rewrite(line_now());
@@ -109,6 +120,15 @@ void TerminalExperimenter::show(const session::SessionStatus& status) {
   if (progress == progress_) return;
   progress_ = progress;
   write_line(status_line(status));
+}
+
+void TerminalExperimenter::tell_stop(const session::SessionStatus& status) {
+  const bool is_news = status.participant_stopped && !is_stop_told_;
+  is_stop_told_ = status.participant_stopped;
+  if (!is_news) return;
+  if (terminal_.rewrites) terminal_.write("\a\r\x1b[K");
+  write_line("The participant has stopped the force. " + stop_advice(status));
+  shown_.clear();
 }
 
 std::optional<session::ExperimenterRequest> TerminalExperimenter::request() {

@@ -46,6 +46,10 @@ class TerminalExperimenter final : public session::Experimenter,
   void add(const session::ExperimenterRequest& request);
 
   void show(const session::SessionStatus& status) override;
+  /// Makes room for a line of standard output.
+  void acknowledged(int trial) override;
+  /// Ends the line that is overwritten, before other output follows.
+  void end_line();
   [[nodiscard]] std::optional<session::ExperimenterRequest> request() override;
   /// Returns an empty list at once if nobody types.
   [[nodiscard]] std::optional<std::vector<session::Tick>> day_sheet(
@@ -64,6 +68,8 @@ class TerminalExperimenter final : public session::Experimenter,
   [[nodiscard]] std::string line_now() const;
   void rewrite(const std::string& line);
   void show_item(const std::string& text);
+  /// Says once, and audibly, that the participant has stopped the force, and what to do.
+  void tell_stop(const session::SessionStatus& status);
   /// \param is_ready  nothing is missing
   [[nodiscard]] Says said(bool is_ready);
   void write_line(const std::string& line);
@@ -79,6 +85,7 @@ class TerminalExperimenter final : public session::Experimenter,
   std::string item_;  ///< the item of the day sheet that was shown last
   std::string shown_;
   std::string progress_;
+  bool is_stop_told_ = false;
   std::mutex mutex_;
   std::vector<session::ExperimenterRequest> added_;
 };

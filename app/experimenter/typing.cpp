@@ -2,10 +2,12 @@
 
 #include "app/console.hpp"
 #include "core/text.hpp"
+#include "protocols/design/deviation_codes.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <numeric>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -43,6 +45,7 @@ std::optional<session::StepReply> SpokenAnswers::attend(const session::Step& ste
 namespace {
 
 constexpr char kEscape = '\x1b';
+constexpr char kTab = '\t';
 constexpr std::size_t kLongest = 500;
 
 bool ends_line(char key) {
@@ -79,6 +82,8 @@ void RequestTyping::take(char key) {
   if (key == kEscape) {
     field_ = Field::none;
     line_.clear();
+  } else if (key == kTab && field_ == Field::code) {
+    complete_code();
   } else if (field_ == Field::none) {
     begin(key);
   } else if (line_.take(key)) {
@@ -96,6 +101,22 @@ std::optional<session::ExperimenterRequest> RequestTyping::next() {
 void RequestTyping::ask(session::ExperimenterRequest::Kind kind, const std::string& text,
                         const std::string& code) {
   requests_.push_back({kind, text, code});
+}
+
+/// The next code that begins with what was typed before Tab, in a circle.
+void RequestTyping::complete_code() {
+  const auto& codes = design::kDeviationCodes;
+  const auto now = std::ranges::find(codes, line_.text());
+  if (now == codes.end() || !now->starts_with(code_)) code_ = line_.text();
+  const std::size_t from =
+      now == codes.end() ? 0 : 1 + static_cast<std::size_t>(now - codes.begin());
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    const std::string_view code = codes[(from + i) % codes.size()];
+    if (!code.starts_with(code_)) continue;
+    line_.clear();
+    for (const char letter : code) static_cast<void>(line_.take(letter));
+    return;
+  }
 }
 
 void RequestTyping::begin(char key) {
@@ -116,6 +137,7 @@ void RequestTyping::begin(char key) {
       field_ = Field::note;
       break;
     case 'd':
+      code_.clear();
       field_ = Field::code;
       break;
     case 'a':
@@ -170,7 +192,7 @@ std::string RequestTyping::prompt() const {
     case Field::note:
       return "note: " + line_.text();
     case Field::code:
-      return "deviation code: " + line_.text();
+      return "deviation code (Tab: the next of the program's): " + line_.text();
     case Field::remark:
       return "deviation " + code_ + ", in words: " + line_.text();
     case Field::sure:

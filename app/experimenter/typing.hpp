@@ -70,7 +70,8 @@ class TypedLine {
 
 /// Requests by keys: p pause, r resume, c comfort stop, n note, d deviation, a abort. Pause and
 /// comfort stop take effect at once; the reason is typed afterwards and becomes a note (pause) or a
-/// deviation (comfort stop). Escape discards a line. Not thread-safe.
+/// deviation (comfort stop). Tab completes a deviation's code to one of the program's, then to the
+/// next; another code may be typed. Escape discards a line. Not thread-safe.
 class RequestTyping {
  public:
   void take(char key);
@@ -82,6 +83,7 @@ class RequestTyping {
  private:
   enum class Field { none, pause_reason, stop_reason, note, code, remark, sure, abort_reason };
   void begin(char key);
+  void complete_code();
   void end_line();
   void ask(session::ExperimenterRequest::Kind kind, const std::string& text = {},
            const std::string& code = {});

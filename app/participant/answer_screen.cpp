@@ -27,14 +27,14 @@ std::string AnswerScreen::hint() const {
   const Words& words = *context_.words;
   if (is_fixed()) return words.now_fixed;
   if (chosen_ >= 0) return words.changes_once;
-  return with_numbers(words.choose_hint, {std::min(count(), 9)});
+  return with_numbers(words.choose_hint, {{"keys", std::min(count(), 9)}});
 }
 
 void AnswerScreen::paint(Canvas& canvas) {
   const Words& words = *context_.words;
   draw_progress(canvas, {step_.trial - 1, step_.of,
                          with_numbers(step_.practice ? words.practice_of : words.trial_of,
-                                      {step_.trial, step_.of})});
+                                      {{"trial", step_.trial}, {"of", step_.of}})});
   if (answered_at_) return paint_confidence(canvas);
   const bool spoken = step_.sight == design::Sight::blindfold;
   const std::string note =
@@ -201,7 +201,7 @@ void FeedbackScreen::paint(Canvas& canvas) {
   const bool correct = step_.answered == step_.correct;
   const std::string title = correct ? words.correct_title : words.wrong_title;
   if (context_.sight == design::Sight::blindfold) {
-    draw_card(canvas, title, std::string(words.it_was) + ": " + name_of(step_.correct));
+    draw_card(canvas, title, filled(words.it_was, {{"label", name_of(step_.correct)}}));
   } else {
     const Box area = draw_heading(canvas, title);
     std::vector<int> positions;

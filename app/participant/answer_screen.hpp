@@ -63,8 +63,7 @@ class FeedbackScreen final : public Screen {
 /// A questionnaire, one question at a time.
 class QuestionScreen final : public Screen {
  public:
-  /// \param questionnaire  must outlive this object
-  QuestionScreen(const design::Questionnaire& questionnaire, const ScreenContext& context);
+  QuestionScreen(const session::QuestionStep& step, const ScreenContext& context);
 
  private:
   void paint(Canvas& canvas) override;
@@ -80,10 +79,17 @@ class QuestionScreen final : public Screen {
   [[nodiscard]] const design::Question& question() const { return questionnaire_.questions[page_]; }
   [[nodiscard]] std::u32string& typed() { return typed_[page_]; }
   [[nodiscard]] bool is_answered() const;
+  /// Whether what was typed is no number, or none that the question accepts.
+  [[nodiscard]] bool is_misfit() const;
+  [[nodiscard]] bool may_go_on() const {
+    return (is_answered() || !question().required) && !is_misfit();
+  }
+  [[nodiscard]] std::string range_text() const;
   [[nodiscard]] std::string in_language(const design::Translated& text) const;
   [[nodiscard]] std::vector<std::string> answers() const;
 
-  const design::Questionnaire& questionnaire_;
+  design::Questionnaire
+      questionnaire_;  ///< a copy: the screen may be seen for longer than the step
   ScreenContext context_;
   std::size_t page_ = 0;
   std::vector<int> chosen_;            ///< by question, the option; -1: none

@@ -3,8 +3,11 @@
 #include "app/windows/look.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include <imgui.h>
 
@@ -22,52 +25,17 @@ ImVec2 to_imgui(double x, double y) {
   return {static_cast<float>(x), static_cast<float>(y)};
 }
 
-/// The lines of a text, as ImGui wraps it.
-std::vector<std::string> wrapped(const ImFont& font, const std::string& text, float scale,
-                                 float width) {
-  std::vector<std::string> lines;
-  const char* at = text.c_str();
-  const char* const end = at + text.size();
-  while (at < end) {
-    const char* stop = font.CalcWordWrapPositionA(scale, at, end, width);
-    const char* const newline = std::find(at, stop, '\n');
-    if (newline != stop) stop = newline;
-    // Take at least one letter, however narrow the room is.
-    if (stop == at && *at != '\n') {
-      ++stop;
-      while (stop < end && (static_cast<unsigned char>(*stop) & 0xC0U) == 0x80U) ++stop;
-    }
-    lines.emplace_back(at, stop);
-    at = stop;
-    if (at < end && *at == '\n') {
-      ++at;
-    } else {
-      while (at < end && *at == ' ') ++at;
-    }
-  }
-  return lines;
-}
-
-/// As few lines as the width allows, of similar widths, so that no word is alone on the last line.
-std::vector<std::string> balanced(const ImFont& font, const std::string& text, float scale,
-                                  double width) {
-  std::vector<std::string> lines = wrapped(font, text, scale, static_cast<float>(width));
-  if (lines.size() < 2) return lines;
-  constexpr int kHalvings = 8;
-  double narrow = 0.4 * width;
-  double wide = width;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = 0.5 * (narrow + wide);
-    auto tried = wrapped(font, text, scale, static_cast<float>(middle));
-    if (tried.size() > lines.size()) {
-      narrow = middle;
-    } else {
-      wide = middle;
-      lines = std::move(tried);
-    }
-  }
-  return lines;
-}
+/// The design's colours with high contrast: black, white, and dark shades of the others.
+struct Contrasting {
+  std::uint32_t usual;
+  std::uint32_t high;
+};
+constexpr std::uint32_t kInk = 0xFF000000;
+constexpr Contrasting kContrasting[] = {
+    {tone::kGround, tone::kWhite}, {tone::kEdge, kInk},          {tone::kText, kInk},
+    {tone::kQuiet, kInk},          {tone::kAccent, 0xFF6E2E00},  {tone::kAccentPale, 0xFFFFE6C8},
+    {tone::kAccentDark, kInk},     {tone::kGood, 0xFF1E4B00},    {tone::kWarn, 0xFF00288C},
+    {tone::kTrack, 0xFF969696},    {tone::kDisabled, 0xFFC8C8C8}};
 
 }  // namespace
 
@@ -75,19 +43,24 @@ double design_unit(Vec2 size) noexcept {
   return std::max(0.4, std::min(size.x / 1280.0, size.y / 720.0));
 }
 
-Fonts load_participant_fonts(double unit) {
-  ImGui::GetIO().Fonts->Clear();
+Fonts load_participant_fonts(double unit, const std::set<char32_t>& letters) {
   const auto height = [unit](double size) { return static_cast<float>(std::round(size * unit)); };
-  Fonts fonts;
-  fonts.body = add_font(height(kBody), FontWeight::regular);
-  fonts.small = add_font(height(kSmall), FontWeight::regular);
-  fonts.strong = add_font(height(kBody), FontWeight::bold);
-  fonts.title = add_font(height(kTitleSize), FontWeight::bold);
-  return fonts;
+  const std::array<FontSize, 4> sizes = {{{height(kSmall), FontWeight::regular},
+                                          {height(kBody), FontWeight::regular},
+                                          {height(kBody), FontWeight::bold},
+                                          {height(kTitleSize), FontWeight::bold}}};
+  const std::vector<ImFont*> loaded = load_letters(sizes, letters);
+  return {loaded[0], loaded[1], loaded[2], loaded[3]};
 }
 
-Canvas::Canvas(ImDrawList& list, const Fonts& fonts, Vec2 size, const Attention& attention)
-    : list_(list), fonts_(fonts), size_(size), unit_(design_unit(size)), attention_(attention) {
+Canvas::Canvas(ImDrawList& list, const Fonts& fonts, Vec2 size, const Attention& attention,
+               bool high_contrast)
+    : list_(list),
+      fonts_(fonts),
+      size_(size),
+      unit_(design_unit(size)),
+      attention_(attention),
+      high_contrast_(high_contrast) {
   fill({0.0, 0.0, size.x, size.y}, tone::kGround);
 }
 
@@ -100,21 +73,79 @@ ImFont* Canvas::font(Letters letters) const {
     case Letters::title:
       return fonts_.title;
     case Letters::body:
+    case Letters::rich:
       break;
   }
   return fonts_.body;
 }
 
+std::uint32_t Canvas::seen(std::uint32_t colour) const noexcept {
+  if (!high_contrast_) return colour;
+  const auto* const found = std::ranges::find(kContrasting, colour, &Contrasting::usual);
+  return found == std::end(kContrasting) ? colour : found->high;
+}
+
+std::vector<TextLine> Canvas::lines(Letters letters, const std::string& text, double width,
+                                    double shrink) const {
+  const ImFont& face = *font(letters);
+  const ImFont* const bold = letters == Letters::rich ? fonts_.strong : nullptr;
+  return lines_of(text, face, bold, shrink * static_cast<double>(face.FontSize), width);
+}
+
 double Canvas::measure(Letters letters, const std::string& text, double width,
                        double shrink) const {
-  const ImFont& face = *font(letters);
-  const auto lines = wrapped(face, text, static_cast<float>(shrink), static_cast<float>(width));
-  return static_cast<double>(lines.size()) * std::ceil(1.25 * shrink * face.FontSize);
+  return static_cast<double>(lines(letters, text, width, shrink).size()) *
+         std::ceil(1.25 * shrink * static_cast<double>(font(letters)->FontSize));
+}
+
+void Canvas::look_for_missing(const ImFont& face, const std::string& text) {
+  for (const char32_t letter : code_points(text)) {
+    const bool is_there = letter <= U' ' || letter > IM_UNICODE_CODEPOINT_MAX ||
+                          face.FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr;
+    if (!is_there) missing_.insert(letter);
+  }
 }
 
 double Canvas::width_of(Letters letters, const std::string& text) const {
   const ImFont& face = *font(letters);
   return static_cast<double>(face.CalcTextSizeA(face.FontSize, FLT_MAX, 0.0F, text.c_str()).x);
+}
+
+std::vector<TextLine> Canvas::balanced_lines(Letters letters, const std::string& text, double width,
+                                             double shrink) const {
+  std::vector<TextLine> best = lines(letters, text, width, shrink);
+  if (best.size() < 2) return best;
+  constexpr int kHalvings = 8;
+  double narrow = 0.4 * width;
+  double wide = width;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (narrow + wide);
+    auto tried = lines(letters, text, middle, shrink);
+    if (tried.size() > best.size()) {
+      narrow = middle;
+    } else {
+      wide = middle;
+      best = std::move(tried);
+    }
+  }
+  return best;
+}
+
+void Canvas::draw_line(const TextLine& line, Letters letters, Vec2 at, double size,
+                       std::uint32_t colour) {
+  for (const TextRun& run : line.runs) {
+    ImFont& face = run.bold ? *fonts_.strong : *font(letters);
+    const bool is_bold = &face == fonts_.strong || &face == fonts_.title;
+    look_for_missing(face, run.text);
+    const auto draw = [&](double x) {
+      list_.AddText(&face, static_cast<float>(size), to_imgui(x, at.y), colour, run.text.c_str());
+    };
+    draw(at.x + run.x);
+    // There is no bold face for East Asian letters: they are drawn twice, side by side.
+    if (is_bold && std::ranges::any_of(code_points(run.text), is_east_asian)) {
+      draw(at.x + run.x + std::max(1.0, std::round(size / 28.0)));
+    }
+  }
 }
 
 double Canvas::text(const Box& room, Letters letters, std::uint32_t colour, const std::string& text,
@@ -125,22 +156,17 @@ double Canvas::text(const Box& room, Letters letters, std::uint32_t colour, cons
   double y = std::round(room.y);
   Box taken{room.right(), y, 0.0, 0.0};
   double right = room.x;
-  const auto lines =
-      align == Align::centre
-          ? balanced(face, text, static_cast<float>(shrink), room.width)
-          : wrapped(face, text, static_cast<float>(shrink), static_cast<float>(room.width));
-  for (const std::string& line : lines) {
-    const double width = static_cast<double>(
-        face.CalcTextSizeA(static_cast<float>(size), FLT_MAX, 0.0F, line.c_str()).x);
+  const bool balances = align == Align::centre;
+  for (const TextLine& line : balances ? balanced_lines(letters, text, room.width, shrink)
+                                       : lines(letters, text, room.width, shrink)) {
     double x = room.x;
-    if (align == Align::centre) x += (room.width - width) / 2.0;
-    if (align == Align::right) x += room.width - width;
-    list_.AddText(&face, static_cast<float>(size),
-                  to_imgui(std::round(x), y + std::floor((line_height - size) / 2.0)), colour,
-                  line.c_str());
-    if (width > 0.0) {
+    if (align == Align::centre) x += (room.width - line.width) / 2.0;
+    if (align == Align::right) x += room.width - line.width;
+    draw_line(line, letters, {std::round(x), y + std::floor((line_height - size) / 2.0)}, size,
+              seen(colour));
+    if (line.width > 0.0) {
       taken.x = std::min(taken.x, x);
-      right = std::max(right, x + width);
+      right = std::max(right, x + line.width);
     }
     y += line_height;
   }
@@ -165,12 +191,34 @@ void Canvas::label(const Box& room, Letters letters, std::uint32_t colour, const
 }
 
 void Canvas::fill(const Box& box, std::uint32_t colour, double rounding) {
-  list_.AddRectFilled(to_imgui(box.x, box.y), to_imgui(box.right(), box.bottom()), colour,
+  list_.AddRectFilled(to_imgui(box.x, box.y), to_imgui(box.right(), box.bottom()), seen(colour),
                       static_cast<float>(rounding));
 }
 
+void Canvas::curve(const std::array<Vec2, 4>& points, double thickness, std::uint32_t colour) {
+  const auto at = [&points](std::size_t i) { return to_imgui(points[i].x, points[i].y); };
+  const auto radius = static_cast<float>(thickness / 2.0);
+  list_.AddBezierCubic(at(0), at(1), at(2), at(3), seen(colour), static_cast<float>(thickness), 32);
+  list_.AddCircleFilled(at(0), radius, seen(colour), 32);
+  list_.AddCircleFilled(at(3), radius, seen(colour), 32);
+}
+
+void Canvas::area(std::span<const Vec2> corners, std::uint32_t colour) {
+  std::vector<ImVec2> points;
+  for (const Vec2 corner : corners) points.push_back(to_imgui(corner.x, corner.y));
+  list_.AddConvexPolyFilled(points.data(), static_cast<int>(points.size()), seen(colour));
+}
+
+void Canvas::clip_to(const Box& box) {
+  list_.PushClipRect(to_imgui(box.x, box.y), to_imgui(box.right(), box.bottom()), true);
+}
+
+void Canvas::end_clip() {
+  list_.PopClipRect();
+}
+
 void Canvas::outline(const Box& box, std::uint32_t colour, double thickness, double rounding) {
-  list_.AddRect(to_imgui(box.x, box.y), to_imgui(box.right(), box.bottom()), colour,
+  list_.AddRect(to_imgui(box.x, box.y), to_imgui(box.right(), box.bottom()), seen(colour),
                 static_cast<float>(rounding), 0, static_cast<float>(thickness));
 }
 

@@ -1,9 +1,13 @@
 /// \file The drawing functions of the participant's screens: measured text, buttons, pictures.
 #pragma once
 
+#include "app/windows/text_flow.hpp"
 #include "core/vec.hpp"
 
+#include <array>
 #include <cstdint>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,7 +52,13 @@ inline constexpr std::uint32_t kDisabled = 0xFFDEDAD7;
 inline constexpr std::uint32_t kWhite = 0xFFFFFFFF;
 }  // namespace tone
 
-enum class Letters { small, body, strong, title };
+enum class Letters {
+  small,
+  body,
+  rich,  ///< body, with words between "**" in bold
+  strong,
+  title,
+};
 enum class Align { left, centre, right };
 enum class ButtonKind {
   primary,
@@ -68,8 +78,9 @@ struct Fonts {
 /// \return window units per unit of the design, whose window is 1280 x 720
 [[nodiscard]] double design_unit(Vec2 size) noexcept;
 
-/// Replaces the fonts of the current context's atlas, which must then be built again.
-[[nodiscard]] Fonts load_participant_fonts(double unit);
+/// Replaces the fonts of the current context, as load_letters.
+/// \param unit  window units per unit of the design, times the letters' scale
+[[nodiscard]] Fonts load_participant_fonts(double unit, const std::set<char32_t>& letters = {});
 
 /// Provides pictures as textures.
 class PictureShelf {
@@ -105,7 +116,9 @@ struct Attention {
 /// One picture of the window, within a frame of ImGui. Belongs to the drawing thread.
 class Canvas {
  public:
-  Canvas(ImDrawList& list, const Fonts& fonts, Vec2 size, const Attention& attention);
+  /// \param high_contrast  black on white in place of the design's colours
+  Canvas(ImDrawList& list, const Fonts& fonts, Vec2 size, const Attention& attention,
+         bool high_contrast = false);
 
   [[nodiscard]] Vec2 size() const noexcept { return size_; }
   [[nodiscard]] double unit() const noexcept { return unit_; }
@@ -123,6 +136,13 @@ class Canvas {
 
   void fill(const Box& box, std::uint32_t colour, double rounding = 0.0);
   void outline(const Box& box, std::uint32_t colour, double thickness, double rounding = 0.0);
+  /// A line with round ends: a cubic Bezier curve through its first and last point.
+  void curve(const std::array<Vec2, 4>& points, double thickness, std::uint32_t colour);
+  /// \param corners  of a convex area, clockwise
+  void area(std::span<const Vec2> corners, std::uint32_t colour);
+  /// Until `end_clip`, only what lies in the box is drawn.
+  void clip_to(const Box& box);
+  void end_clip();
   void button(int id, const Box& box, const std::string& label, ButtonKind kind,
               bool enabled = true, bool chosen = false);
   /// Draws a ring around the box if the target has the focus.
@@ -133,17 +153,30 @@ class Canvas {
   [[nodiscard]] const Attention& attention() const noexcept { return attention_; }
   [[nodiscard]] const std::vector<Target>& targets() const noexcept { return targets_; }
   [[nodiscard]] const std::vector<PlacedText>& texts() const noexcept { return texts_; }
+  /// Letters of the texts that the fonts do not have.
+  [[nodiscard]] const std::set<char32_t>& missing() const noexcept { return missing_; }
 
  private:
   [[nodiscard]] ImFont* font(Letters letters) const;
+  [[nodiscard]] std::vector<TextLine> lines(Letters letters, const std::string& text, double width,
+                                            double shrink) const;
+  /// As few lines as the width allows, of similar widths, so that no word is alone on the last one.
+  [[nodiscard]] std::vector<TextLine> balanced_lines(Letters letters, const std::string& text,
+                                                     double width, double shrink) const;
+  void draw_line(const TextLine& line, Letters letters, Vec2 at, double size, std::uint32_t colour);
+  /// The colour in place of one of the design's.
+  [[nodiscard]] std::uint32_t seen(std::uint32_t colour) const noexcept;
+  void look_for_missing(const ImFont& face, const std::string& text);
 
   ImDrawList& list_;
   Fonts fonts_;
   Vec2 size_;
   double unit_;
   Attention attention_;
+  bool high_contrast_;
   std::vector<Target> targets_;
   std::vector<PlacedText> texts_;
+  std::set<char32_t> missing_;
 };
 
 }  // namespace touchtrial::app

@@ -7,6 +7,7 @@ enum class Cue {
   plane_on,   ///< the plane can be touched
   plane_off,  ///< the plane is off: an answer is due
   too_hard,   ///< too much force for hand and device
+  stopped,    ///< a comfort stop: the force is off
 };
 
 /// Plays cues.

@@ -70,6 +70,11 @@ PlaneOnScreen place_plane(Vec2 window, Vec2 plane_mm, double mm_per_unit) {
 void ExploringScreen::paint(Canvas& canvas) {
   if (view_.pointer != nullptr) paint_plane(canvas);
   if (view_.bars != nullptr) paint_bars(canvas);
+  if (view_.asks_for_touch == nullptr || !*view_.asks_for_touch) return;
+  const double unit = canvas.unit();
+  const double top = view_.pointer != nullptr ? 4.0 * unit : 0.45 * canvas.size().y;
+  canvas.label({0.0, top, canvas.size().x, 32.0 * unit}, Letters::strong, tone::kWarn,
+               context_.words->touch_first);
 }
 
 void ExploringScreen::paint_plane(Canvas& canvas) {
@@ -80,10 +85,10 @@ void ExploringScreen::paint_plane(Canvas& canvas) {
   const Box plane = {placed.corner.x, placed.corner.y, drawn.x, drawn.y};
   canvas.fill(plane, 0xFFF7F6F5);
   canvas.outline(plane, 0xFFA09A94, 1.0);
-  if (view_.bars == nullptr) {
-    canvas.label({0.0, canvas.size().y - 84.0 * unit, canvas.size().x, 30.0 * unit}, Letters::small,
-                 tone::kQuiet, context_.words->exploring_mouse);
-  }
+  // In practice the bars are below.
+  const double up = (view_.bars == nullptr ? 84.0 : 126.0) * unit;
+  canvas.label({0.0, canvas.size().y - up, canvas.size().x, 30.0 * unit}, Letters::small,
+               tone::kQuiet, context_.words->exploring_mouse);
   const device::StylusState stylus = view_.pointer->stylus();
   if (stylus.sequence == 0) return;
   draw_stylus(placed.corner + (1.0 / placed.mm_per_unit) * stylus.position_mm,

@@ -28,6 +28,7 @@ struct ExploringView {
   const FeltNow* bars = nullptr;               ///< in practice; null: no bars
   device::PointerExchange* pointer = nullptr;  ///< of the mouse device; null: no plane or stylus
   const std::atomic<bool>* pressed = nullptr;  ///< the mouse button; set if `pointer` is
+  const std::atomic<bool>* asks_for_touch = nullptr;  ///< says that feeling comes before answering
   PlaneGeometry plane;
 };
 

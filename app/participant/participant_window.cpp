@@ -5,20 +5,25 @@
 #include "app/participant/input_event.hpp"
 #include "app/participant/window_drawing.hpp"
 #include "app/windows/glfw_support.hpp"
+#include "app/windows/look.hpp"
 #include "core/errors.hpp"
 #include "device/platform/stop_signals.hpp"
 #include "device/servo/servo.hpp"
+#include "protocols/design/languages.hpp"
+#include "protocols/session/exploration.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
 
 #include <GLFW/glfw3.h>
+#include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
 namespace {
@@ -32,7 +37,8 @@ constexpr milliseconds kAttention{10};
 /// So long that only a window that hangs exceeds it.
 constexpr milliseconds kPictureLimit{300'000};
 /// Within this time after the plane comes on, Enter does not end the exploration: it may still be
-/// held from the previous screen.
+/// held from the previous screen. Nor does the second press of a space bar that is pressed twice
+/// within this time, to go on, stop the force.
 constexpr milliseconds kNoAccident{500};
 // A tone signals a force above the first limit. It is repeated only after the force was below the
 // second limit.
@@ -50,6 +56,32 @@ GLFWmonitor* monitor_of(const ParticipantWindowOptions& options) {
                       ": give another --monitor, or --window WIDTHxHEIGHT");
   }
   return monitors[options.monitor - 1];
+}
+
+/// The letters of all texts and labels that a session shows. What the participant types comes
+/// later.
+/// \throws DeviceError if no font has some of them
+std::set<char32_t> letters_to_show(const ParticipantWindowOptions& options) {
+  const design::SessionPlan& plan = options.session;
+  std::vector<std::string> texts;
+  for (const auto& [section, parts] : design::texts_of(plan)) {
+    for (const auto& [key, text] : parts) texts.push_back(text);
+  }
+  const auto pages = plan.instructions.find(plan.language);
+  if (pages != plan.instructions.end()) {
+    texts.insert(texts.end(), pages->second.begin(), pages->second.end());
+  }
+  const auto add = [&](const design::Translated& text) {
+    if (const auto own = text.find(plan.language); own != text.end()) texts.push_back(own->second);
+  };
+  for (const design::Question& question : plan.closing_questions) {
+    add(question.text);
+    std::ranges::for_each(question.options, add);
+  }
+  for (const auto& [label, picture] : options.pictures) texts.push_back(label);
+  std::set<char32_t> letters = letters_in(texts);
+  require_letters(letters);
+  return letters;
 }
 
 GLFWwindow* make_window(const ParticipantWindowOptions& options, GLFWmonitor* monitor) {
@@ -72,22 +104,65 @@ GLFWwindow* make_window(const ParticipantWindowOptions& options, GLFWmonitor* mo
   return window;
 }
 
+/// Another monitor than the participant's window fills, for the experimenter's.
+void choose_monitor(GLFWwindow* window, ConsoleWindowOptions& console) {
+  int count = 0;
+  GLFWmonitor** monitors = glfwGetMonitors(&count);
+  for (int i = 0; i < count; ++i) {
+    if (monitors[i] != glfwGetWindowMonitor(window)) {
+      console.monitor = i + 1;
+      return;
+    }
+  }
+  spdlog::warn(
+      "the participant's window fills the only monitor, and covers the experimenter's; give "
+      "--window WIDTHxHEIGHT, or connect another monitor");
+}
+
+/// The free part of the monitor to the right of the participant's window, which moves into the
+/// monitor's corner, or else below it.
+void choose_area(GLFWwindow* window, ConsoleWindowOptions& console) {
+  constexpr int kLeastWidth = 480;
+  constexpr int kLeastHeight = 320;
+  GLFWmonitor* const shared = glfwGetPrimaryMonitor();
+  if (shared == nullptr) return;
+  ScreenArea all;
+  glfwGetMonitorWorkarea(shared, &all.x, &all.y, &all.width, &all.height);
+  int width = 0;
+  int height = 0;
+  glfwGetWindowSize(window, &width, &height);
+  const ScreenArea right = {all.x + width, all.y, all.width - width, all.height};
+  const ScreenArea below = {all.x, all.y + height, all.width, all.height - height};
+  for (const ScreenArea& area : {right, below}) {
+    if (area.width < kLeastWidth || area.height < kLeastHeight) continue;
+    glfwSetWindowPos(window, all.x, all.y);
+    console.area = area;
+    return;
+  }
+  spdlog::warn(
+      "there is no room for the experimenter's window beside the participant's; give a smaller "
+      "--window WIDTHxHEIGHT, or connect another monitor and give --console-monitor");
+}
+
 }  // namespace
 
 struct ParticipantWindow::State {
   explicit State(const ParticipantWindowOptions& wanted)
       : options(wanted),
+        look{wanted.session.text_scale, wanted.session.high_contrast, letters_to_show(wanted)},
+        words(words_of(design::texts_of(wanted.session))),
         monitor(monitor_of(options)),
         window(make_window(options, monitor)),
         shelf(options.pictures, options.pitch_mm) {
-    context = {&words_in(options.language), options.language, options.sight,
-               options.pointer != nullptr,  &shelf,           &glass};
+    context = {
+        &words, options.session.language, options.session.sight, options.pointer != nullptr, &shelf,
+        &glass};
     glfwSetWindowUserPointer(window, this);
     take_callbacks();
     tell_surface();
     if (options.console != nullptr) open_console();
-    drawing =
-        std::thread([this] { draw_until_ended(window, exchange, glass, shelf, console.get()); });
+    drawing = std::thread(
+        [this] { draw_until_ended(window, exchange, glass, shelf, look, console.get()); });
   }
 
   ~State() {
@@ -104,6 +179,7 @@ struct ParticipantWindow::State {
   void open_console() {
     ConsoleWindowOptions wanted;
     wanted.monitor = options.console_monitor;
+    if (!wanted.monitor) (monitor != nullptr ? choose_monitor : choose_area)(window, wanted);
     wanted.keyboard_is_participants = [this] { return exploring.load(); };
     wanted.key = [this](int key, int action, int modifiers) {
       take_key(event_of_key(key, action, modifiers));
@@ -119,6 +195,7 @@ struct ParticipantWindow::State {
   void take_callbacks() {
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int modifiers) {
       of(w).take_key(event_of_key(key, action, modifiers));
+      of(w).take_turn(key, action);
     });
     glfwSetCharCallback(window, [](GLFWwindow* w, unsigned int letter) {
       InputEvent event = event_now(InputEvent::Kind::letter);
@@ -155,9 +232,17 @@ struct ParticipantWindow::State {
 
   /// Takes the events of keyboards, mouse and gamepads.
   void take(const InputEvent& event) {
-    if (!exploring) return exchange.push(event);
+    const bool is_space = event.kind == InputEvent::Kind::key && event.key == Key::space;
+    if (!exploring) {
+      if (is_space) space_on_screen = event.at.time_since_epoch();
+      return exchange.push(event);
+    }
     if (event.kind != InputEvent::Kind::key) return;
-    if (event.key == Key::space) comfort_asked = true;
+    if (is_space) {
+      // One press alone is forgiven: somebody who wants to stop presses again.
+      const Clock::time_point before{space_on_screen.exchange(Clock::duration{})};
+      if (event.at - before > kNoAccident) comfort_asked = true;
+    }
     if (event.key == Key::enter && event.at - Clock::time_point(plane_on) > kNoAccident) {
       finish_asked = true;
     }
@@ -165,6 +250,13 @@ struct ParticipantWindow::State {
 
   void take_key(const InputEvent& event) {
     if (event.key != Key::none) take(event);
+  }
+
+  void take_turn(int key, int action) {
+    if (!options.turn || action != GLFW_PRESS) return;
+    if (key == GLFW_KEY_PAGE_DOWN) options.turn(1);
+    if (key == GLFW_KEY_PAGE_UP) options.turn(-1);
+    if (key == GLFW_KEY_ESCAPE) options.turn(0);
   }
 
   void take_pointer(InputEvent::Kind kind, Vec2 position) {
@@ -238,6 +330,8 @@ struct ParticipantWindow::State {
     if (const auto* const ready = std::get_if<session::ReadyStep>(&next))
       practice = ready->practice;
     exchange.show(screen);
+    const auto* const notice = std::get_if<session::NoticeStep>(&next);
+    if (notice != nullptr && notice->what == session::NoticeStep::What::stopped) cue(Cue::stopped);
   }
 
   [[nodiscard]] engine::ColourImage existing(std::optional<engine::ColourImage> picture) const {
@@ -246,11 +340,19 @@ struct ParticipantWindow::State {
     return std::move(*picture);
   }
 
+  [[nodiscard]] bool touches_enough() const noexcept {
+    constexpr double kRounding = 1e-9;
+    const design::LeastTouch& least = options.least_touch;
+    return at_plane_s >= least.contact_s - kRounding && along_plane_mm >= least.path_mm - kRounding;
+  }
+
   void cue(Cue which) noexcept {
     if (options.cues != nullptr) options.cues->tone(which);
   }
 
   ParticipantWindowOptions options;
+  ScreenLook look;
+  Words words;
   GlfwLibrary library;
   GLFWmonitor* monitor;  ///< null: a window
   GLFWwindow* window;
@@ -271,8 +373,11 @@ struct ParticipantWindow::State {
   std::atomic<bool> exploring{false};
   std::atomic<bool> comfort_asked{false};
   std::atomic<bool> finish_asked{false};
+  std::atomic<bool> has_touched{false};  ///< as the options want it
+  std::atomic<bool> asks_for_touch{false};
   std::atomic<bool> pressed{false};
   std::atomic<Clock::duration> plane_on{};
+  std::atomic<Clock::duration> space_on_screen{};  ///< when it was last pressed on a screen
   std::mutex plane_mutex;
   PlaneGeometry plane;
   FeltNow felt;
@@ -285,7 +390,10 @@ struct ParticipantWindow::State {
   bool replied = false;
   bool practice = false;
 
-  // The servo's listener.
+  // The servo's listener. Only what the hand did counts, so that the hint on the screen is the same
+  // for every texture (decision 54).
+  double at_plane_s = 0.0;
+  double along_plane_mm = 0.0;
   std::optional<device::ServoSample> last_felt;
   bool is_too_hard = false;
 
@@ -315,6 +423,10 @@ void ParticipantWindow::check() const {
   state_->exchange.check();
 }
 
+ScreenScale ParticipantWindow::screen() const {
+  return screen_scale(state_->window);
+}
+
 void ParticipantWindow::see_pictures(const std::vector<std::string>& labels) {
   state_->labels = labels;
 }
@@ -322,7 +434,7 @@ void ParticipantWindow::see_pictures(const std::vector<std::string>& labels) {
 std::optional<session::StepReply> ParticipantWindow::attend(const session::Step& step) {
   State& s = *state_;
   s.exchange.check();
-  if (s.exploring.exchange(false) && s.options.sight == design::Sight::blindfold)
+  if (s.exploring.exchange(false) && s.options.session.sight == design::Sight::blindfold)
     s.cue(Cue::plane_off);
   if (gone()) {
     std::this_thread::sleep_for(kAttention);
@@ -332,6 +444,19 @@ std::optional<session::StepReply> ParticipantWindow::attend(const session::Step&
   std::optional<session::StepReply> reply = s.exchange.reply(*s.screen, kAttention);
   s.replied = reply.has_value();
   return reply;
+}
+
+std::optional<session::StepReply> ParticipantWindow::attend(const std::shared_ptr<Screen>& screen) {
+  State& s = *state_;
+  s.exchange.check();
+  if (s.screen != screen) {
+    s.screen = screen;
+    s.step.reset();
+    s.exchange.show(screen);
+  }
+  if (!gone()) return s.exchange.reply(*screen, kAttention);
+  std::this_thread::sleep_for(kAttention);
+  return std::nullopt;
 }
 
 device::HapticDevice& ParticipantWindow::begin_exploring(const PlaneGeometry& plane) {
@@ -346,13 +471,18 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
     const std::lock_guard lock(s.plane_mutex);
     s.plane = plane;
   }
+  const bool again = s.step && std::holds_alternative<session::AnswerStep>(*s.step);
+  if (!again) s.at_plane_s = s.along_plane_mm = 0.0;
+  s.has_touched = s.touches_enough();
+  s.asks_for_touch = false;
   s.step.reset();
   s.suspended.reset();
   s.last_felt.reset();
   s.is_too_hard = false;
   s.felt.force_n = 0.0F;
   s.felt.speed_mm_s = 0.0F;
-  const ExploringView view{s.practice ? &s.felt : nullptr, s.options.pointer, &s.pressed, plane};
+  const ExploringView view{s.practice ? &s.felt : nullptr, s.options.pointer, &s.pressed,
+                           &s.asks_for_touch, plane};
   s.screen = std::make_shared<ExploringScreen>(view, s.context);
   s.exchange.show(s.screen);
   s.comfort_asked = false;
@@ -360,7 +490,7 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
   s.plane_on = Clock::now().time_since_epoch();
   s.exploring = true;
   glfwPostEmptyEvent();
-  if (s.options.sight == design::Sight::blindfold) s.cue(Cue::plane_on);
+  if (s.options.session.sight == design::Sight::blindfold) s.cue(Cue::plane_on);
 }
 
 void ParticipantWindow::exploring(device::ServoControl& servo) {
@@ -368,7 +498,9 @@ void ParticipantWindow::exploring(device::ServoControl& servo) {
   s.exchange.check();  // a dead window must not allow exploring
   if (gone()) servo.emergency_stop();
   if (s.comfort_asked) servo.comfort_stop();
-  if (s.finish_asked) servo.finish();
+  if (s.finish_asked && s.has_touched) servo.finish();
+  const bool asks = !s.has_touched && (s.finish_asked.exchange(false) || s.asks_for_touch);
+  if (s.asks_for_touch.exchange(asks) != asks) s.exchange.redraw();
 }
 
 void ParticipantWindow::feel(const device::ServoSample& sample) noexcept {
@@ -379,7 +511,14 @@ void ParticipantWindow::feel(const device::ServoSample& sample) noexcept {
   if (s.last_felt && sample.tick > s.last_felt->tick) {
     const double seconds = static_cast<double>(sample.tick - s.last_felt->tick) / s.options.rate_hz;
     const Vec3 way = sample.position_mm - s.last_felt->position_mm;
-    const double speed = std::hypot(way.x, way.y) / seconds;
+    const double way_mm = std::hypot(way.x, way.y);
+    const double speed = way_mm / seconds;
+    const bool at_plane = sample.position_mm.z <= session::kLandingHeightMm;
+    if (at_plane && s.last_felt->position_mm.z <= session::kLandingHeightMm) {
+      s.at_plane_s += seconds;
+      s.along_plane_mm += way_mm;
+      if (!s.has_touched) s.has_touched = s.touches_enough();
+    }
     const auto share = static_cast<float>(std::min(1.0, seconds / kBarsTimeS));
     const auto follow = [share](std::atomic<float>& shown, double now) {
       const float before = shown;

@@ -3,9 +3,11 @@
 
 #include "app/participant/cues.hpp"
 #include "app/participant/input_event.hpp"
+#include "app/windows/glfw_support.hpp"
 #include "core/plane.hpp"
 #include "device/mouse/pointer_exchange.hpp"
 #include "engine/pictures/colour_image.hpp"
+#include "protocols/design/study.hpp"
 #include "protocols/session/participant.hpp"
 
 #include <chrono>
@@ -20,18 +22,22 @@
 namespace touchtrial::app {
 
 class ConsoleExperimenter;
+class Screen;
 
 struct ParticipantWindowOptions {
   /// Number of the monitor for full screen, from 1 as the system counts; ignored with `size_px`.
   int monitor = 1;
   /// Size of a window, instead of full screen.
   std::optional<std::pair<int, int>> size_px;
-  std::string language = "en";  ///< "en" or "de"; any other language is shown in English
-  design::Sight sight = design::Sight::curtain;
-  /// Pictures of the originals by label, including those of practice.
+  /// The study's: language, texts, size of the letters, contrast, sight.
+  design::SessionPlan session;
+  /// Pictures of the originals by label, including those of practice, and the files that pages of
+  /// instructions show, by page_picture of their names.
   std::map<std::string, GreyImage> pictures;
   double pitch_mm = 0.2;    ///< of the study; gives the pictures' true size
   double rate_hz = 1000.0;  ///< of the servo
+  /// What must be felt before Enter ends an exploration: over all explorations of a presentation.
+  design::LeastTouch least_touch{0.0, 0.0};
   /// Returns the explored device; called when each plane comes on.
   std::function<device::HapticDevice&()> device;
   /// Null: silent. Must outlive the window.
@@ -39,9 +45,14 @@ struct ParticipantWindowOptions {
   /// Of the mouse device, for which the window shows plane and stylus; null: another device. Must
   /// outlive the window.
   device::PointerExchange* pointer = nullptr;
+  /// Called on the main thread with 1 for Page Down, -1 for Page Up and 0 for Escape, so that
+  /// whoever designs a study can leaf through its screens. Null, as in every session: these keys do
+  /// nothing.
+  std::function<void(int pages)> turn;
   /// Shows a second window for the experimenter; null: none. Must outlive the window.
   ConsoleExperimenter* console = nullptr;
-  /// Number of that window's monitor, from 1; none: the system decides.
+  /// Number of that window's monitor, from 1; none: another one than this window fills, or beside
+  /// this window on one monitor.
   std::optional<int> console_monitor;
 };
 
@@ -58,14 +69,16 @@ enum class WindowGone {
 /// wait for pictures.
 ///
 /// While a plane is on, the space bar is a comfort stop and Enter ends the exploration; neither
-/// needs the drawing thread. Escape does nothing.
+/// needs the drawing thread. Enter before the least touch shows what is missing. Escape does
+/// nothing.
 ///
 /// The experimenter's window, if there is one, uses the same threads. Whichever window has the
 /// focus, keys belong to the participant unless they are text typed into the experimenter's window;
 /// while a plane is on, all keys do.
 class ParticipantWindow final : public session::Participant {
  public:
-  /// \throws DeviceError with the remedy if there is no display, no OpenGL 3.2, or no such monitor
+  /// \throws DeviceError with the remedy if there is no display, no OpenGL 3.2, no such monitor, or
+  ///   no font for the participant's texts
   explicit ParticipantWindow(const ParticipantWindowOptions& options);
   ~ParticipantWindow() override;
   ParticipantWindow(const ParticipantWindow&) = delete;
@@ -77,6 +90,8 @@ class ParticipantWindow final : public session::Participant {
   void pump(std::chrono::milliseconds longest);
   /// \throws what the drawing thread threw
   void check() const;
+  /// The scale of the monitor that shows the window.
+  [[nodiscard]] ScreenScale screen() const;
   ///@}
 
   /// \name The session's thread
@@ -85,6 +100,9 @@ class ParticipantWindow final : public session::Participant {
   /// Blocks for up to 10 ms. A step that a pause interrupts later continues in its previous state.
   /// \return nothing yet; always so during a pause and once the window is gone
   [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) override;
+  /// Shows a screen that belongs to no session. Blocks for up to 10 ms.
+  /// \return its reply, once; always nothing once the window is gone
+  [[nodiscard]] std::optional<session::StepReply> attend(const std::shared_ptr<Screen>& screen);
   /// \throws std::logic_error if the options have no device
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
   /// Shows the screen for a plane, for a device that the caller provides.

@@ -1,5 +1,8 @@
 #include "app/participant/answer_screen.hpp"
 #include "app/participant/page_layout.hpp"
+#include "core/strict_json.hpp"
+#include "core/text.hpp"
+#include "protocols/design/languages.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,20 +42,53 @@ std::string utf8_of(const std::u32string& text) {
   return bytes;
 }
 
+/// A number as it is stored, which does not depend on the language.
+std::string number_of(const std::u32string& typed) {
+  std::string number = utf8_of(typed);
+  std::replace(number.begin(), number.end(), ',', '.');
+  return number;
+}
+
 }  // namespace
 
-QuestionScreen::QuestionScreen(const design::Questionnaire& questionnaire,
-                               const ScreenContext& context)
-    : questionnaire_(questionnaire),
+QuestionScreen::QuestionScreen(const session::QuestionStep& step, const ScreenContext& context)
+    : questionnaire_(*step.questionnaire),
       context_(context),
-      chosen_(questionnaire.questions.size(), -1),
-      typed_(questionnaire.questions.size()) {}
+      chosen_(questionnaire_.questions.size(), -1),
+      typed_(questionnaire_.questions.size()),
+      caret_(step.typed.size()) {
+  if (!typed_.empty()) typed_.front().assign(step.typed.begin(), step.typed.end());
+}
 
 std::string QuestionScreen::in_language(const design::Translated& text) const {
   for (const std::string& code : {context_.language, std::string("en")}) {
     if (const auto found = text.find(code); found != text.end()) return found->second;
   }
   return text.empty() ? "" : text.begin()->second;
+}
+
+bool QuestionScreen::is_misfit() const {
+  if (question().kind != design::QuestionKind::number || typed_[page_].empty()) return false;
+  const auto number = number_in<double>(number_of(typed_[page_]));
+  return !number || !std::isfinite(*number) || (question().min && *number < *question().min) ||
+         (question().max && *number > *question().max);
+}
+
+/// "18 - 99"; empty if the question has no bounds.
+std::string QuestionScreen::range_text() const {
+  const std::optional<double> min = question().min;
+  const std::optional<double> max = question().max;
+  std::string text;
+  if (min && max) {
+    text = number_text(*min) + " – " + number_text(*max);
+  } else if (min) {
+    text = "≥ " + number_text(*min);
+  } else if (max) {
+    text = "≤ " + number_text(*max);
+  }
+  if (design::has_decimal_comma(context_.language))
+    std::replace(text.begin(), text.end(), '.', ',');
+  return text;
 }
 
 bool QuestionScreen::is_answered() const {
@@ -65,8 +101,8 @@ void QuestionScreen::paint(Canvas& canvas) {
   if (questionnaire_.questions.empty()) return draw_footer(canvas, {{kNextTarget, words.next}});
   const int count = static_cast<int>(questionnaire_.questions.size());
   const int number = static_cast<int>(page_) + 1;
-  draw_progress(canvas, {number - 1, count, with_numbers(words.question_of, {number, count})});
-  const bool missing = question().required && !is_answered();
+  draw_progress(canvas, {number - 1, count,
+                         with_numbers(words.question_of, {{"question", number}, {"of", count}})});
   const Box area = draw_heading(canvas, in_language(question().text));
   if (question().kind == design::QuestionKind::choice) {
     paint_options(canvas, area);
@@ -76,7 +112,7 @@ void QuestionScreen::paint(Canvas& canvas) {
   std::vector<FooterButton> buttons;
   if (page_ > 0) buttons.push_back({kBackTarget, words.back, false});
   const bool skips = !question().required && !is_answered();
-  buttons.push_back({kNextTarget, skips ? words.skip : words.next, !skips, !missing});
+  buttons.push_back({kNextTarget, skips ? words.skip : words.next, !skips, may_go_on()});
   draw_footer(canvas, buttons);
 }
 
@@ -107,7 +143,11 @@ void QuestionScreen::paint_field(Canvas& canvas, const Box& area) {
   const Box field = {std::round(area.x + (area.width - width) / 2.0),
                      std::round(area.y + (area.height - height) * 0.4), width, height};
   canvas.fill(field, tone::kCard, 10.0 * unit);
-  canvas.outline(field, tone::kAccent, 2.0 * unit, 10.0 * unit);
+  canvas.outline(field, is_misfit() ? tone::kWarn : tone::kAccent, 2.0 * unit, 10.0 * unit);
+  if (const std::string range = range_text(); !range.empty()) {
+    canvas.label({field.x, field.bottom() + 10.0 * unit, field.width, 34.0 * unit}, Letters::body,
+                 is_misfit() ? tone::kWarn : tone::kQuiet, range);
+  }
   std::u32string shown = typed();
   shown.insert(std::min(caret_, shown.size()), 1, U'|');
   const Box inside = field.inset(18.0 * unit);
@@ -145,7 +185,7 @@ std::optional<session::StepReply> QuestionScreen::activate(int id, Time /*at*/) 
     caret_ = typed().size();
     return std::nullopt;
   }
-  if (question().required && !is_answered()) return std::nullopt;
+  if (!may_go_on()) return std::nullopt;
   if (page_ + 1 < questionnaire_.questions.size()) {
     ++page_;
     caret_ = typed().size();
@@ -163,13 +203,9 @@ std::vector<std::string> QuestionScreen::answers() const {
       case design::QuestionKind::choice:
         all.push_back(chosen_[i] < 0 ? "" : std::to_string(chosen_[i]));
         break;
-      case design::QuestionKind::number: {
-        // Stored numbers do not depend on the language.
-        std::string number = utf8_of(typed_[i]);
-        std::replace(number.begin(), number.end(), ',', '.');
-        all.push_back(std::move(number));
+      case design::QuestionKind::number:
+        all.push_back(number_of(typed_[i]));
         break;
-      }
       case design::QuestionKind::text:
         all.push_back(utf8_of(typed_[i]));
         break;

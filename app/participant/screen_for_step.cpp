@@ -1,7 +1,9 @@
 #include "app/participant/answer_screen.hpp"
 #include "app/participant/page_layout.hpp"
 #include "app/participant/screen.hpp"
+#include "protocols/design/languages.hpp"
 
+#include <sstream>
 #include <type_traits>
 #include <utility>
 
@@ -17,6 +19,7 @@ class NoteScreen final : public Screen {
     std::string body;
     std::string note;
     std::string button;  ///< empty: no button; the session goes on by itself
+    bool space_goes_on = true;
   };
   explicit NoteScreen(Content content) : content_(std::move(content)) {}
 
@@ -30,6 +33,9 @@ class NoteScreen final : public Screen {
     return session::StepReply{};
   }
   [[nodiscard]] int default_target() const noexcept override { return kNextTarget; }
+  bool takes_key(const InputEvent& event) override {
+    return event.key == Key::space && !content_.space_goes_on;
+  }
 
   Content content_;
 };
@@ -37,8 +43,9 @@ class NoteScreen final : public Screen {
 /// Pages that can be turned in both directions; the button of the last page replies.
 class PagesScreen final : public Screen {
  public:
-  PagesScreen(std::vector<std::string> pages, const Words& words)
-      : pages_(std::move(pages)), words_(words) {
+  PagesScreen(const std::vector<std::string>& pages, const ScreenContext& context)
+      : words_(*context.words), shelf_(context.shelf) {
+    for (const std::string& page : pages) pages_.push_back(read(page));
     if (pages_.empty()) pages_.emplace_back();
   }
 
@@ -47,25 +54,50 @@ class PagesScreen final : public Screen {
   [[nodiscard]] std::optional<session::StepReply> activate(int id, Time at) override;
   [[nodiscard]] int default_target() const noexcept override { return kNextTarget; }
 
-  std::vector<std::string> pages_;
+  struct Page {
+    std::string title;
+    std::string body;
+    std::vector<std::string> pictures;
+  };
+  [[nodiscard]] static Page read(const std::string& text);
+
+  std::vector<Page> pages_;
   const Words& words_;
+  PictureShelf* shelf_;
   std::size_t page_ = 0;
 };
+
+PagesScreen::Page PagesScreen::read(const std::string& text) {
+  Page page;
+  std::istringstream lines(text);
+  bool after_picture = false;
+  for (std::string line; std::getline(lines, line);) {
+    const auto picture = design::picture_in(line);
+    if (!picture.empty()) page.pictures.emplace_back(picture);
+    // An empty line that follows a picture goes with it.
+    if (picture.empty() && !(after_picture && line.empty())) page.body += line + "\n";
+    after_picture = !picture.empty();
+  }
+  page.body.erase(page.body.find_last_not_of('\n') + 1);
+  page.body.erase(0, page.body.find_first_not_of('\n'));
+  // A short first line is the page's heading.
+  const std::size_t line = page.body.find('\n');
+  constexpr std::size_t kLongestHeading = 60;
+  if (line != page.body.npos && line <= kLongestHeading) {
+    page.title = page.body.substr(0, line);
+    page.body.erase(0, page.body.find_first_not_of('\n', line));
+  }
+  return page;
+}
 
 void PagesScreen::paint(Canvas& canvas) {
   const int count = static_cast<int>(pages_.size());
   const int page = static_cast<int>(page_) + 1;
-  if (count > 1) draw_progress(canvas, {page, count, with_numbers(words_.page_of, {page, count})});
-  // A short first line is the page's heading.
-  std::string title;
-  std::string body = pages_[page_];
-  const std::size_t line = body.find('\n');
-  constexpr std::size_t kLongestHeading = 60;
-  if (line != body.npos && line <= kLongestHeading) {
-    title = body.substr(0, line);
-    body.erase(0, body.find_first_not_of('\n', line));
-  }
-  draw_card(canvas, title, body, "", Align::left);
+  if (count > 1)
+    draw_progress(canvas,
+                  {page, count, with_numbers(words_.page_of, {{"page", page}, {"of", count}})});
+  const Page& shown = pages_[page_];
+  draw_card(canvas, shown.title, shown.body, "", Align::left, {shown.pictures, shelf_});
   std::vector<FooterButton> buttons;
   if (page_ > 0) buttons.push_back({kBackTarget, words_.back, false});
   buttons.push_back({kNextTarget, words_.next});
@@ -92,10 +124,10 @@ class Maker {
       : context_(context), words_(*context.words), labels_(labels) {}
 
   Made operator()(const session::InstructionStep& step) const {
-    return std::make_shared<PagesScreen>(step.pages, words_);
+    return std::make_shared<PagesScreen>(step.pages, context_);
   }
   Made operator()(const session::QuestionStep& step) const {
-    return std::make_shared<QuestionScreen>(*step.questionnaire, context_);
+    return std::make_shared<QuestionScreen>(step, context_);
   }
   Made operator()(const session::PracticeStep& step) const {
     const bool again = step.round > 1;
@@ -104,9 +136,9 @@ class Maker {
                 words_.practice_start);
   }
   Made operator()(const session::ReadyStep& step) const {
-    const Progress progress{
-        step.trial - 1, step.of,
-        with_numbers(step.practice ? words_.practice_of : words_.trial_of, {step.trial, step.of})};
+    const Progress progress{step.trial - 1, step.of,
+                            with_numbers(step.practice ? words_.practice_of : words_.trial_of,
+                                         {{"trial", step.trial}, {"of", step.of}})};
     return note(words_.ready_title, context_.mouse ? words_.ready_text_mouse : words_.ready_text,
                 words_.ready_keys, words_.go_on, progress);
   }
@@ -118,9 +150,26 @@ class Maker {
   }
   Made operator()(const session::BreakStep& step) const {
     const std::string done =
-        step.of > 0 ? with_numbers(words_.break_done, {step.done, step.of}) : "";
+        step.of > 0 ? with_numbers(words_.break_done, {{"done", step.done}, {"of", step.of}}) : "";
     return note(words_.break_title, words_.break_text, done, words_.go_on,
                 {step.done, step.of, ""});
+  }
+  Made operator()(const session::NoticeStep& step) const {
+    using What = session::NoticeStep::What;
+    if (step.what == What::practice_over) {
+      return note(words_.practice_over_title, words_.practice_over_text, "", words_.go_on);
+    }
+    if (step.what == What::time_is_up) {
+      return note(words_.no_response_title, words_.no_response_text, "", words_.go_on);
+    }
+    // Whoever stops the force may press the space bar more than once.
+    return std::make_shared<NoteScreen>(
+        NoteScreen::Content{{},
+                            words_.stopped_title,
+                            step.may_go_on ? words_.stopped_text_alone : words_.stopped_text,
+                            "",
+                            step.may_go_on ? words_.go_on : "",
+                            false});
   }
   Made operator()(const session::PauseStep& /*step*/) const {
     return note(words_.pause_title, words_.pause_text, "", "");
@@ -130,8 +179,9 @@ class Maker {
   }
 
  private:
-  [[nodiscard]] static Made note(const char* title, const char* body, const std::string& small,
-                                 const char* button, const Progress& progress = Progress()) {
+  [[nodiscard]] static Made note(const std::string& title, const std::string& body,
+                                 const std::string& small, const std::string& button,
+                                 const Progress& progress = Progress()) {
     return std::make_shared<NoteScreen>(NoteScreen::Content{progress, title, body, small, button});
   }
 
@@ -160,6 +210,9 @@ bool same(const session::FeedbackStep& a, const session::FeedbackStep& b) {
 }
 bool same(const session::BreakStep& a, const session::BreakStep& b) {
   return a.done == b.done;
+}
+bool same(const session::NoticeStep& a, const session::NoticeStep& b) {
+  return a.what == b.what && a.presentations == b.presentations && a.may_go_on == b.may_go_on;
 }
 bool same(const session::PauseStep& /*a*/, const session::PauseStep& /*b*/) {
   return true;

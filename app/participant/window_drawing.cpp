@@ -204,8 +204,14 @@ bool is_transition(const InputEvent& event) {
 class Drawing {
  public:
   Drawing(GLFWwindow* window, WindowExchange& exchange, Glass& glass, GlPictureShelf& shelf,
-          ConsoleWindow* console)
-      : window_(window), exchange_(exchange), glass_(glass), shelf_(shelf), console_(console) {
+          const ScreenLook& look, ConsoleWindow* console)
+      : window_(window),
+        exchange_(exchange),
+        glass_(glass),
+        shelf_(shelf),
+        look_(look),
+        letters_(look.letters),
+        console_(console) {
     if (console_ != nullptr) console_->begin_drawing();
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
@@ -276,13 +282,15 @@ class Drawing {
   void take_events() {
     while (!waiting_.empty()) {
       const InputEvent event = waiting_.front();
-      // Whether the event came after the screen is known once the screen is shown.
-      if (!is_shown_ && screen_ && is_transition(event)) return;
+      // Whether the event came after the screen is known once the screen is shown. Letters may have
+      // enabled a button.
+      if ((!is_shown_ || has_letters_) && screen_ && is_transition(event)) return;
       waiting_.pop_front();
       if (!screen_) continue;
       if (event.kind != InputEvent::Kind::moved && event.at < shown_at_) continue;
       if (const auto reply = screen_->take(event)) exchange_.replied(screen_, *reply);
       if (is_transition(event)) return;
+      has_letters_ = has_letters_ || event.kind == InputEvent::Kind::letter;
     }
   }
 
@@ -296,6 +304,7 @@ class Drawing {
     drawn_at_ = Clock::now();
     if (!is_shown_) shown_at_ = drawn_at_;
     is_shown_ = true;
+    has_letters_ = false;
     exchange_.shown(screen_, !waiting_.empty());
     // In case the system does not pace the pictures.
     if (screen_ && screen_->is_alive()) {
@@ -308,17 +317,20 @@ class Drawing {
     const std::lock_guard turn(imgui_turn());
     ImGuiContext* const others = ImGui::GetCurrentContext();
     ImGui::SetCurrentContext(context_);
-    fit_fonts(surface);
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = imgui_vec(surface.size);
     io.DisplayFramebufferScale =
         imgui_vec({surface.width_px / surface.size.x, surface.height_px / surface.size.y});
     shelf_.set_density(surface.width_px / surface.size.x);
     io.DeltaTime = 1.0F / 60.0F;
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui::NewFrame();
-    paint(surface);
-    ImGui::Render();
+    // Letters that were typed may be new to the fonts; then the picture is drawn once more.
+    do {
+      fit_fonts(surface);
+      ImGui_ImplOpenGL3_NewFrame();
+      ImGui::NewFrame();
+      paint(surface);
+      ImGui::Render();
+    } while (!has_all_letters_);
     glViewport(0, 0, surface.width_px, surface.height_px);
     glClearColor(0.91F, 0.92F, 0.93F, 1.0F);
     glClear(GL_COLOR_BUFFER_BIT);
@@ -328,10 +340,10 @@ class Drawing {
 
   /// Renders the fonts for the size at which they are shown.
   void fit_fonts(const WindowSurface& surface) {
-    const double unit = design_unit(surface.size);
-    if (unit == unit_) return;
+    const double unit = look_.text_scale * design_unit(surface.size);
+    if (unit == unit_ && has_all_letters_) return;
     if (unit_ > 0.0) ImGui_ImplOpenGL3_DestroyFontsTexture();
-    fonts_ = load_participant_fonts(unit);
+    fonts_ = load_participant_fonts(unit, letters_);
     if (unit_ > 0.0) ImGui_ImplOpenGL3_CreateFontsTexture();
     unit_ = unit;
   }
@@ -347,21 +359,28 @@ class Drawing {
                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoInputs);
     ImGui::PopStyleVar(2);
     Canvas canvas(*ImGui::GetWindowDrawList(), fonts_, surface.size,
-                  screen_ ? screen_->attention() : Attention{});
+                  screen_ ? screen_->attention() : Attention{}, look_.high_contrast);
     if (screen_) screen_->draw(canvas);
     ImGui::End();
+    const std::size_t before = letters_.size();
+    letters_.insert(canvas.missing().begin(), canvas.missing().end());
+    has_all_letters_ = letters_.size() == before;
   }
 
   GLFWwindow* window_;
   WindowExchange& exchange_;
   Glass& glass_;
   GlPictureShelf& shelf_;
+  const ScreenLook& look_;
+  std::set<char32_t> letters_;  ///< of the fonts; those that no typeface has are among them
+  bool has_all_letters_ = true;
   ConsoleWindow* console_;
   ImGuiContext* context_ = nullptr;
   Fonts fonts_;
   double unit_ = 0.0;
   std::shared_ptr<Screen> screen_;
   bool is_shown_ = false;
+  bool has_letters_ = false;  ///< that the last picture does not show
   Clock::time_point shown_at_{};
   Clock::time_point drawn_at_{};
   std::deque<InputEvent> waiting_;
@@ -370,9 +389,9 @@ class Drawing {
 }  // namespace
 
 void draw_until_ended(GLFWwindow* window, WindowExchange& exchange, Glass& glass,
-                      GlPictureShelf& shelf, ConsoleWindow* console) {
+                      GlPictureShelf& shelf, const ScreenLook& look, ConsoleWindow* console) {
   try {
-    Drawing(window, exchange, glass, shelf, console).run();
+    Drawing(window, exchange, glass, shelf, look, console).run();
   } catch (...) {
     exchange.failed(std::current_exception());
   }

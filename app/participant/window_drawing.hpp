@@ -14,12 +14,20 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 struct GLFWwindow;
 
 namespace touchtrial::app {
+
+/// How the screens look, besides their content.
+struct ScreenLook {
+  double text_scale = 1.0;
+  bool high_contrast = false;
+  std::set<char32_t> letters;  ///< that the fonts have from the first picture on
+};
 
 /// The window as the main thread knows it.
 struct WindowSurface {
@@ -141,8 +149,9 @@ class GlPictureShelf final : public PictureShelf {
 /// the exchange.
 /// \param glass  the scale that the screens read; only this function writes it
 /// \param shelf  of the same OpenGL context; its textures are deleted at the end
+/// \param look  must outlive the call
 /// \param console  drawn between this window's pictures when it asks for it; null: no console
 void draw_until_ended(GLFWwindow* window, WindowExchange& exchange, Glass& glass,
-                      GlPictureShelf& shelf, ConsoleWindow* console);
+                      GlPictureShelf& shelf, const ScreenLook& look, ConsoleWindow* console);
 
 }  // namespace touchtrial::app

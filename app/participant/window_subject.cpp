@@ -1,5 +1,9 @@
 #include "app/participant/window_subject.hpp"
 
+#include "app/participant/screen.hpp"
+#include "core/strict_json.hpp"
+
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 
@@ -15,7 +19,13 @@ void WindowSubject::see_pictures(const std::vector<std::string>& labels) {
 
 std::optional<session::StepReply> WindowSubject::attend(const session::Step& step) {
   std::optional<session::StepReply> reply = window_.attend(step);
-  if (std::holds_alternative<session::PauseStep>(step)) return std::nullopt;
+  const auto* const notice = std::get_if<session::NoticeStep>(&step);
+  const bool goes_on_by_itself =
+      std::holds_alternative<session::PauseStep>(step) || (notice != nullptr && !notice->may_go_on);
+  if (goes_on_by_itself) return std::nullopt;
+  // What was typed for a step that was broken off is no reply to this one.
+  if (!step_ || !is_same_step(*step_, step)) forget();
+  step_ = step;
   if (!reply && !meant_) meant_ = subject_.attend(step);
   constexpr std::chrono::milliseconds kPictureLimit{1000};
   if (!reply && meant_ && !typed_ && window_.wait_until_shown(kPictureLimit)) {
@@ -69,14 +79,17 @@ void WindowSubject::type(const session::Step& step, const session::StepReply& re
   }
   if (const auto* const asked = std::get_if<session::QuestionStep>(&step)) {
     for (const design::Question& question : asked->questionnaire->questions) {
-      // A required question gets the first option, or a 1.
+      // A required question gets the first option, or the smallest number, or a 1.
       if (question.required && question.kind == design::QuestionKind::choice) press(Key::digit, 1);
       if (question.required && question.kind != design::QuestionKind::choice) {
-        InputEvent event;
-        event.kind = InputEvent::Kind::letter;
-        event.at = std::chrono::steady_clock::now();
-        event.letter = U'1';
-        window_.inject(event);
+        const double most = question.max.value_or(1.0);
+        for (const char digit : number_text(question.min.value_or(std::min(most, 1.0)))) {
+          InputEvent event;
+          event.kind = InputEvent::Kind::letter;
+          event.at = std::chrono::steady_clock::now();
+          event.letter = static_cast<unsigned char>(digit);
+          window_.inject(event);
+        }
       }
       press(Key::enter);
     }

@@ -32,6 +32,7 @@ class WindowSubject final : public session::Participant {
   ParticipantWindow& window_;
   session::Participant& subject_;
   bool real_time_;
+  std::optional<session::Step> step_;        ///< the last one
   std::optional<session::StepReply> meant_;  ///< the subject's reply, until the window replies
   bool typed_ = false;                       ///< whether it was typed
 };

@@ -1,149 +1,100 @@
 #include "app/participant/words.hpp"
 
+#include <iterator>
+
 namespace touchtrial::app {
 namespace {
 
-constexpr Words kEnglish = {
-    .trial_of = "Trial {} of {}",
-    .practice_of = "Practice {} of {}",
-    .page_of = "Page {} of {}",
-    .question_of = "Question {} of {}",
-    .next = "Next",
-    .back = "Back",
-    .skip = "Skip",
-    .go_on = "Go on",
-
-    .practice_title = "Practice",
-    .practice_again_title = "Practice, once more",
-    .practice_text =
-        "First a few surfaces to practise on. Feel each of them, then choose its picture.\n\nAfter "
-        "each answer you will be told which picture it was.",
-    .practice_again_text =
-        "Let us go through the practice once more. Take your time: long, even strokes with little "
-        "pressure tell the most.",
-    .practice_start = "Start practice",
-
-    .ready_title = "Ready?",
-    .ready_text = "When you go on, you can feel the surface.",
-    .ready_text_mouse =
-        "When you go on, the surface appears. Hold the left mouse button to touch it.",
-    .ready_keys = "Press Space or Enter when you are ready.",
-
-    .exploring_mouse = "Hold the left button and stroke.   Enter: done.   Space: stop the force.",
-    .force = "Pressure",
-    .speed = "Speed",
-    .too_hard = "Less pressure, please",
-
-    .answer_title = "Which surface did you feel?",
-    .answer_spoken_title = "Which surface was it?",
-    .answer_spoken_text = "Please say its name. The experimenter enters it.",
-    .time_is_up = "Time is up. Please choose what seems most likely.",
-    .choose_hint = "Keys 1 to {}, arrows and Enter, or the mouse",
-    .changes_once = "You can change your answer once.",
-    .now_fixed = "Your answer is now fixed.",
-    .feel_again = "Feel again",
-    .scale_true = "Pictures in true size",
-    .scale_shrunk = "Pictures at {} % of true size",
-    .scale_unknown = "Size of the pictures not known: the monitor does not state its own",
-
-    .confidence_title = "How sure are you?",
-    .confidence_least = "guessed",
-    .confidence_most = "certain",
-
-    .correct_title = "Correct",
-    .wrong_title = "Not this time",
-    .your_answer = "Your answer",
-    .it_was = "It was",
-    .it_was_this = "It was this one",
-
-    .break_title = "Time for a break",
-    .break_text = "Take your hand off the device and rest for as long as you like.",
-    .break_done = "{} of {} trials are done.",
-
-    .pause_title = "A short pause",
-    .pause_text = "Please wait a moment. The experimenter will go on shortly.",
-
-    .end_title = "Thank you!",
-    .end_text = "That was all. Please tell the experimenter that you have finished.",
-    .finish = "Finish",
-
-    .number_hint = "Type a number",
-    .text_hint = "Type your answer",
+// clang-format off
+constexpr std::pair<const char*, std::string Words::*> kWords[] = {
+    {"trial_of", &Words::trial_of},
+    {"practice_of", &Words::practice_of},
+    {"page_of", &Words::page_of},
+    {"question_of", &Words::question_of},
+    {"next", &Words::next},
+    {"back", &Words::back},
+    {"skip", &Words::skip},
+    {"go_on", &Words::go_on},
+    {"practice_title", &Words::practice_title},
+    {"practice_again_title", &Words::practice_again_title},
+    {"practice_text", &Words::practice_text},
+    {"practice_again_text", &Words::practice_again_text},
+    {"practice_start", &Words::practice_start},
+    {"practice_over_title", &Words::practice_over_title},
+    {"practice_over_text", &Words::practice_over_text},
+    {"ready_title", &Words::ready_title},
+    {"ready_text", &Words::ready_text},
+    {"ready_text_mouse", &Words::ready_text_mouse},
+    {"ready_keys", &Words::ready_keys},
+    {"exploring_mouse", &Words::exploring_mouse},
+    {"force", &Words::force},
+    {"speed", &Words::speed},
+    {"too_hard", &Words::too_hard},
+    {"touch_first", &Words::touch_first},
+    {"answer_title", &Words::answer_title},
+    {"answer_spoken_title", &Words::answer_spoken_title},
+    {"answer_spoken_text", &Words::answer_spoken_text},
+    {"time_is_up", &Words::time_is_up},
+    {"no_response_title", &Words::no_response_title},
+    {"no_response_text", &Words::no_response_text},
+    {"choose_hint", &Words::choose_hint},
+    {"changes_once", &Words::changes_once},
+    {"now_fixed", &Words::now_fixed},
+    {"feel_again", &Words::feel_again},
+    {"scale_bar", &Words::scale_bar},
+    {"scale_true", &Words::scale_true},
+    {"scale_shrunk", &Words::scale_shrunk},
+    {"scale_unknown", &Words::scale_unknown},
+    {"confidence_title", &Words::confidence_title},
+    {"confidence_least", &Words::confidence_least},
+    {"confidence_most", &Words::confidence_most},
+    {"correct_title", &Words::correct_title},
+    {"wrong_title", &Words::wrong_title},
+    {"your_answer", &Words::your_answer},
+    {"it_was", &Words::it_was},
+    {"it_was_this", &Words::it_was_this},
+    {"break_title", &Words::break_title},
+    {"break_text", &Words::break_text},
+    {"break_done", &Words::break_done},
+    {"pause_title", &Words::pause_title},
+    {"pause_text", &Words::pause_text},
+    {"stopped_title", &Words::stopped_title},
+    {"stopped_text", &Words::stopped_text},
+    {"stopped_text_alone", &Words::stopped_text_alone},
+    {"end_title", &Words::end_title},
+    {"end_text", &Words::end_text},
+    {"finish", &Words::finish},
+    {"number_hint", &Words::number_hint},
+    {"text_hint", &Words::text_hint},
 };
-
-constexpr Words kGerman = {
-    .trial_of = "Durchgang {} von {}",
-    .practice_of = "Übung {} von {}",
-    .page_of = "Seite {} von {}",
-    .question_of = "Frage {} von {}",
-    .next = "Weiter",
-    .back = "Zurück",
-    .skip = "Überspringen",
-    .go_on = "Weiter",
-
-    .practice_title = "Übung",
-    .practice_again_title = "Noch eine Übung",
-    .practice_text =
-        "Zuerst einige Oberflächen zum Üben. Fühlen Sie jede und wählen Sie dann ihr Bild.\n\nNach "
-        "jeder Antwort erfahren Sie, welches Bild es war.",
-    .practice_again_text =
-        "Wir üben noch einmal. Lassen Sie sich Zeit: Lange, gleichmäßige Striche mit wenig Druck "
-        "verraten am meisten.",
-    .practice_start = "Übung beginnen",
-
-    .ready_title = "Bereit?",
-    .ready_text = "Sobald Sie weitergehen, können Sie die Oberfläche fühlen.",
-    .ready_text_mouse =
-        "Sobald Sie weitergehen, erscheint die Fläche. Halten Sie die linke Maustaste, um sie zu "
-        "berühren.",
-    .ready_keys = "Drücken Sie die Leertaste oder Enter, wenn Sie bereit sind.",
-
-    .exploring_mouse = "Linke Taste halten und streichen.   Enter: fertig.   Leertaste: Kraft aus.",
-    .force = "Druck",
-    .speed = "Tempo",
-    .too_hard = "Bitte weniger Druck",
-
-    .answer_title = "Welche Oberfläche haben Sie gefühlt?",
-    .answer_spoken_title = "Welche Oberfläche war es?",
-    .answer_spoken_text = "Bitte nennen Sie ihren Namen. Die Versuchsleitung trägt ihn ein.",
-    .time_is_up = "Die Zeit ist um. Bitte wählen Sie, was Ihnen am wahrscheinlichsten scheint.",
-    .choose_hint = "Tasten 1 bis {}, Pfeile und Enter oder die Maus",
-    .changes_once = "Sie können Ihre Antwort einmal ändern.",
-    .now_fixed = "Ihre Antwort steht jetzt fest.",
-    .feel_again = "Noch einmal fühlen",
-    .scale_true = "Bilder in wahrer Größe",
-    .scale_shrunk = "Bilder in {} % der wahren Größe",
-    .scale_unknown = "Größe der Bilder unbekannt: Der Bildschirm nennt seine Maße nicht",
-
-    .confidence_title = "Wie sicher sind Sie?",
-    .confidence_least = "geraten",
-    .confidence_most = "ganz sicher",
-
-    .correct_title = "Richtig",
-    .wrong_title = "Diesmal nicht",
-    .your_answer = "Ihre Antwort",
-    .it_was = "Es war",
-    .it_was_this = "Es war dieses",
-
-    .break_title = "Zeit für eine Pause",
-    .break_text = "Nehmen Sie die Hand vom Gerät und ruhen Sie sich aus, solange Sie möchten.",
-    .break_done = "{} von {} Durchgängen sind geschafft.",
-
-    .pause_title = "Kurze Pause",
-    .pause_text = "Bitte warten Sie einen Moment. Die Versuchsleitung macht gleich weiter.",
-
-    .end_title = "Vielen Dank!",
-    .end_text = "Das war alles. Bitte sagen Sie der Versuchsleitung, dass Sie fertig sind.",
-    .finish = "Beenden",
-
-    .number_hint = "Zahl eingeben",
-    .text_hint = "Antwort eingeben",
-};
+// clang-format on
+static_assert(std::size(kWords) * sizeof(std::string) == sizeof(Words), "a member has no key");
 
 }  // namespace
 
-const Words& words_in(const std::string& language) {
-  return language.starts_with("de") ? kGerman : kEnglish;
+Words words_of(const design::Texts& texts) {
+  const auto& screens = texts.at("screens");
+  Words words;
+  for (const auto& [key, member] : kWords) words.*member = screens.at(key);
+  return words;
+}
+
+std::string filled(std::string text,
+                   const std::vector<std::pair<std::string, std::string>>& values) {
+  for (const auto& [name, value] : values) {
+    const std::string place = "{" + name + "}";
+    for (auto at = text.find(place); at != text.npos; at = text.find(place, at + value.size())) {
+      text.replace(at, place.size(), value);
+    }
+  }
+  return text;
+}
+
+std::string with_numbers(const std::string& text,
+                         const std::vector<std::pair<std::string, int>>& numbers) {
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const auto& [name, number] : numbers) values.emplace_back(name, std::to_string(number));
+  return filled(text, values);
 }
 
 }  // namespace touchtrial::app

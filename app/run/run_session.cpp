@@ -3,8 +3,10 @@
 #include "app/experimenter/console_experimenter.hpp"
 #include "app/experimenter/terminal_experimenter.hpp"
 #include "app/experimenter/typing.hpp"
+#include "app/participant/page_layout.hpp"
 #include "app/participant/participant_window.hpp"
 #include "app/participant/window_subject.hpp"
+#include "app/run/participant_dialogue.hpp"
 #include "app/run/run_study.hpp"
 #include "app/run/session_bounds.hpp"
 #include "app/run/session_device.hpp"
@@ -12,8 +14,10 @@
 #include "app/study_inputs.hpp"
 #include "app/texts/study_texts.hpp"
 #include "core/errors.hpp"
+#include "core/strict_json.hpp"
 #include "device/simulated/simulated_hand.hpp"
 #include "engine/image_file.hpp"
+#include "protocols/design/languages.hpp"
 #include "protocols/design/practice.hpp"
 #include "protocols/session/device_station.hpp"
 #include "protocols/session/real_time_explorer.hpp"
@@ -23,7 +27,6 @@
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/population.hpp"
 #include "protocols/simulation/subject_model.hpp"
-#include "protocols/store/session_lock.hpp"
 
 #include <algorithm>
 #include <map>
@@ -40,7 +43,8 @@
 namespace touchtrial::app {
 namespace {
 
-/// The first image of every class by its label, including the classes of practice.
+/// The first image of every class by its label, including the classes of practice, and the pictures
+/// of the instructions.
 std::map<std::string, GreyImage> answer_pictures(const design::Study& study) {
   std::map<std::string, GreyImage> pictures;
   const auto add = [&](const std::vector<design::StudyClass>& classes) {
@@ -50,19 +54,28 @@ std::map<std::string, GreyImage> answer_pictures(const design::Study& study) {
   };
   add(study.classes);
   add(study.practice.classes);
+  for (const std::string& file : design::picture_files(study.session)) {
+    pictures.emplace(page_picture(file), engine::read_grey_image(study.folder / file));
+  }
   return pictures;
 }
+
+}  // namespace
 
 ParticipantWindowOptions window_options(const RunOptions& options, const design::Study& study) {
   ParticipantWindowOptions window;
   window.monitor = options.monitor;
   window.size_px = options.window_px;
-  window.language = study.session.language;
-  window.sight = study.session.sight;
+  window.session = study.session;
+  window.session.text_scale = options.text_scale.value_or(study.session.text_scale);
+  window.session.high_contrast = study.session.high_contrast || options.high_contrast;
   window.pictures = answer_pictures(study);
   window.pitch_mm = study.rendering.pitch_mm;
+  window.least_touch = study.trials.answer_after;
   return window;
 }
+
+namespace {
 
 std::string why_gone(const ParticipantWindow& window) {
   const auto gone = window.gone();
@@ -75,17 +88,17 @@ std::string why_gone(const ParticipantWindow& window) {
 class ParticipantPractice {
  public:
   /// \throws StudyError as PracticeSet
-  ParticipantPractice(const RunStudy& study, const PlaneGeometry& plane,
-                      const design::ScheduleDraw& draw)
-      : study_(study.key.study), draw_(draw) {
+  ParticipantPractice(const RunStudy& study, const PlaneGeometry& plane) : study_(study.key.study) {
     if (study_.trials.practice == 0 || study_.practice.classes.empty()) return;
     set_.emplace(study_, design::weakest_gains(study.pack.manifest()), plane);
     textures_ =
         session::PracticeTextures{set_->plane(), [this](int number) { return round(number); }};
   }
 
+  /// \param draw  the participant's
   /// \return null if the study has no practice; valid as long as this object
-  [[nodiscard]] const session::PracticeTextures* textures() const noexcept {
+  [[nodiscard]] const session::PracticeTextures* textures_for(const design::ScheduleDraw& draw) {
+    draw_ = draw;
     return textures_ ? &*textures_ : nullptr;
   }
 
@@ -111,18 +124,21 @@ class ParticipantPractice {
 };
 
 /// A visual device makes no sound that would need masking.
-design::MaskingPlan masking_of(const RunOptions& options, const design::Study& study,
-                               const device::DeviceInfo& device) {
+design::MaskingPlan masking_of(const design::Study& study, const device::DeviceInfo& device) {
   design::MaskingPlan plan = study.session.masking;
-  plan.wanted = plan.wanted && options.sound && !device.visual;
+  plan.wanted = plan.wanted && !device.visual;
   return plan;
 }
 
-/// Deviations from the study that exist before the session begins.
+/// Deviations from the study that exist before the session begins, and what is known of the
+/// participant.
 std::vector<session::ExperimenterRequest> known_deviations(const RunOptions& options,
                                                            const RunStudy& study,
                                                            const SessionDevice& device) {
   std::vector<session::ExperimenterRequest> known = device.to_record();
+  if (!options.remark.empty()) {
+    known.push_back({session::ExperimenterRequest::Kind::note, options.remark, ""});
+  }
   if (study.key_in_reach) {
     known.push_back({session::ExperimenterRequest::Kind::deviation,
                      "the investigator's key lies beside the study", "key-at-station"});
@@ -134,11 +150,44 @@ std::vector<session::ExperimenterRequest> known_deviations(const RunOptions& opt
   return known;
 }
 
+/// What is special about the participant's screens, for the session's record.
+std::vector<session::ExperimenterRequest> notes_on_screens(const RunOptions& options,
+                                                           const design::Study& study) {
+  std::vector<session::ExperimenterRequest> notes;
+  const auto note = [&notes](const std::string& text) {
+    notes.push_back({session::ExperimenterRequest::Kind::note, text, ""});
+  };
+  if (const std::string draft = design::draft_notice(study.session.language); !draft.empty()) {
+    spdlog::warn("{}", draft);
+    note(draft);
+  }
+  if (options.text_scale) note("size of the letters: " + number_text(*options.text_scale));
+  if (options.high_contrast) note("high contrast");
+  return notes;
+}
+
 /// A visual device needs no warm-up, no curtain and no headphones.
 session::SessionTexts texts_for(const design::Study& study, const device::DeviceInfo& device) {
   session::SessionTexts texts = session_texts(study);
   if (device.visual) texts.day_sheet.clear();
   return texts;
+}
+
+void require_blind(const RunOptions& options, const device::DeviceInfo& device) {
+  if (!device.visual || options.pilot) return;
+  throw UsageError("run: device '" + device.name +
+                   "' is seen on a screen and not felt, which is not blind; give --pilot and a "
+                   "pilot's database, or choose a device that is felt");
+}
+
+/// Without a known size, nobody can tell whether pictures have their true size.
+void warn_of_unknown_size(const RunOptions& options, const design::Study& study,
+                          const ParticipantWindow& window) {
+  if (study.session.sight == design::Sight::blindfold || window.screen().is_known) return;
+  spdlog::warn(
+      "window: the size of this screen is not known, and so that of the pictures; measure it once "
+      "with `touchtrial screen calibrate{}`",
+      options.monitor > 1 ? " --monitor " + std::to_string(options.monitor) : "");
 }
 
 /// The experimenter must be able to consent to the force.
@@ -155,26 +204,32 @@ class PersonsSession {
   PersonsSession(const RunOptions& options, const RunStudy& study)
       : options_(options),
         study_(study),
+        database_(options, study),
         source_(study.pack, study.key.study.rendering),
         terminal_(standard_terminal()),
         device_(options, source_.plane(), terminal_),
-        store_(run_database_for(options, study)),
-        sound_(masking_of(options, study.key.study, device_.info()), study.key.study.seed) {
+        practice_(study, source_.plane()) {
+    require_blind(options, device_.info());
     require_consent(device_.info());
-    if (!sound_.trouble().empty()) spdlog::warn("{}", sound_.trouble());
+    if (options.sound) {
+      sound_.emplace(masking_of(study.key.study, device_.info()), study.key.study.seed);
+      if (!sound_->trouble().empty()) spdlog::warn("{}", sound_->trouble());
+    }
     for (const session::ExperimenterRequest& known : known_deviations(options, study, device_)) {
       terminal_.add(known);
     }
+    for (const auto& note : notes_on_screens(options, study.key.study)) terminal_.add(note);
   }
 
   int run() {
     ParticipantWindowOptions wanted = window_options(options_, study_.key.study);
     wanted.device = [this]() -> device::HapticDevice& { return device_.device(); };
     wanted.pointer = device_.pointer();
-    if (options_.sound) wanted.cues = &sound_;
+    if (sound_) wanted.cues = &*sound_;
     if (options_.console) wanted.console = &console_;
     if (options_.console_monitor > 0) wanted.console_monitor = options_.console_monitor;
     ParticipantWindow window(wanted);
+    warn_of_unknown_size(options_, study_.key.study, window);
     int code = 1;
     run_beside(window, [&] { code = run_before(window); });
     return code;
@@ -184,15 +239,15 @@ class PersonsSession {
   int run_before(ParticipantWindow& window) {
     session::RealTimeExplorer explorer;
     const EnteredSession entered =
-        enter_session(options_, study_, store_, [&](store::SessionOpening& opening) {
+        enter_session(options_, study_, database_, [&](store::SessionOpening& opening) {
           session::describe_station(opening, device_.info(), explorer.scheduling(),
                                     device::kServoRateHz, device_.certificate());
         });
     session::SteadySessionClock clock(entered.clock);
-    const ParticipantPractice practice(study_, source_.plane(), entered.draw);
     SpokenAnswers spoken(window, terminal_);
     RunExperimenter experimenter(
-        console_, [&] { return why_gone(window); }, [this] { return sound_.to_record(); });
+        console_, [&] { return why_gone(window); },
+        [this] { return sound_ ? sound_->to_record() : std::nullopt; });
     const session::SessionTexts texts = texts_for(study_.key.study, device_.info());
     const session::SessionTally tally =
         session::run_session(*entered.session, {.key = study_.key,
@@ -203,21 +258,23 @@ class PersonsSession {
                                                 .devices = device_.station(),
                                                 .experimenter = experimenter,
                                                 .texts = texts,
-                                                .practice = practice.textures(),
+                                                .practice = practice_.textures_for(entered.draw),
                                                 .participant_name = options_.participant,
                                                 .device_name = device_.driver(),
                                                 .limits = device_.limits()});
-    return conclude_session(options_, entered.number, tally, store_);
+    terminal_.end_line();
+    return conclude_session(options_, entered.number, tally, database_.made());
   }
 
   const RunOptions& options_;
   const RunStudy& study_;
+  RunDatabase database_;
   session::StimulusSource source_;
   TerminalExperimenter terminal_;
   ConsoleExperimenter console_{terminal_};
   SessionDevice device_;
-  store::StudyStore store_;  ///< after the device, so that none is made without a device
-  SessionSound sound_;
+  ParticipantPractice practice_;
+  std::optional<SessionSound> sound_;  ///< nothing with --no-sound: no sound card is opened
 };
 
 /// Time in a simulated participant's session is virtual unless the options ask for real time.
@@ -250,7 +307,7 @@ class SimulatedSession {
   SimulatedSession(const RunOptions& options, const RunStudy& study)
       : options_(options),
         study_(study),
-        store_(run_database_for(options, study)),
+        database_(options, study),
         source_(study.pack, study.key.study.rendering),
         subject_(subject_for(*options.subject, study.key.study)),
         population_(simulation::population_of(
@@ -270,11 +327,12 @@ class SimulatedSession {
   int run_before(ParticipantWindow* window) {
     const std::unique_ptr<session::Explorer> explorer = explorer_for(options_);
     const EnteredSession entered = enter_session(
-        options_, study_, store_,
+        options_, study_, database_,
         [&](store::SessionOpening& opening) { describe_simulated(*explorer, opening); });
     const std::unique_ptr<session::SessionClock> clock = clock_for(*explorer, entered.clock);
     const std::unique_ptr<simulation::SimulatedParticipant> mind =
         population_->participant(entered.enrolment);
+    mind->come_to(options_.visit);
     std::optional<WindowSubject> before_window;
     if (window != nullptr) before_window.emplace(*window, *mind, options_.real_time);
     session::AlwaysReady devices;
@@ -294,12 +352,12 @@ class SimulatedSession {
          .texts = texts,
          .participant_name = options_.participant,
          .device_name = "simulated"});
-    return conclude_session(options_, entered.number, tally, store_);
+    return conclude_session(options_, entered.number, tally, database_.made());
   }
 
   const RunOptions& options_;
   const RunStudy& study_;
-  store::StudyStore store_;
+  RunDatabase database_;
   session::StimulusSource source_;
   simulation::SubjectModel subject_;
   std::unique_ptr<const simulation::Population> population_;
@@ -307,10 +365,10 @@ class SimulatedSession {
 
 }  // namespace
 
-int run_study_session(const RunOptions& options) {
+int run_study_session(const RunOptions& given) {
   const EndingSignals signals;
-  const RunStudy study = run_study_for(options);
-  const store::SessionLock lock(options.database, options.participant);
+  const RunStudy study = run_study_for(given);
+  const RunOptions options = given.participant.empty() ? with_participant(given, study.key) : given;
   if (options.is_simulated()) return SimulatedSession(options, study).run();
   return PersonsSession(options, study).run();
 }

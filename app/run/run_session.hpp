@@ -2,6 +2,8 @@
 #pragma once
 
 #include "app/heads.hpp"
+#include "app/participant/participant_window.hpp"
+#include "protocols/design/study.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -17,7 +19,8 @@ enum class OnExisting { refuse, resume, restart };
 /// The options of `touchtrial run`.
 struct RunOptions {
   std::filesystem::path study;
-  std::string participant;
+  std::string participant;  ///< empty: the experimenter is asked
+  std::string remark;       ///< on the participant; becomes a note of the session
   std::filesystem::path database;
   std::filesystem::path pack;          ///< empty: where `prepare` puts it
   std::filesystem::path station_file;  ///< empty: beside the pack
@@ -28,6 +31,7 @@ struct RunOptions {
   OnExisting on_existing = OnExisting::refuse;
   HeadOptions heads;
   int enrolment = 0;      ///< 0: the station's next number
+  int visit = 1;          ///< of the participant
   std::string station{};  ///< of a study with several; empty: its only one
   /// A simulated participant instead of a person: a model file, or "default".
   std::optional<std::filesystem::path> subject;
@@ -37,12 +41,19 @@ struct RunOptions {
   bool console = false;     ///< open a window for the experimenter
   int console_monitor = 0;  ///< monitor of that window, from 1; 0: the system decides
   bool sound = true;
-  int monitor = 1;  ///< the participant's, from 1; full screen
+  int monitor = 1;                     ///< the participant's, from 1; full screen
+  std::optional<double> text_scale{};  ///< of the participant's letters; empty: the study's
+  bool high_contrast = false;          ///< whether or not the study asks for it
   /// Width and height of the participant's window in pixels, instead of full screen.
   std::optional<std::pair<int, int>> window_px;
 
   [[nodiscard]] bool is_simulated() const noexcept { return subject.has_value(); }
 };
+
+/// The participant's window of a study, without a device and sounds.
+/// \throws as read_grey_image, for the study's pictures
+[[nodiscard]] ParticipantWindowOptions window_options(const RunOptions& options,
+                                                      const design::Study& study);
 
 /// Runs the session of a person with a device or of a simulated participant, before a window unless
 /// it is headless. A window belongs to the calling thread, which must be the program's main thread;

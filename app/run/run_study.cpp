@@ -4,6 +4,7 @@
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/utc.hpp"
 #include "protocols/design/key_protection.hpp"
 #include "protocols/session/commitment.hpp"
 
@@ -30,13 +31,6 @@ design::StationKey station_key_at(const RunOptions& options, const fs::path& fil
   const store::StudyStore store =
       store::StudyStore::open(options.database, store::StudyStore::Access::read_only);
   return station_key_for(store.commitment(), options.database, file);
-}
-
-void require_unchanged(const design::StationKey& key, const design::Study& study) {
-  if (design::are_same(key.study, study)) return;
-  throw StudyError(study.source +
-                   ": has changed since it was prepared; run `touchtrial prepare` again for a new "
-                   "study, or take the change back");
 }
 
 /// The investigator's key opens everything that a station should not know.
@@ -66,14 +60,11 @@ void require_intact(const engine::Pack& pack, const design::StudyCodes& key) {
 
 RunStudy simulated_study(const RunOptions& options, const design::Study& study) {
   design::StudyKey key = simulated_key(study, options.study);
-  const fs::path path = key_path_for(options.database, {});
-  refuse_other_key(path, key);
+  refuse_other_key(key_path_for(options.database, {}), key);
   prepare_simulated_pack(key);
-  // Before there is a database, because a database without its key is useless. A database that
-  // already exists is another key's.
-  if (!is_there(path) && !is_there(options.database)) design::save_study_key(path, key);
   engine::Pack pack(key.pack_folder);
-  return {design::station_key(key, design::kOnlyStation), std::move(pack), false};
+  design::StationKey station = design::station_key(key, design::kOnlyStation);
+  return {std::move(station), std::move(pack), false, std::move(key)};
 }
 
 [[noreturn]] void refuse(const RunOptions& options, const std::string& why) {
@@ -122,7 +113,9 @@ RunStudy run_study_for(const RunOptions& options) {
         "it again");
   }
   design::StationKey key = station_key_at(options, file);
-  require_unchanged(key, study);
+  if (!design::are_same(key.study, study)) {
+    throw StudyError(design::misfit_of(study, key, file, "--station-file"));
+  }
   key.study.folder = study.folder;
   if (key.simulated && !options.is_simulated()) {
     throw StoreError(file.string() +
@@ -136,25 +129,6 @@ RunStudy run_study_for(const RunOptions& options) {
 }
 
 namespace {
-
-store::StudyStore stored_study(const RunOptions& options, const RunStudy& study) {
-  const store::StudyCommitment ours =
-      session::commitment_of(study.key, study.pack, options.is_simulated(), options.pilot);
-  if (!is_there(options.database)) {
-    refuse_lost_database(options.database, ours, options.heads);
-    return store::StudyStore::create(options.database, ours, utc_now(), study.key.signer());
-  }
-  store::StudyStore store =
-      store::StudyStore::open(options.database, store::StudyStore::Access::read_write);
-  require_same(store.commitment(), ours, options);
-  if (store.stations() > 0) {
-    refuse(options,
-           "was merged from several stations' databases and takes no sessions of its own; run them "
-           "in this station's database, and merge again");
-  }
-  store.sign_with(study.key.signer());
-  return store;
-}
 
 /// Which of two clocks is wrong, only people can tell. In virtual time sessions are longer than
 /// they took.
@@ -170,14 +144,53 @@ void warn_of_clock(const RunOptions& options, const store::StudyStore& store) {
 
 }  // namespace
 
-store::StudyStore run_database_for(const RunOptions& options, const RunStudy& study) {
-  store::StudyStore store = stored_study(options, study);
-  keep_heads(store, options.database, study.key.signer(), options.heads, HeadUse::required);
-  warn_of_clock(options, store);
-  if (!options.is_simulated() && !store.sessions().empty()) {
-    print(head_words(store) + "; compare it with the last day sheet\n");
+RunDatabase::RunDatabase(const RunOptions& options, const RunStudy& study)
+    : options_(options),
+      study_(study),
+      ours_(session::commitment_of(study.key, study.pack, options.is_simulated(), options.pilot)) {
+  if (is_there(options.database)) {
+    open();
+    return;
   }
-  return store;
+  const fs::path folder = options.database.parent_path();
+  if (!folder.empty() && !is_there(folder)) {
+    refuse(options, "there is no folder for it; make it, or give another --db");
+  }
+  refuse_lost_database(options.database, ours_, options.heads);
+}
+
+void RunDatabase::open() {
+  lock_.emplace(options_.database, options_.participant);
+  store_ = store::StudyStore::open(options_.database, store::StudyStore::Access::read_write);
+  require_same(store_->commitment(), ours_, options_);
+  if (store_->stations() > 0) {
+    refuse(options_,
+           "was merged from several stations' databases and takes no sessions of its own; run them "
+           "in this station's database, and merge again");
+  }
+  const Signer signer = study_.key.signer();
+  store_->sign_with(signer);
+  keep_heads(*store_, options_.database, signer, options_.heads, HeadUse::required);
+  warn_of_clock(options_, *store_);
+  if (!options_.is_simulated() && !store_->sessions().empty()) {
+    print(head_words(*store_) + "; compare it with the last day sheet\n");
+  }
+}
+
+store::StudyStore& RunDatabase::made() {
+  if (store_) return *store_;
+  if (is_there(options_.database)) {
+    open();  // another program has made it meanwhile
+    return *store_;
+  }
+  lock_.emplace(options_.database, options_.participant);
+  // Before there is a database, because a database without its key is useless.
+  const fs::path key = key_path_for(options_.database, {});
+  if (study_.own_key && !is_there(key)) design::save_study_key(key, *study_.own_key);
+  const Signer signer = study_.key.signer();
+  store_ = store::StudyStore::create(options_.database, ours_, utc_now(), signer);
+  keep_heads(*store_, options_.database, signer, options_.heads, HeadUse::required);
+  return *store_;
 }
 
 }  // namespace touchtrial::app

@@ -5,7 +5,10 @@
 #include "app/run/run_session.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/design/study_key.hpp"
+#include "protocols/store/session_lock.hpp"
 #include "protocols/store/study_store.hpp"
+
+#include <optional>
 
 namespace touchtrial::app {
 
@@ -13,19 +16,43 @@ struct RunStudy {
   design::StationKey key;
   engine::Pack pack;
   bool key_in_reach = false;  ///< the investigator's key lies beside the pack
+  /// Of a simulated study that was not prepared: its key, for the database that is made.
+  std::optional<design::StudyKey> own_key{};
 };
 
 /// Loads the pack and this station's file; never the investigator's key. For a simulated
-/// participant of a study that was not prepared, makes a simulated study and saves its key beside
-/// the database.
-/// \throws StudyError if the study file has changed since it was prepared
+/// participant of a study that was not prepared, makes a simulated study.
+/// \throws StudyError if the study file is not that of the station's file
 /// \throws FileError if pack or station file is missing or damaged, with the remedy
 [[nodiscard]] RunStudy run_study_for(const RunOptions& options);
 
-/// Opens the database, or creates it with the study's commitment if there is none.
-/// \throws StoreError if it is another study's, if it mixes pilot or simulated sessions with
-///   others, or if it was merged from several stations
-/// \throws as StudyStore::open
-[[nodiscard]] store::StudyStore run_database_for(const RunOptions& options, const RunStudy& study);
+/// The database of a session, with a lock on its participant. If there is none yet, it is made when
+/// the session begins, so that a run that is refused leaves nothing.
+class RunDatabase {
+ public:
+  /// Opens the database if there is one.
+  /// \param options,study  must outlive this
+  /// \throws StoreError if it is another study's, if it mixes pilot or simulated sessions with
+  ///   others, if it was merged from several stations, or if there is no folder for it
+  /// \throws as StudyStore::open and SessionLock
+  RunDatabase(const RunOptions& options, const RunStudy& study);
+
+  /// \return null while there is no database
+  [[nodiscard]] const store::StudyStore* present() const noexcept {
+    return store_ ? &*store_ : nullptr;
+  }
+  /// Makes the database with the study's commitment if there is none.
+  /// \throws StoreError if it cannot be made
+  [[nodiscard]] store::StudyStore& made();
+
+ private:
+  void open();
+
+  const RunOptions& options_;
+  const RunStudy& study_;
+  store::StudyCommitment ours_;
+  std::optional<store::SessionLock> lock_;
+  std::optional<store::StudyStore> store_;
+};
 
 }  // namespace touchtrial::app

@@ -4,6 +4,8 @@
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/strict_json.hpp"
+#include "core/utc.hpp"
 #include "core/version.hpp"
 #include "device/platform/stop_signals.hpp"
 #include "protocols/design/station.hpp"
@@ -19,7 +21,6 @@
 #include <string>
 #include <utility>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -60,12 +61,14 @@ void require_own_file(const RunOptions& options, const design::Station& station,
 
 /// The enrolment number of a participant without a session: the one that the options name, or else
 /// the number of the person whom the participant replaces, or else the station's next number.
+/// \param store  null: there is none yet
 /// \throws as next_enrolment_of
 int enrolment_of(const RunOptions& options, const design::Station& station,
-                 const store::StudyStore& store) {
+                 const store::StudyStore* store) {
   if (options.enrolment > 0) return options.enrolment;
-  const int free_or_inherited = store.enrolment_for(options.participant);
-  const std::set<int> taken = taken_numbers(store);
+  if (store == nullptr) return design::next_enrolment_of(station, {});
+  const int free_or_inherited = store->enrolment_for(options.participant);
+  const std::set<int> taken = taken_numbers(*store);
   require_own_file(options, station, taken);
   if (taken.contains(free_or_inherited)) return free_or_inherited;
   return design::next_enrolment_of(station, taken);
@@ -82,30 +85,113 @@ session::BlockDrawing block_restart_of(const design::StationKey& key,
           }};
 }
 
-EnteredSession new_session(const RunOptions& options, const RunStudy& study,
-                           store::StudyStore& store, int enrolment,
-                           const DescribeOpening& describe) {
+/// The participant's group, if the study's groups are open; else empty.
+std::string open_group(const RunOptions& options, const design::StationKey& key, int enrolment) {
+  const design::GroupPlan& groups = key.study.groups;
+  if (!groups.open) return "";
+  const auto group = design::group_for(key.study, key.station, enrolment, draws_of(options));
+  return group ? groups.labels[static_cast<std::size_t>(*group)] : "";
+}
+
+EnteredSession new_session(const RunOptions& options, const RunStudy& study, RunDatabase& database,
+                           int enrolment, const DescribeOpening& describe) {
+  if (!store::is_participant_id(options.participant)) {
+    throw UsageError("run: " + in_quotes(options.participant) +
+                     " is no participant id; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
+  }
   EnteredSession entered;
-  entered.number = store.next_session();
   entered.enrolment = enrolment;
-  entered.draw = study.key.draw_of(enrolment, draws_of(options));
+  entered.draw = study.key.draw_of(enrolment, draws_of(options), options.visit);
+  const design::Schedule schedule = design::make_schedule(study.key.study, entered.draw);
+  store::StudyStore& store = database.made();
+  entered.number = store.next_session();
   SystemEntropy entropy;
   const SecretKey key = entropy.secret("participant key");
   entered.sink = store.begin_session(
       entered.number, store::wrap_participant_key(study.key.investigator_box, entered.number, key),
       {}, store::keep_participant_key(study.key.station.secret, entered.number, key));
-  const design::Schedule schedule = design::make_schedule(study.key.study, entered.draw);
   entered.session = std::make_unique<session::Session>(
       schedule, study.key.study.trials, store::SessionRecorder(entered.number, key, *entered.sink),
       block_restart_of(study.key, entered.draw));
   store::SessionOpening opening;
   opening.participant = options.participant;
   opening.enrolment = enrolment;
+  opening.visit = options.visit;
+  opening.group = open_group(options, study.key, enrolment);
   opening.study_id = study.key.study_id;
   opening.seal = study.key.seal;
   opening.pilot = options.pilot;
   describe(opening);
+  if (!opening.simulated) opening.opened_utc = utc_text(utc_now());
   entered.session->open({}, opening, design::schedule_to_json(schedule, study.key));
+  if (!opening.group.empty()) {
+    print("participant " + options.participant + " is in group " + opening.group + "\n");
+  }
+  return entered;
+}
+
+/// When a session was opened, by the clock of the file's chain.
+nanoseconds opened_at(const store::StudyStore& store, int session) {
+  nanoseconds at{};
+  store.for_each(store::EventKind::session_opened, [&](const store::Event& event) {
+    if (store::session_opened_from_json(event.body).session == session) at = event.at;
+  });
+  return at;
+}
+
+std::string visit_words(const RunOptions& options, const RunStudy& study) {
+  return fmt::format("{}: participant {}, visit {} of {}", one_line(options.database.string()),
+                     options.participant, options.visit, study.key.study.visits.count);
+}
+
+/// \throws UsageError if the study has no such visit
+void require_planned_visit(const RunOptions& options, const RunStudy& study) {
+  const int visits = study.key.study.visits.count;
+  if (options.visit <= visits) return;
+  throw UsageError(visits == 1 ? "run: the study has one visit; leave --visit out"
+                               : fmt::format("run: the study has {} visits; give --visit 1 to {}",
+                                             visits, visits));
+}
+
+/// Opens the session of the visit after a participant's last one.
+/// \throws StoreError if it may not follow yet
+EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunDatabase& database,
+                          const store::SessionRow& last, const DescribeOpening& describe) {
+  const auto refuse = [&](const std::string& why) {
+    throw StoreError(visit_words(options, study) + ": " + why);
+  };
+  if (last.withdrawn || last.excluded) {
+    refuse(fmt::format("cannot follow session {}, whose participant {}", last.session,
+                       last.withdrawn ? "has withdrawn" : "was excluded"));
+  }
+  if (last.state != store::SessionState::completed) {
+    refuse(fmt::format(
+        "cannot follow session {}, which is {}; complete visit {} first, with "
+        "--visit {} and --on-existing {}",
+        last.session, last.state == store::SessionState::open ? "still open" : "stopped",
+        last.visit, last.visit, last.state == store::SessionState::open ? "resume" : "restart"));
+  }
+  // In virtual time nobody waits.
+  const bool in_days = !options.is_simulated() || options.real_time;
+  const design::VisitPlan& plan = study.key.study.visits;
+  const nanoseconds before = opened_at(database.made(), last.session);
+  const double days = design::days_between(before, utc_now());
+  if (in_days && days < plan.least_days) {
+    const auto least = std::chrono::duration<double, std::ratio<86'400>>(plan.least_days);
+    refuse(
+        fmt::format("comes {:.1f} days after visit {} by this machine's clock, and the study has "
+                    "at least {} days between visits: come back after {}",
+                    days, last.visit, plan.least_days,
+                    utc_words(before + std::chrono::ceil<nanoseconds>(least))));
+  }
+  EnteredSession entered = new_session(options, study, database, last.enrolment, describe);
+  if (in_days && plan.most_days && days > *plan.most_days) {
+    const std::string late = fmt::format("{:.1f} days after visit {}, at most {} in the study",
+                                         days, last.visit, *plan.most_days);
+    spdlog::warn("{}: comes {}; recorded as the deviation visit-late", visit_words(options, study),
+                 late);
+    entered.session->deviate({}, {"visit-late", late});
+  }
   return entered;
 }
 
@@ -138,11 +224,8 @@ KeptSession kept_session(const RunOptions& options, const RunStudy& study,
     if (stored.sequence == 0) session.schedule = std::move(opened->secret);
     session.events.push_back(std::move(opened->event));
   }
-  nanoseconds began{};
-  store.for_each(store::EventKind::session_opened, [&](const store::Event& event) {
-    if (store::session_opened_from_json(event.body).session == row.session) began = event.at;
-  });
-  session.away = std::max(nanoseconds{}, utc_now() - began - session.events.back().at);
+  session.away =
+      std::max(nanoseconds{}, utc_now() - opened_at(store, row.session) - session.events.back().at);
   return session;
 }
 
@@ -159,7 +242,7 @@ session::Session restored(const RunOptions& options, const RunStudy& study, cons
   session::Session session(
       design::schedule_from_json(kept.schedule, study.key), study.key.study.trials,
       store::SessionRecorder(row.session, kept.key, sink),
-      block_restart_of(study.key, study.key.draw_of(row.enrolment, draws_of(options))));
+      block_restart_of(study.key, study.key.draw_of(row.enrolment, draws_of(options), row.visit)));
   session.restore(kept.events);
   return session;
 }
@@ -175,7 +258,7 @@ EnteredSession resumed_session(const RunOptions& options, const RunStudy& study,
   EnteredSession entered;
   entered.number = row.session;
   entered.enrolment = row.enrolment;
-  entered.draw = study.key.draw_of(row.enrolment, draws_of(options));
+  entered.draw = study.key.draw_of(row.enrolment, draws_of(options), row.visit);
   entered.sink = store.continue_session(row.session);
   entered.session =
       std::make_unique<session::Session>(restored(options, study, kept, row, *entered.sink));
@@ -198,18 +281,14 @@ void require_young(const RunOptions& options, const RunStudy& study, const std::
                   options.database.string(), standing, utc_words(utc_now()), limit_h));
 }
 
-bool is_visual(const store::SessionOpening& opening) {
-  return opening.station && opening.station->visual;
-}
-
 /// Refuses to resume a session on another kind of device: a session that is seen is not blind.
 void require_same_kind(const RunOptions& options, const store::SessionRow& row,
                        const store::SessionOpening& then, const store::SessionOpening& now) {
-  if (is_visual(now) == is_visual(then)) return;
+  if (now.is_visual() == then.is_visual()) return;
   throw StoreError(fmt::format(
       "{}: session {} was begun with device '{}', and '{}' is {}: continue with the former",
       options.database.string(), row.session, then.device, now.device,
-      is_visual(now) ? "seen on a screen and not felt" : "felt and not seen"));
+      now.is_visual() ? "seen on a screen and not felt" : "felt and not seen"));
 }
 
 /// Records that the resumed session uses another device or certificate.
@@ -237,16 +316,16 @@ void give_up(const RunOptions& options, const RunStudy& study, store::StudyStore
 }
 
 /// Opens a new session with the enrolment number of the previous one, which has ended.
-EnteredSession begin_anew(const RunOptions& options, const RunStudy& study,
-                          store::StudyStore& store, const store::SessionRow& row,
-                          const DescribeOpening& describe) {
-  store.replace(row.session, row.participant, utc_now(), "restarted");
-  return new_session(options, study, store, row.enrolment, describe);
+EnteredSession begin_anew(const RunOptions& options, const RunStudy& study, RunDatabase& database,
+                          const store::SessionRow& row, const DescribeOpening& describe) {
+  database.made().replace(row.session, row.participant, utc_now(), "restarted");
+  return new_session(options, study, database, row.enrolment, describe);
 }
 
 EnteredSession existing_session(const RunOptions& options, const RunStudy& study,
-                                store::StudyStore& store, const store::SessionRow& row,
+                                RunDatabase& database, const store::SessionRow& row,
                                 const DescribeOpening& describe) {
+  store::StudyStore& store = database.made();
   if (row.withdrawn) {
     throw StoreError(fmt::format(
         "{}: participant {} has withdrawn (session {}), and takes no further part; give "
@@ -259,12 +338,15 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
   }
   const bool may_be_restarted =
       options.on_existing == OnExisting::restart && row.state == store::SessionState::stopped;
-  if (may_be_restarted) return begin_anew(options, study, store, row, describe);
+  if (may_be_restarted) return begin_anew(options, study, database, row, describe);
   if (row.state != store::SessionState::open) {
     throw StoreError(fmt::format(
-        "{}: participant {} already has session {}, which is {}; give another participant id",
+        "{}: participant {} already has session {}, which is {}; give another participant id{}",
         options.database.string(), row.participant, row.session,
-        row.state == store::SessionState::completed ? "complete" : "stopped"));
+        row.state == store::SessionState::completed ? "complete" : "stopped",
+        row.state == store::SessionState::completed && row.visit < study.key.study.visits.count
+            ? fmt::format(", or --visit {} for the next visit", row.visit + 1)
+            : ""));
   }
   const KeptSession kept = kept_session(options, study, store, row);
   const std::string stands = standing(store, row, kept.away);
@@ -275,7 +357,7 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
   }
   if (options.on_existing == OnExisting::restart) {
     give_up(options, study, store, kept, row);
-    return begin_anew(options, study, store, row, describe);
+    return begin_anew(options, study, database, row, describe);
   }
   require_young(options, study, stands, kept.away);
   store::SessionOpening now;
@@ -290,11 +372,26 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
 }  // namespace
 
 EnteredSession enter_session(const RunOptions& options, const RunStudy& study,
-                             store::StudyStore& store, const DescribeOpening& describe) {
-  if (const auto row = store.session_of(options.participant)) {
-    return existing_session(options, study, store, *row, describe);
+                             RunDatabase& database, const DescribeOpening& describe) {
+  require_planned_visit(options, study);
+  const store::StudyStore* const store = database.present();
+  const auto row = store == nullptr ? std::nullopt : store->session_of(options.participant);
+  if (row && options.visit == row->visit + 1) {
+    return next_visit(options, study, database, *row, describe);
   }
-  return new_session(options, study, store, enrolment_of(options, study.key.station, store),
+  if (row && options.visit != row->visit) {
+    const bool is_followed =
+        row->state == store::SessionState::completed && row->visit < study.key.study.visits.count;
+    throw StoreError(fmt::format("{}: the last visit was visit {} (session {}); give --visit {}",
+                                 visit_words(options, study), row->visit, row->session,
+                                 is_followed ? row->visit + 1 : row->visit));
+  }
+  if (row) return existing_session(options, study, database, *row, describe);
+  if (options.visit > 1) {
+    throw StoreError(visit_words(options, study) +
+                     ": there is no visit before; check the participant id, or give --visit 1");
+  }
+  return new_session(options, study, database, enrolment_of(options, study.key.station, store),
                      describe);
 }
 
@@ -354,8 +451,8 @@ std::optional<session::ExperimenterRequest> RunExperimenter::request() {
 }
 
 void RunExperimenter::acknowledged(int trial) {
-  print("trial " + std::to_string(trial) + " acknowledged\n");
   inner_.acknowledged(trial);
+  print("trial " + std::to_string(trial) + " acknowledged\n");
 }
 
 namespace {

@@ -33,14 +33,13 @@ struct EnteredSession {
 using DescribeOpening = std::function<void(store::SessionOpening&)>;
 
 /// Opens a new session for the participant, or handles the existing one as `options.on_existing`
-/// says. On return, the session's first or next event is stored.
+/// says. On return, the session's first or next event is stored. The database is made last.
 /// \throws StoreError if the participant has a session that may not be resumed (with its number,
-/// its
-///   progress and the remedy), or if the database refuses
-/// \throws UsageError if the participant cannot get an enrolment number
+///   its progress and the remedy), or if the database refuses
+/// \throws UsageError if the participant's id is none, they cannot get an enrolment number, or the
+///   study has no such visit
 [[nodiscard]] EnteredSession enter_session(const RunOptions& options, const RunStudy& study,
-                                           store::StudyStore& store,
-                                           const DescribeOpening& describe);
+                                           RunDatabase& database, const DescribeOpening& describe);
 
 /// While an object of this class exists, SIGINT, SIGTERM and SIGHUP are remembered and do not end
 /// the program; a second signal of the same kind does. During explorations, StopOnSignals handles

@@ -38,7 +38,7 @@ std::vector<double> sum_of_steps(RandomStream& random) {
   return sum;
 }
 
-/// Three tones and the loudest noise together stay within full scale.
+/// Three tones and the loudest noise together stay within full scale; more would be clipped.
 constexpr double kToneAmplitude = 0.06;
 constexpr double kToneRampS = 0.01;
 
@@ -78,6 +78,9 @@ std::vector<float> tone_of(Cue cue, double rate_hz) {
     case Cue::too_hard:
       add_tone(samples, rate_hz, 300.0, 300.0, 0.25);
       break;
+    case Cue::stopped:
+      add_tone(samples, rate_hz, 800.0, 400.0, 0.5);
+      break;
   }
   return samples;
 }
@@ -103,7 +106,7 @@ std::vector<float> masking_noise(double level_dbfs, std::uint64_t seed) {
 
 SoundMixer::SoundMixer(double sample_rate_hz, std::vector<float> noise)
     : noise_(std::move(noise)), gain_step_(static_cast<float>(1.0 / (kRampS * sample_rate_hz))) {
-  for (const Cue cue : {Cue::plane_on, Cue::plane_off, Cue::too_hard}) {
+  for (const Cue cue : {Cue::plane_on, Cue::plane_off, Cue::too_hard, Cue::stopped}) {
     Voice& voice = voices_[static_cast<std::size_t>(cue)];
     voice.tone = tone_of(cue, sample_rate_hz);
     voice.at = voice.tone.size();

@@ -62,7 +62,7 @@ class SoundMixer {
   float gain_ = 0.0F;
   float gain_step_;
   std::atomic<bool> masks_{false};
-  std::array<Voice, 3> voices_;
+  std::array<Voice, 4> voices_;
   std::atomic<std::int64_t> rendered_{0};
 };
 

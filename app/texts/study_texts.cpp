@@ -1,13 +1,12 @@
 #include "app/texts/study_texts.hpp"
 
-#include "core/strict_json.hpp"
+#include "app/participant/words.hpp"
+#include "protocols/design/languages.hpp"
 #include "protocols/design/protocol.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
+#include <initializer_list>
 #include <map>
-#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,123 +14,18 @@
 namespace touchtrial::app {
 namespace {
 
-constexpr std::array<std::string_view, 10> kInstructions{
-    "welcome",          "hand",       "curtain",  "blindfold", "time_fade",
-    "time_no_response", "confidence", "practice", "masking",   "comfort"};
-constexpr std::array<std::string_view, 12> kDaySheet{
-    "warm_up", "calibration", "gravity",    "fixture",       "placement", "curtain",
-    "labels",  "blindfold",   "headphones", "masking_level", "consent",   "consent_version"};
-constexpr std::size_t kMost = 16;
-
-std::string read_text(const JsonValue& value) {
-  std::string text = value.text();
-  if (text.empty()) value.refuse("is empty; write the text");
-  return text;
-}
-
-std::map<std::string, std::string> read_parts(const JsonValue& value,
-                                              std::span<const std::string_view> names) {
-  const JsonObject object = value.object(names);
-  std::map<std::string, std::string> parts;
-  for (const std::string_view name : names) {
-    parts.emplace(std::string(name), read_text(object.at(name)));
-  }
-  return parts;
-}
-
-/// What every study says, and a page for each protocol that does not bring its own.
-std::vector<std::string_view> instruction_names() {
-  std::vector<std::string_view> names(kInstructions.begin(), kInstructions.end());
-  for (const design::Protocol* protocol : design::protocols()) {
-    if (protocol->instruction().empty()) names.push_back(protocol->name());
-  }
-  return names;
-}
-
-std::vector<std::string> read_options(const JsonValue& value) {
-  std::vector<std::string> options;
-  for (const JsonValue& item : value.items(2, kMost)) options.push_back(read_text(item));
-  return options;
-}
-
-std::vector<QuestionText> read_questions(const JsonValue& value) {
-  std::vector<QuestionText> questions;
-  for (const JsonValue& item : value.items(1, kMost)) {
-    const JsonObject object = item.object({"id", "text", "options"});
-    QuestionText& question = questions.emplace_back();
-    question.id = read_text(object.at("id"));
-    question.text = read_text(object.at("text"));
-    if (const auto options = object.find("options")) question.options = read_options(*options);
-  }
-  return questions;
-}
-
-std::vector<QuestionText> read_inventory(const JsonObject& object) {
-  std::vector<QuestionText> items = read_questions(object.at("handedness"));
-  const std::vector<std::string> options = read_options(object.at("handedness_options"));
-  for (QuestionText& item : items) item.options = options;
-  return items;
-}
-
-QuestionText read_pen_hand(const JsonValue& value) {
-  const JsonObject object = value.object({"text", "options"});
-  return {"pen-hand", read_text(object.at("text")), read_options(object.at("options"))};
-}
-
-}  // namespace
-
-LanguageTexts parse_language_texts(std::string_view text, const std::string& source) {
-  const JsonObject object = parse_strict_json(text, source)
-                                .object({"language", "instructions", "handedness",
-                                         "handedness_options", "pen_hand", "closing", "day_sheet"});
-  LanguageTexts texts;
-  texts.language = read_text(object.at("language"));
-  texts.instructions = read_parts(object.at("instructions"), instruction_names());
-  texts.handedness = read_inventory(object);
-  texts.pen_hand = read_pen_hand(object.at("pen_hand"));
-  texts.closing = read_questions(object.at("closing"));
-  texts.day_sheet = read_parts(object.at("day_sheet"), kDaySheet);
-  return texts;
-}
-
-const std::vector<LanguageTexts>& built_in_languages() {
-  static const std::vector<LanguageTexts> languages{
-      parse_language_texts(english_texts_json(), "the program's English texts"),
-      parse_language_texts(german_texts_json(), "the program's German texts")};
-  return languages;
-}
-
-const LanguageTexts& texts_in(std::string_view language) {
-  for (const LanguageTexts& texts : built_in_languages()) {
-    if (language.substr(0, 2) == texts.language) return texts;
-  }
-  return built_in_languages().front();
-}
-
-namespace {
-
-using Words = std::map<std::string, std::string>;
-
-/// Replaces the words in braces.
-std::string filled(std::string text, const Words& words) {
-  for (const auto& [name, word] : words) {
-    const std::string place = "{" + name + "}";
-    for (auto at = text.find(place); at != text.npos; at = text.find(place, at + word.size())) {
-      text.replace(at, place.size(), word);
-    }
-  }
-  return text;
-}
+using Values = std::vector<std::pair<std::string, std::string>>;
+using Section = std::map<std::string, std::string>;
 
 std::string seconds_text(double seconds, const std::string& language) {
   std::string text = fmt::format("{:g}", seconds);
-  if (language == "de") std::replace(text.begin(), text.end(), '.', ',');
+  if (design::has_decimal_comma(language)) std::replace(text.begin(), text.end(), '.', ',');
   return text;
 }
 
-Words words_for(const design::Study& study, const LanguageTexts& texts) {
+Values values_for(const design::Study& study) {
   return {{"pictures", std::to_string(study.classes.size())},
-          {"limit", seconds_text(study.trials.explore_limit_s, texts.language)},
+          {"limit", seconds_text(study.trials.explore_limit_s, study.session.language)},
           {"confidence", std::to_string(study.session.confidence_levels)},
           {"consent", study.session.consent_version}};
 }
@@ -153,65 +47,60 @@ std::vector<std::vector<std::string>> pages_for(const design::Study& study) {
   return pages;
 }
 
-/// A part of the language's texts, or what the protocol says itself.
-std::string part_of(const design::Study& study, const LanguageTexts& texts,
-                    const std::string& part) {
-  const auto found = texts.instructions.find(part);
-  return found == texts.instructions.end() ? study.protocol->instruction() : found->second;
+/// A part of the texts, or what the protocol says itself.
+std::string part_of(const design::Study& study, const Section& texts, const std::string& part) {
+  const auto found = texts.find(part);
+  return found == texts.end() ? study.protocol->instruction() : found->second;
 }
 
-std::vector<std::string> own_instructions(const design::Study& study, const LanguageTexts& texts) {
-  const Words words = words_for(study, texts);
+std::vector<std::string> instructions(const design::Study& study, const Section& texts) {
+  const auto given = study.session.instructions.find(study.session.language);
+  if (given != study.session.instructions.end() && !given->second.empty()) return given->second;
+  const Values values = values_for(study);
   std::vector<std::string> pages;
   for (const std::vector<std::string>& parts : pages_for(study)) {
     std::string& page = pages.emplace_back();
     for (const std::string& part : parts) {
       if (!page.empty()) page += "\n\n";
-      page += filled(part_of(study, texts, part), words);
+      page += filled(part_of(study, texts, part), values);
     }
   }
   return pages;
 }
 
-std::vector<std::string> instructions(const design::Study& study, const LanguageTexts& texts) {
-  const auto given = study.session.instructions.find(study.session.language);
-  if (given != study.session.instructions.end() && !given->second.empty()) return given->second;
-  return own_instructions(study, texts);
-}
-
-/// One question in all built-in languages.
-/// \param of  returns a language's wording
-template <typename Wording>
-design::Question question_in_all(Wording of) {
-  design::Question question;
-  for (const LanguageTexts& texts : built_in_languages()) {
-    const QuestionText& wording = of(texts);
-    question.id = wording.id;
-    question.kind =
-        wording.options.empty() ? design::QuestionKind::text : design::QuestionKind::choice;
-    question.text[texts.language] = wording.text;
-    question.options.resize(wording.options.size());
-    for (std::size_t i = 0; i < wording.options.size(); ++i) {
-      question.options[i][texts.language] = wording.options[i];
+/// One question in all languages; in the study's, with the study's own words.
+/// \param texts  the study's, of this section
+/// \param key  of its text
+/// \param options  keys of the options' texts; empty: a free answer
+design::Question question(const design::SessionPlan& plan, const char* section,
+                          const Section& texts, std::string id, const char* key,
+                          std::initializer_list<const char*> options) {
+  const auto wording = [&](const char* of) {
+    design::Translated words;
+    for (const design::Language& language : design::languages()) {
+      words[language.code] = language.texts.at(section).at(of);
     }
-  }
-  return question;
+    words[plan.language] = texts.at(of);
+    return words;
+  };
+  design::Question asked;
+  asked.id = std::move(id);
+  asked.kind = options.size() == 0 ? design::QuestionKind::text : design::QuestionKind::choice;
+  asked.text = wording(key);
+  for (const char* option : options) asked.options.push_back(wording(option));
+  return asked;
 }
 
-std::vector<design::Question> questions_in_all(std::vector<QuestionText> LanguageTexts::*list) {
-  std::vector<design::Question> questions;
-  for (std::size_t i = 0; i < (built_in_languages().front().*list).size(); ++i) {
-    questions.push_back(question_in_all(
-        [&](const LanguageTexts& texts) -> const QuestionText& { return (texts.*list).at(i); }));
+design::Questionnaire handedness_inventory(const design::SessionPlan& plan, const Section& texts) {
+  design::Questionnaire inventory{"handedness", {}};
+  for (const char* item : {"writing", "throwing", "toothbrush", "spoon"}) {
+    inventory.questions.push_back(
+        question(plan, "handedness", texts, item, item,
+                 {"always_right", "usually_right", "both", "usually_left", "always_left"}));
   }
-  return questions;
-}
-
-design::Questionnaire handedness_inventory() {
-  design::Questionnaire inventory{"handedness", questions_in_all(&LanguageTexts::handedness)};
-  design::Question& hand = inventory.questions.emplace_back(question_in_all(
-      [](const LanguageTexts& texts) -> const QuestionText& { return texts.pen_hand; }));
-  hand.required = true;
+  inventory.questions.push_back(
+      question(plan, "handedness", texts, "pen-hand", "pen_hand", {"pen_right", "pen_left"}));
+  inventory.questions.back().required = true;
   return inventory;
 }
 
@@ -224,9 +113,15 @@ void join(std::vector<design::Question>& questions, const design::Question& give
   }
 }
 
-std::optional<design::Questionnaire> closing_questions(const design::SessionPlan& plan) {
+std::optional<design::Questionnaire> closing_questions(const design::SessionPlan& plan,
+                                                       const Section& texts) {
   design::Questionnaire closing{"closing", {}};
-  if (plan.closing) closing.questions = questions_in_all(&LanguageTexts::closing);
+  if (plan.closing) {
+    closing.questions = {question(plan, "closing", texts, "heard", "heard",
+                                  {"heard_no", "heard_sometimes", "heard_often", "heard_helped"}),
+                         question(plan, "closing", texts, "strategy", "strategy", {}),
+                         question(plan, "closing", texts, "remarks", "remarks", {})};
+  }
   for (const design::Question& given : plan.closing_questions) join(closing.questions, given);
   if (closing.questions.empty()) return std::nullopt;
   return closing;
@@ -253,12 +148,11 @@ std::vector<std::pair<std::string, std::string>> items_for(const design::Session
   return items;
 }
 
-std::vector<session::DaySheetItem> day_sheet(const design::Study& study,
-                                             const LanguageTexts& texts) {
-  const Words words = words_for(study, texts);
+std::vector<session::DaySheetItem> day_sheet(const design::Study& study, const Section& texts) {
+  const Values values = values_for(study);
   std::vector<session::DaySheetItem> sheet;
   for (const auto& [code, key] : items_for(study.session)) {
-    sheet.push_back({"no-" + code, filled(texts.day_sheet.at(key), words)});
+    sheet.push_back({"no-" + code, filled(texts.at(key), values)});
   }
   int number = 0;
   for (const std::string& own : study.session.day_sheet) {
@@ -270,12 +164,14 @@ std::vector<session::DaySheetItem> day_sheet(const design::Study& study,
 }  // namespace
 
 session::SessionTexts session_texts(const design::Study& study) {
-  const LanguageTexts& texts = texts_in(study.session.language);
+  const design::Texts texts = design::texts_of(study.session);
   session::SessionTexts session;
-  session.instructions = instructions(study, texts);
-  if (study.session.handedness) session.handedness = handedness_inventory();
-  session.closing = closing_questions(study.session);
-  session.day_sheet = day_sheet(study, texts);
+  session.instructions = instructions(study, texts.at("instructions"));
+  if (study.session.handedness) {
+    session.handedness = handedness_inventory(study.session, texts.at("handedness"));
+  }
+  session.closing = closing_questions(study.session, texts.at("closing"));
+  session.day_sheet = day_sheet(study, texts.at("day_sheet"));
   return session;
 }
 

@@ -1,12 +1,24 @@
 #include "app/windows/glfw_support.hpp"
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/hash.hpp"
+#include "core/strict_json.hpp"
+#include "device/device_settings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <system_error>
 #include <vector>
 
 #include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
 namespace {
@@ -59,7 +71,91 @@ float density_of(GLFWwindow* window) {
 
 }  // namespace
 
+namespace {
+
+constexpr std::size_t kMostScreens = 1000;
+// Filled when GLFW is started, on the main thread.
+std::map<std::string, double> measured_screens;  ///< ScreenScale::mm_per_unit, by its monitor
+std::map<std::string, std::string> edids;        ///< by the monitor's name
+
+/// The first digits of the hash of the monitor's EDID; empty where the system does not show it.
+/// Linux has it by connector, whose name the windowing system may shorten: "HDMI-1" for "HDMI-A-1".
+std::string edid_of(const std::string& name) {
+  constexpr std::size_t kDigits = 8;
+  std::string longer = name;
+  if (const std::size_t at = longer.find("HDMI-"); at != std::string::npos) {
+    longer.insert(at + 5, "A-");
+  }
+  std::error_code unreadable;
+  for (const auto& entry : std::filesystem::directory_iterator("/sys/class/drm", unreadable)) {
+    const std::string connector = entry.path().filename().string();
+    if (!connector.ends_with("-" + name) && !connector.ends_with("-" + longer)) continue;
+    try {
+      const Bytes edid = read_file(entry.path() / "edid");
+      if (!edid.empty()) return to_hex(sha256(edid)).substr(0, kDigits);
+    } catch (const FileError&) {
+      continue;
+    }
+  }
+  return "";
+}
+
+std::string identity_of(GLFWmonitor* monitor, const GLFWvidmode& mode) {
+  int width_mm = 0;
+  int height_mm = 0;
+  glfwGetMonitorPhysicalSize(monitor, &width_mm, &height_mm);
+  const char* const stated = glfwGetMonitorName(monitor);
+  const std::string name = one_line(stated == nullptr ? "monitor" : stated);
+  const auto [at, is_new] = edids.try_emplace(name);
+  if (is_new) at->second = edid_of(name);
+  const std::string& edid = at->second;
+  return fmt::format("{}, {} x {}, {} x {} mm{}", name, mode.width, mode.height, width_mm,
+                     height_mm, edid.empty() ? "" : ", EDID " + edid);
+}
+
+/// \throws StudyError, or FileError, with the remedy
+std::map<std::string, double> read_measured_screens(const std::filesystem::path& file) {
+  std::map<std::string, double> screens;
+  if (file.empty() || !is_there(file)) return screens;
+  constexpr std::uintmax_t kLargest = 1U << 20U;
+  const Bytes content = read_file(file, kLargest);
+  const JsonObject root = parse_strict_json(text_of(content), file.string()).object({"screens"});
+  for (const JsonValue& item : root.at("screens").items(0, kMostScreens)) {
+    const JsonObject screen = item.object({"monitor", "mm_per_unit"});
+    screens[screen.at("monitor").text()] =
+        screen.at("mm_per_unit").number({kMmPerInch / 400.0, kMmPerInch / 40.0});
+  }
+  return screens;
+}
+
+}  // namespace
+
+std::filesystem::path measured_screens_path() {
+  // Beside the devices' settings.
+  std::filesystem::path file = device::default_device_settings_path();
+  if (!file.empty()) file.replace_filename("screens.json");
+  return file;
+}
+
+void keep_measured_screen(const std::string& monitor, double mm_per_unit) {
+  measured_screens[monitor] = mm_per_unit;
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& [name, scale] : measured_screens) {
+    list.push_back({{"monitor", name}, {"mm_per_unit", scale}});
+  }
+  const std::filesystem::path file = measured_screens_path();
+  make_folder(file.parent_path());
+  replace_file(file, nlohmann::ordered_json{{"screens", list}}.dump(2) + "\n");
+}
+
 GlfwLibrary::GlfwLibrary() {
+  edids.clear();
+  try {
+    measured_screens = read_measured_screens(measured_screens_path());
+  } catch (const Error& error) {
+    measured_screens.clear();
+    spdlog::warn("{}; no screen counts as measured: see touchtrial screen calibrate", error.what());
+  }
   if (glfwInit() != GLFW_TRUE) {
     refuse_window("run in a graphical session (DISPLAY or WAYLAND_DISPLAY), or under xvfb-run");
   }
@@ -94,9 +190,17 @@ ScreenScale screen_scale(GLFWwindow* window) {
   int width_mm = 0;
   glfwGetMonitorPhysicalSize(monitor, &width_mm, nullptr);
   const double stated = stated_mm_per_unit(width_mm, mode->width);
-  scale.is_known = stated > 0.0;
-  if (scale.is_known) scale.mm_per_unit = stated;
+  if (stated > 0.0) scale.mm_per_unit = stated;
+  scale.monitor = identity_of(monitor, *mode);
+  const auto measured = measured_screens.find(scale.monitor);
+  scale.is_measured = measured != measured_screens.end();
+  if (scale.is_measured) scale.mm_per_unit = measured->second;
+  scale.is_known = scale.is_measured || (stated > 0.0 && !is_made_up(width_mm, mode->width));
   return scale;
+}
+
+bool is_made_up(int size_mm, int width) noexcept {
+  return std::abs(width * kMmPerInch / 96.0 - size_mm) < 1.0;
 }
 
 float primary_density() {

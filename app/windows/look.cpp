@@ -1,9 +1,13 @@
 #include "app/windows/look.hpp"
 
-#include <array>
-#include <filesystem>
-#include <string>
+#include "app/windows/text_flow.hpp"
+#include "core/errors.hpp"
 
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
 #include <imgui.h>
 
 namespace touchtrial::app {
@@ -11,6 +15,8 @@ namespace {
 
 constexpr float kTextHeight = 16.0F;
 constexpr float kLargeHeight = 26.0F;
+/// Ideographs look small beside Latin letters of the same nominal height.
+constexpr float kEastAsianScale = 1.1F;
 
 /// Where systems keep a typeface that is legible at small sizes.
 constexpr std::array kFaces = {
@@ -35,9 +41,18 @@ constexpr std::array kBoldFaces = {
     "C:/Windows/Fonts/segoeuib.ttf",
 };
 
-/// Latin, Greek, Cyrillic; dashes and quotation marks; arrows; mathematical signs.
-constexpr std::array<ImWchar, 9> kLetters = {0x0020, 0x052F, 0x2010, 0x203A, 0x2190,
-                                             0x2193, 0x2200, 0x2265, 0};
+/// Where systems keep a typeface with Chinese and Japanese letters.
+constexpr std::array kEastAsianFaces = {
+    "/usr/share/fonts/truetype/droid/DroidSansFallbackFull.ttf",
+    "/usr/share/fonts/droid/DroidSansFallbackFull.ttf",
+    "/usr/share/fonts/google-droid-sans-fonts/DroidSansFallbackFull.ttf",
+    "/usr/share/fonts/truetype/wqy/wqy-microhei.ttc",
+    "/System/Library/Fonts/Hiragino Sans GB.ttc",
+    "C:/Windows/Fonts/msyh.ttc",
+};
+
+/// Western European letters; dashes and quotation marks.
+constexpr std::array<ImWchar, 5> kLetters = {0x0020, 0x00FF, 0x2010, 0x203A, 0};
 
 template <typename Faces>
 std::string installed(const Faces& faces) {
@@ -49,10 +64,45 @@ std::string installed(const Faces& faces) {
 }
 
 /// ImGui's own typeface.
-ImFont* add_own(float height) {
+ImFont* add_own(ImFontAtlas& atlas, float height) {
   ImFontConfig own;
   own.SizePixels = height;
-  return ImGui::GetIO().Fonts->AddFontDefault(&own);
+  return atlas.AddFontDefault(&own);
+}
+
+/// What ImGui takes from typefaces; must outlive the building of the atlas.
+struct WantedLetters {
+  ImVector<ImWchar> ranges;
+  bool east_asian = false;
+};
+
+ImFont* add_font(ImFontAtlas& atlas, const FontSize& size, const WantedLetters& wanted) {
+  std::string face = size.weight == FontWeight::bold ? installed(kBoldFaces) : "";
+  if (face.empty()) face = installed(kFaces);
+  ImFontConfig options;
+  options.OversampleH = 1;  // enough for large letters, and keeps the atlas small
+  ImFont* font = face.empty() ? nullptr
+                              : atlas.AddFontFromFileTTF(face.c_str(), size.height, &options,
+                                                         wanted.ranges.Data);
+  if (font == nullptr) font = add_own(atlas, size.height);
+  const std::string other = wanted.east_asian ? installed(kEastAsianFaces) : "";
+  if (other.empty()) return font;
+  options.MergeMode = true;  // takes only letters that the first typeface does not have
+  atlas.AddFontFromFileTTF(other.c_str(), std::round(kEastAsianScale * size.height), &options,
+                           wanted.ranges.Data);
+  return font;
+}
+
+WantedLetters wanted_of(const std::set<char32_t>& letters) {
+  WantedLetters wanted;
+  ImFontGlyphRangesBuilder builder;
+  builder.AddRanges(kLetters.data());
+  for (const char32_t letter : letters) {
+    if (letter <= IM_UNICODE_CODEPOINT_MAX) builder.AddChar(static_cast<ImWchar>(letter));
+    wanted.east_asian = wanted.east_asian || is_east_asian(letter);
+  }
+  builder.BuildRanges(&wanted.ranges);
+  return wanted;
 }
 
 }  // namespace
@@ -62,19 +112,53 @@ void load_fonts(float density) {
   const std::string face = installed(kFaces);
   for (const float height : {kTextHeight * density, kLargeHeight * density}) {
     if (!face.empty() && atlas.AddFontFromFileTTF(face.c_str(), height) != nullptr) continue;
-    add_own(height);
+    add_own(atlas, height);
   }
 }
 
-ImFont* add_font(float height, FontWeight weight) {
-  std::string face = weight == FontWeight::bold ? installed(kBoldFaces) : "";
-  if (face.empty()) face = installed(kFaces);
-  if (face.empty()) return add_own(height);
-  ImFontConfig options;
-  options.OversampleH = 1;  // enough for large letters, and keeps the atlas small
-  ImFont* font =
-      ImGui::GetIO().Fonts->AddFontFromFileTTF(face.c_str(), height, &options, kLetters.data());
-  return font != nullptr ? font : add_own(height);
+std::vector<ImFont*> load_letters(std::span<const FontSize> sizes,
+                                  const std::set<char32_t>& letters) {
+  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  atlas.Clear();
+  const WantedLetters wanted = wanted_of(letters);
+  std::vector<ImFont*> fonts;
+  for (const FontSize& size : sizes) fonts.push_back(add_font(atlas, size, wanted));
+  atlas.Build();
+  return fonts;
+}
+
+std::set<char32_t> letters_in(const std::vector<std::string>& texts) {
+  std::set<char32_t> letters;
+  for (const std::string& text : texts) {
+    for (const char32_t letter : code_points(text)) {
+      if (letter > U' ') letters.insert(letter);
+    }
+  }
+  return letters;
+}
+
+void require_letters(const std::set<char32_t>& letters) {
+  constexpr float kAnyHeight = 13.0F;
+  constexpr int kMostNamed = 8;
+  const std::lock_guard turn(imgui_turn());
+  ImFontAtlas atlas;
+  const WantedLetters wanted = wanted_of(letters);
+  const ImFont* const font = add_font(atlas, {kAnyHeight, FontWeight::regular}, wanted);
+  atlas.Build();
+  std::string missing;
+  int count = 0;
+  for (const char32_t letter : letters) {
+    const bool shown = letter <= IM_UNICODE_CODEPOINT_MAX &&
+                       font->FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr;
+    if (shown) continue;
+    if (++count <= kMostNamed) missing += fmt::format(" U+{:04X}", static_cast<unsigned>(letter));
+  }
+  if (count == 0) return;
+  if (count > kMostNamed) missing += fmt::format(" and {} more", count - kMostNamed);
+  throw DeviceError(
+      "window: no installed font has these letters of the participant's texts:" + missing +
+      "; for Chinese and Japanese `sudo apt install fonts-droid-fallback`, for other "
+      "letters `sudo apt install fonts-dejavu-core`");
 }
 
 ImVec2 imgui_vec(Vec2 point) noexcept {

@@ -6,6 +6,10 @@
 
 #include <cstdint>
 #include <mutex>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
 
 struct ImFont;
 struct ImVec2;
@@ -38,9 +42,25 @@ inline constexpr int kLargeFont = 1;
 
 enum class FontWeight { regular, bold };
 
-/// Loads one more size of the same typeface, with Latin, Greek and Cyrillic letters.
-/// \param height  window units, > 0
-ImFont* add_font(float height, FontWeight weight);
+struct FontSize {
+  float height = 0.0F;  ///< window units, > 0
+  FontWeight weight = FontWeight::regular;
+};
+
+/// Replaces the fonts of ImGui's current context by sizes of the same typeface. They have the
+/// letters of Western European languages, and those that are asked for, as far as an installed
+/// typeface has them; Chinese and Japanese ones come from Droid Sans Fallback or a similar one. Few
+/// letters keep the fonts' texture small.
+/// \return one font for each size
+std::vector<ImFont*> load_letters(std::span<const FontSize> sizes,
+                                  const std::set<char32_t>& letters);
+
+/// \param texts  UTF-8
+/// \return their letters, without blanks and control characters
+[[nodiscard]] std::set<char32_t> letters_in(const std::vector<std::string>& texts);
+
+/// \throws DeviceError with the letters and the remedy if no installed typeface has some of them
+void require_letters(const std::set<char32_t>& letters);
 
 /// Draws the stylus into ImGui's current window: a ring, which is filled while the stylus is
 /// pressed, and grey where nobody moves it.

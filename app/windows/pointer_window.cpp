@@ -113,8 +113,11 @@ void PointerWindow::draw_pointer() {
 std::string PointerWindow::scale_in_words() const {
   const double shrunk = mm_per_unit_ / window_.mm_per_unit();
   std::string scale = "true size";
-  if (!window_.scale_is_known()) scale = "true size unknown: the monitor does not state its size";
-  if (shrunk >= 1.005) scale = fmt::format("shown at 1 : {:.2f} to fit the screen", shrunk);
+  if (!window_.scale_is_known()) {
+    scale = "true size unknown: measure the screen with touchtrial screen calibrate";
+  } else if (shrunk >= 1.005) {
+    scale = fmt::format("shown at 1 : {:.2f} to fit the screen", shrunk);
+  }
   return fmt::format("{:.0f} x {:.0f} mm, {}", plane_mm_.x, plane_mm_.y, scale);
 }
 

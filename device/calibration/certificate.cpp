@@ -4,10 +4,10 @@
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
+#include "core/utc.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
@@ -30,18 +30,6 @@ constexpr std::array kAxisNames = {Named<CalibrationAxis>{"x", CalibrationAxis::
                                    Named<CalibrationAxis>{"z", CalibrationAxis::z}};
 constexpr NumberRange kFigure{.low = 0.0, .high = 1e6};
 
-std::string date_text(std::chrono::sys_seconds time) {
-  const auto day = std::chrono::floor<std::chrono::days>(time);
-  const std::chrono::year_month_day date(day);
-  const std::chrono::hh_mm_ss clock(time - day);
-  char text[32];
-  std::snprintf(text, sizeof text, "%04d-%02u-%02uT%02d:%02d:%02dZ", static_cast<int>(date.year()),
-                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
-                static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
-                static_cast<int>(clock.seconds().count()));
-  return text;
-}
-
 /// \return the number at this place of the text, or -1
 int number_at(const std::string& text, std::size_t at, std::size_t digits) {
   return number_in<int>(std::string_view(text).substr(at, digits)).value_or(-1);
@@ -59,7 +47,7 @@ std::chrono::sys_seconds read_date(const JsonValue& place) {
                       std::chrono::hours(number_at(text, 11, 2)) +
                       std::chrono::minutes(number_at(text, 14, 2)) +
                       std::chrono::seconds(number_at(text, 17, 2));
-    if (date.ok() && date_text(time) == text) return time;
+    if (date.ok() && utc_text(time.time_since_epoch()) == text) return time;
   }
   place.refuse(in_quotes(text) + " is not a date of the form 2026-01-31T12:00:00Z");
 }
@@ -206,7 +194,7 @@ std::string certificate_json(const Certificate& certificate) {
                                {"serial", certificate.serial},
                                {"firmware", certificate.firmware},
                                {"program", certificate.program},
-                               {"made", date_text(certificate.made)},
+                               {"made", utc_text(certificate.made.time_since_epoch())},
                                {"axes", axes},
                                {"free_air",
                                 {{"noise_mm", air.noise_mm},
@@ -214,7 +202,7 @@ std::string certificate_json(const Certificate& certificate) {
                                  {"residual_n", air.residual_n},
                                  {"passed", air.passed}}},
                                {"passed", certificate.passed()}};
-  return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(object);
 }
 
 ReadCertificate read_certificate(const std::filesystem::path& path) {

@@ -96,20 +96,6 @@ std::optional<Reply> decode_reply(std::span<const std::uint8_t, kPacketSize> pac
   return reply;
 }
 
-std::size_t ftdi_payload(std::span<const std::uint8_t> transfer,
-                         std::span<std::uint8_t> payload) noexcept {
-  std::size_t written = 0;
-  while (transfer.size() > kFtdiStatusSize) {
-    const auto usb_packet = transfer.first(std::min(transfer.size(), kUsbPacketSize));
-    const auto bytes = usb_packet.subspan(kFtdiStatusSize);
-    const std::size_t fits = std::min(bytes.size(), payload.size() - written);
-    std::copy_n(bytes.begin(), fits, payload.begin() + static_cast<std::ptrdiff_t>(written));
-    written += fits;
-    transfer = transfer.subspan(usb_packet.size());
-  }
-  return written;
-}
-
 int FalconStream::push_transfer(std::span<const std::uint8_t> transfer) noexcept {
   int finished = 0;
   while (!transfer.empty()) {

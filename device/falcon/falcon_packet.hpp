@@ -75,18 +75,9 @@ struct Reply {
     std::span<const std::uint8_t, kPacketSize> packet) noexcept;
 ///@}
 
-/// \name The FTDI chip's share
-///@{
+/// A bulk transfer from the FTDI chip is USB packets of 64 bytes, of which the last may be shorter.
 inline constexpr std::size_t kUsbPacketSize = 64;
 inline constexpr std::size_t kFtdiStatusSize = 2;  ///< at the front of every USB packet from it
-
-/// Removes the status bytes from one bulk transfer: USB packets of 64 bytes, of which the last may
-/// be shorter.
-/// \param payload  receives the other bytes, as many as fit
-/// \return the number of bytes that it received
-[[nodiscard]] std::size_t ftdi_payload(std::span<const std::uint8_t> transfer,
-                                       std::span<std::uint8_t> payload) noexcept;
-///@}
 
 /// Finds replies among the bytes from a Falcon, also after bytes were lost. Keeps at most one
 /// unfinished packet.

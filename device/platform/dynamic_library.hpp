@@ -31,23 +31,16 @@ class DynamicLibrary {
   [[nodiscard]] Function* function(const char* name) const {
     return reinterpret_cast<Function*>(address(name));
   }
-  /// \return null if the library does not have it
-  template <typename Function>
-  [[nodiscard]] Function* function_if_any(const char* name) const noexcept {
-    return reinterpret_cast<Function*>(address_if_any(name));
-  }
-
-  /// \name The same, written to a pointer of the function's type
-  ///@{
+  /// The same, written to a pointer of the function's type.
   template <typename Function>
   void find(const char* name, Function*& found) const {
     found = function<Function>(name);
   }
+  /// \param found  null if the library does not have it
   template <typename Function>
   void find_if_any(const char* name, Function*& found) const noexcept {
-    found = function_if_any<Function>(name);
+    found = reinterpret_cast<Function*>(address_if_any(name));
   }
-  ///@}
 
  private:
   [[nodiscard]] void* address(const char* name) const;

@@ -1,9 +1,237 @@
 #include "device/replay/replay_device.hpp"
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/text.hpp"
 #include "device/drivers.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
 namespace touchtrial::device {
+namespace {
+
+constexpr std::uintmax_t kLargestFile = std::uintmax_t{512} << 20U;
+constexpr double kFarthestMm = 10'000.0;
+constexpr double kSlowestHz = 10.0;
+constexpr double kFastestHz = 20'000.0;
+constexpr std::array<std::string_view, 4> kColumns = {"time_s", "x_mm", "y_mm", "z_mm"};
+
+struct CsvRow {
+  std::vector<std::string> fields;
+  std::size_t line = 0;  ///< on which the row begins, from 1
+};
+
+/// Rows of a CSV file by RFC 4180. Commas separate fields, LF or CRLF separate rows; a field in
+/// quotation marks may contain both, and a doubled mark in it stands for one. A byte order mark in
+/// front is ignored.
+class CsvRows {
+ public:
+  /// \param text  must outlive this
+  /// \param name  names the file in errors
+  CsvRows(std::string_view text, std::string name);
+
+  /// \return false at the end
+  /// \throws FileError if a quotation mark is not closed, or text follows a closing one
+  [[nodiscard]] bool next(CsvRow& row);
+
+ private:
+  [[nodiscard]] std::string next_field();
+  [[nodiscard]] std::string quoted_field();
+  [[nodiscard]] bool at_row_end() const noexcept;
+  void pass_row_end() noexcept;
+
+  std::string_view text_;
+  std::string name_;
+  std::size_t at_ = 0;
+  std::size_t line_ = 1;
+};
+
+CsvRows::CsvRows(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+}
+
+bool CsvRows::next(CsvRow& row) {
+  if (at_ >= text_.size()) return false;
+  row.fields.clear();
+  row.line = line_;
+  row.fields.push_back(next_field());
+  while (at_ < text_.size() && text_[at_] == ',') {
+    ++at_;
+    row.fields.push_back(next_field());
+  }
+  if (!at_row_end()) {
+    throw FileError(one_line(name_ + ", line " + std::to_string(line_) +
+                             ": text follows a closing quotation mark; put a comma between them"));
+  }
+  pass_row_end();
+  return true;
+}
+
+std::string CsvRows::next_field() {
+  if (at_ < text_.size() && text_[at_] == '"') return quoted_field();
+  const std::size_t begin = at_;
+  while (!at_row_end() && text_[at_] != ',') ++at_;
+  return std::string(text_.substr(begin, at_ - begin));
+}
+
+std::string CsvRows::quoted_field() {
+  const std::size_t first_line = line_;
+  std::string field;
+  for (++at_; at_ < text_.size(); ++at_) {
+    if (text_[at_] == '\n') ++line_;
+    if (text_[at_] == '"') {
+      const bool doubled = at_ + 1 < text_.size() && text_[at_ + 1] == '"';
+      if (!doubled) {
+        ++at_;
+        return field;
+      }
+      ++at_;
+    }
+    field += text_[at_];
+  }
+  throw FileError(one_line(name_ + ", line " + std::to_string(first_line) +
+                           ": a quotation mark is not closed; the file may be truncated"));
+}
+
+bool CsvRows::at_row_end() const noexcept {
+  return at_ >= text_.size() || text_[at_] == '\n' ||
+         (text_[at_] == '\r' && at_ + 1 < text_.size() && text_[at_ + 1] == '\n');
+}
+
+void CsvRows::pass_row_end() noexcept {
+  if (at_ < text_.size() && text_[at_] == '\r') ++at_;
+  if (at_ < text_.size()) ++at_;
+  ++line_;
+}
+
+struct TimedPosition {
+  double time_s;
+  Vec3 position_mm;
+};
+
+[[noreturn]] void refuse(const std::string& where, const std::string& why) {
+  throw FileError(one_line(where + ": " + why));
+}
+
+std::array<std::size_t, 4> find_columns(const CsvRow& header, const std::string& where) {
+  std::array<std::size_t, 4> found{};
+  for (std::size_t i = 0; i < kColumns.size(); ++i) {
+    const auto at = std::ranges::find(header.fields, kColumns[i]);
+    if (at == header.fields.end()) {
+      refuse(where, "no column " + std::string(kColumns[i]) +
+                        "; the header has to name time_s, x_mm, y_mm, z_mm");
+    }
+    found[i] = static_cast<std::size_t>(at - header.fields.begin());
+  }
+  return found;
+}
+
+double number_from(const std::string& text, std::string_view column, const std::string& where) {
+  const auto value = number_in<double>(text);
+  if (!value || !std::isfinite(*value)) {
+    refuse(where, std::string(column) + " is not a number: '" + text.substr(0, 40) + "'");
+  }
+  return *value;
+}
+
+TimedPosition position_from(const CsvRow& row, const std::array<std::size_t, 4>& columns,
+                            const std::string& where) {
+  std::array<double, 4> v{};
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    v[i] = number_from(row.fields[columns[i]], kColumns[i], where);
+    if (i > 0 && std::abs(v[i]) > kFarthestMm) {
+      refuse(where, std::string(kColumns[i]) + " is beyond 10 m; positions are in millimetres");
+    }
+  }
+  return {v[0], {v[1], v[2], v[3]}};
+}
+
+std::vector<TimedPosition> read_positions(CsvRows& rows, const std::string& name) {
+  CsvRow row;
+  if (!rows.next(row)) refuse(name, "is empty; it needs a header and rows of numbers");
+  const auto columns = find_columns(row, name + ", line 1");
+  const std::size_t width = row.fields.size();
+  std::vector<TimedPosition> positions;
+  while (rows.next(row)) {
+    const std::string where = name + ", line " + std::to_string(row.line);
+    if (row.fields.size() != width) {
+      refuse(where, std::to_string(row.fields.size()) + " fields where the header has " +
+                        std::to_string(width));
+    }
+    positions.push_back(position_from(row, columns, where));
+    if (positions.size() > 1 && !(positions.back().time_s > (positions.end() - 2)->time_s)) {
+      refuse(where, "time_s does not increase; sort the rows by time");
+    }
+  }
+  if (positions.size() < 2) refuse(name, "has fewer than two rows of positions");
+  return positions;
+}
+
+/// \return the median step from row to row
+double usual_step_s(const std::vector<TimedPosition>& rows) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    steps.push_back(rows[i].time_s - rows[i - 1].time_s);
+  }
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+/// \return the position at every tick, on straight lines where rows are missing
+std::vector<Vec3> fill_ticks(const std::vector<TimedPosition>& rows, double step_s,
+                             const std::string& name) {
+  std::vector<Vec3> positions = {rows.front().position_mm};
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const Vec3 from = rows[i - 1].position_mm;
+    const Vec3 way = rows[i].position_mm - from;
+    const double steps = std::round((rows[i].time_s - rows[i - 1].time_s) / step_s);
+    if (steps < 1.0) refuse(name, "some rows are much closer in time than the others");
+    if (steps + static_cast<double>(positions.size()) > RecordedMotion::kMostTicks) {
+      refuse(name, "is longer than " + std::to_string(RecordedMotion::kMostTicks) + " ticks");
+    }
+    for (double k = 1.0; k < steps; ++k) positions.push_back(from + (k / steps) * way);
+    positions.push_back(rows[i].position_mm);
+  }
+  return positions;
+}
+
+/// \return the mean rate of the whole recording, in which rounded times do not add up; to the
+///   millihertz
+double rate_over(double duration_s, std::size_t ticks, const std::string& name) {
+  const double rate_hz = std::round(static_cast<double>(ticks - 1) / duration_s * 1000.0) / 1000.0;
+  if (rate_hz >= kSlowestHz && rate_hz <= kFastestHz) return rate_hz;
+  refuse(name, "it does not have 10 to 20,000 rows a second; time_s is in seconds");
+}
+
+}  // namespace
+
+RecordedMotion::RecordedMotion(std::vector<Vec3> positions_mm, double rate_hz)
+    : positions_mm_(std::move(positions_mm)), rate_hz_(rate_hz) {
+  if (positions_mm_.empty() || ticks() > kMostTicks || !(rate_hz > 0.0) ||
+      !std::isfinite(rate_hz)) {
+    throw std::invalid_argument("RecordedMotion: no positions, too many, or a rate not above 0");
+  }
+}
+
+RecordedMotion read_motion_csv(const std::filesystem::path& file) {
+  const Bytes bytes = read_file(file, kLargestFile);
+  const std::string name = file.string();
+  CsvRows rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
+  const std::vector<TimedPosition> positions = read_positions(rows, name);
+  std::vector<Vec3> ticks = fill_ticks(positions, usual_step_s(positions), name);
+  const double duration_s = positions.back().time_s - positions.front().time_s;
+  const double rate_hz = rate_over(duration_s, ticks.size(), name);
+  return {std::move(ticks), rate_hz};
+}
+
 namespace {
 
 /// That of a usual device.

@@ -1,13 +1,49 @@
-/// \file A hand that repeats a recorded motion, whatever it feels.
+/// \file The recorded motion of a hand, tick by tick, its CSV file, and a hand that repeats it,
+/// whatever it feels.
 #pragma once
 
+#include "core/vec.hpp"
 #include "device/haptic_device.hpp"
-#include "device/replay/motion.hpp"
 
 #include <cstdint>
+#include <filesystem>
 #include <utility>
+#include <vector>
 
 namespace touchtrial::device {
+
+/// Motion in memory. The servo thread reads it: no heap, lock or I/O.
+class RecordedMotion {
+ public:
+  /// More ticks than any trial has; a longer motion is not accepted.
+  static constexpr std::int64_t kMostTicks = 4'000'000;
+
+  /// \param rate_hz  > 0, finite
+  /// \throws std::invalid_argument if it is not, or there are no positions or too many
+  RecordedMotion(std::vector<Vec3> positions_mm, double rate_hz);
+
+  [[nodiscard]] double rate_hz() const noexcept { return rate_hz_; }
+  [[nodiscard]] std::int64_t ticks() const noexcept {
+    return static_cast<std::int64_t>(positions_mm_.size());
+  }
+  /// In the plane frame.
+  /// \param tick  0 .. ticks() - 1
+  [[nodiscard]] Vec3 position_mm(std::int64_t tick) const noexcept {
+    return positions_mm_[static_cast<std::size_t>(tick)];
+  }
+
+ private:
+  std::vector<Vec3> positions_mm_;
+  double rate_hz_;
+};
+
+/// Reads a CSV file (RFC 4180, lines end in LF or CRLF) whose header names time_s, x_mm, y_mm and
+/// z_mm in any order, and perhaps other columns. The usual step of time_s gives the rate; where
+/// rows are missing, the hand moves straight on to the next one.
+/// \throws FileError with the line if the file, a column or a number is missing, a time does not
+///   increase, a position is beyond 10 m, the rate is outside 10 to 20,000 Hz, or there are more
+///   than kMostTicks
+[[nodiscard]] RecordedMotion read_motion_csv(const std::filesystem::path& file);
 
 /// The driver "replay". Each `write` is one tick, so it works in virtual time as in real time; run
 /// the servo at the motion's rate. Positions are the recorded ones, in the plane frame; the

@@ -11,6 +11,95 @@
 namespace touchtrial::device {
 namespace {
 
+/// The part of the plane in which the path stays.
+struct Inside {
+  double left_mm, right_mm, top_mm, bottom_mm;
+
+  [[nodiscard]] double shorter_side_mm() const {
+    return std::min(right_mm - left_mm, bottom_mm - top_mm);
+  }
+  [[nodiscard]] Vec2 point(RandomStream& random) const {
+    const double x_mm = random.uniform(left_mm, right_mm);
+    return {x_mm, random.uniform(top_mm, bottom_mm)};
+  }
+};
+
+void check(const PlaneGeometry& plane, const ExplorationOptions& options) {
+  const bool plane_ok = plane.width_mm() > 0.0 && plane.height_mm() > 0.0;
+  const bool speeds_ok = options.slowest_mm_s > 0.0 && options.fastest_mm_s >= options.slowest_mm_s;
+  if (!plane_ok) throw std::invalid_argument("ExplorationPath: the plane has no area");
+  if (!speeds_ok || !(options.margin_mm >= 0.0) || !(options.duration_s > 0.0)) {
+    throw std::invalid_argument("ExplorationPath: speed, margin or duration is out of range");
+  }
+}
+
+Inside inside_of(const PlaneGeometry& plane, double margin_mm) {
+  const double x_mm = std::min(margin_mm, plane.width_mm() / 5.0);
+  const double y_mm = std::min(margin_mm, plane.height_mm() / 5.0);
+  return {x_mm, plane.width_mm() - x_mm, y_mm, plane.height_mm() - y_mm};
+}
+
+/// Draws until the point is far enough. From any point at least a fifth of the area is, so a few
+/// draws suffice.
+Vec2 next_point(Vec2 from_mm, const Inside& inside, RandomStream& random) {
+  Vec2 point_mm = inside.point(random);
+  while (norm(point_mm - from_mm) < inside.shorter_side_mm() / 2.0) {
+    point_mm = inside.point(random);
+  }
+  return point_mm;
+}
+
+/// The share of the final speed at u = 0 .. 1 of a ramp, and the distance covered by then, in ramps
+/// at that speed.
+double ramp_speed(double u) noexcept {
+  return u * u * (3.0 - 2.0 * u);
+}
+double ramp_distance(double u) noexcept {
+  return u * u * u * (1.0 - u / 2.0);
+}
+
+}  // namespace
+
+ExplorationPath::Stroke ExplorationPath::stroke_between(Vec2 from_mm, Vec2 to_mm, double start_s,
+                                                        double speed_mm_s) noexcept {
+  const double length_mm = norm(to_mm - from_mm);
+  Stroke stroke;
+  stroke.start_s = start_s;
+  stroke.steady_s = std::max(length_mm / speed_mm_s, kRampS);
+  stroke.speed_mm_s = length_mm / stroke.steady_s;
+  stroke.from_mm = from_mm;
+  stroke.direction = (1.0 / length_mm) * (to_mm - from_mm);
+  return stroke;
+}
+
+ExplorationPath::ExplorationPath(const PlaneGeometry& plane, const ExplorationOptions& options,
+                                 RandomStream& random) {
+  check(plane, options);
+  const Inside inside = inside_of(plane, options.margin_mm);
+  Vec2 from_mm = inside.point(random);
+  for (double start_s = 0.0; start_s < options.duration_s; start_s = strokes_.back().end_s()) {
+    const Vec2 to_mm = next_point(from_mm, inside, random);
+    const double speed_mm_s = random.uniform(options.slowest_mm_s, options.fastest_mm_s);
+    strokes_.push_back(stroke_between(from_mm, to_mm, start_s, speed_mm_s));
+    from_mm = to_mm;
+  }
+}
+
+PathPoint ExplorationPath::at(double time_s, std::size_t& stroke) const noexcept {
+  while (stroke + 1 < strokes_.size() && time_s >= strokes_[stroke].end_s()) ++stroke;
+  const Stroke& s = strokes_[stroke];
+  const double begun = std::clamp((time_s - s.start_s) / kRampS, 0.0, 1.0);
+  const double left = std::clamp((s.end_s() - time_s) / kRampS, 0.0, 1.0);
+  const double steady_s = std::clamp(time_s - s.start_s - kRampS, 0.0, s.steady_s - kRampS);
+  // Speeding up covers ramp_distance(begun); slowing down covers the rest of half a ramp.
+  const double ramps_s = kRampS * (ramp_distance(begun) + 0.5 - ramp_distance(left));
+  const double speed_mm_s = s.speed_mm_s * std::min(ramp_speed(begun), ramp_speed(left));
+  return {s.from_mm + (s.speed_mm_s * (steady_s + ramps_s)) * s.direction,
+          speed_mm_s * s.direction};
+}
+
+namespace {
+
 constexpr double kMmPerM = 1000.0;
 /// The plane and the time of a hand that is opened by name; nobody watches it for longer.
 constexpr PlaneGeometry kNamedPlane{0.2, 500, 500};

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 
 namespace touchtrial::engine {
 
@@ -27,6 +28,10 @@ enum class ImageKind { png, jpeg, tiff, bmp, pnm };
 [[nodiscard]] GreyImage read_tiff(ByteView file);
 [[nodiscard]] GreyImage read_bmp(ByteView file);
 [[nodiscard]] GreyImage read_pnm(ByteView file);
+
+/// Width and height of a PNG, pixels, by its header alone.
+/// \throws ImageFault
+[[nodiscard]] std::pair<int, int> size_of_png(ByteView file);
 
 /// A PNG file of 8-bit samples, with zlib's best compression.
 /// \param channels  1: grey, 3: red, green, blue

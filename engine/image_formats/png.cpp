@@ -200,6 +200,11 @@ void flush_nothing(png_structp /*png*/) {}
 
 }  // namespace
 
+std::pair<int, int> size_of_png(ByteView file) {
+  const PngHeader header = read_png_header(file);
+  return {static_cast<int>(header.width), static_cast<int>(header.height)};
+}
+
 GreyImage read_png(ByteView file) {
   const Bytes kept = what_decides_pixels(file);
   return PngDecoder(kept).read();

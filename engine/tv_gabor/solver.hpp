@@ -1,4 +1,5 @@
-/// \file The course of a TV-Gabor decomposition: steps, checks, and the schedule of the penalty.
+/// \file The course of a TV-Gabor decomposition: steps, checks, and the schedule of the penalty; and
+/// the certificate of how far a result is from the optimum.
 /// Source: docs/method.md, "TV-Gabor".
 #pragma once
 
@@ -6,12 +7,24 @@
 #include "engine/extraction.hpp"
 #include "engine/fourier/real_fft.hpp"
 #include "engine/tv_gabor/admm.hpp"
-#include "engine/tv_gabor/certificate.hpp"
 #include "engine/tv_gabor/problem.hpp"
 
 #include <vector>
 
 namespace touchtrial::engine {
+
+template <typename Real>
+struct TvGaborCertificate {
+  Plane<Real> texture;  ///< v = M div p / lambda on the torus, grey levels
+  double gap = 0.0;     ///< (primal - dual) / primal, >= 0; 0 where the primal value is 0
+};
+
+/// \param field,scale  the dual point: p = -scale * field, its vectors shortened to 1 if longer
+/// \param fft  of the problem's size; its buffers are overwritten
+template <typename Real>
+[[nodiscard]] TvGaborCertificate<Real> certify(const TvGaborProblem<Real>& problem,
+                                               const VectorField<Real>& field, double scale,
+                                               RealFft<Real>& fft);
 
 /// The penalty of the iteration, check by check. It starts high and falls by the same factor at
 /// each of 20 checks, which suits photographs: they converge meanwhile. From then on it balances

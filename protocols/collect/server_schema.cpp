@@ -161,7 +161,7 @@ void make_tables(ServerWork& work) {
 }
 
 constexpr std::array<ServerMigration, store::kSchemaVersion - store::kOldestSchemaVersion>
-    kMigrations = {};
+    kMigrations = {[](ServerWork& work) { work.exec(store::add_visits_sql("BIGINT")); }};
 
 std::string our_names() {
   std::string names = "{stations,station_roles";

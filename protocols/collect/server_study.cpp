@@ -24,9 +24,9 @@ std::optional<Holder> holder_of(ServerWork& work, const store::SessionRow& row) 
   const pqxx::result found = work.exec_params(
       "SELECT s.session, coalesce(s.own_session, s.session), s.station, t.name, s.participant, "
       "s.enrolment FROM sessions s JOIN stations t USING(station) WHERE s.replaced_by IS NULL "
-      "AND (s.participant = $1 OR s.enrolment = $2) ORDER BY s.participant <> $1, s.session LIMIT "
-      "1",
-      row.participant, row.enrolment);
+      "AND (s.participant = $1 OR s.enrolment = $2) AND s.visit = $3 ORDER BY s.participant <> $1, "
+      "s.session LIMIT 1",
+      row.participant, row.enrolment, row.visit);
   if (found.empty()) return std::nullopt;
   const pqxx::row& first = found[0];
   return Holder{.session = first[0].as<int>(),
@@ -121,7 +121,8 @@ class ArrivedSession {
     require(opening.study_id == commitment.study_id && opening.seal == commitment.seal,
             "it was recorded under another seal");
     require(opening.participant == course.opened.participant &&
-                opening.enrolment == course.opened.enrolment,
+                opening.enrolment == course.opened.enrolment &&
+                opening.visit == course.opened.visit,
             "it is another participant's than the file's chain says");
   }
 

@@ -3,8 +3,10 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/parallel.hpp"
+#include "core/strict_json.hpp"
 #include "engine/image_file.hpp"
 #include "engine/rendering/gains.hpp"
+#include "protocols/design/languages.hpp"
 #include "protocols/design/pack_upkeep.hpp"
 #include "protocols/design/prepare_advice.hpp"
 #include "protocols/design/stimulus_field.hpp"
@@ -314,8 +316,15 @@ class Preparation {
     }
     report_.skipped = skipped_work(key_.study, pixels_of_study);
     report_.warnings = rendering_warnings(key_.study.rendering, gains);
+    if (const std::string draft = draft_notice(key_.study.session.language); !draft.empty()) {
+      report_.warnings.push_back(
+          draft + ": have its speakers check every screen, and say so where you report the study");
+    }
     if (!earlier_.damage.empty()) {
       report_.warnings.push_back(earlier_.damage + ": all fields were built anew");
+    }
+    for (auto& warning : validity_warnings(key_.study)) {
+      report_.warnings.push_back(std::move(warning));
     }
     std::vector<Digest> pixels;
     for (const ImageOfStudy& image : images_) pixels.push_back(image.pixels);
@@ -378,6 +387,27 @@ PackPlace pack_place_at(const std::filesystem::path& pack_folder) {
 
 namespace {
 
+[[noreturn]] void refuse_practice_image(const Study& study, std::size_t index,
+                                        const std::string& what) {
+  throw StudyError(one_line(study.source + ": /practice/classes/" + std::to_string(index) +
+                            "/images/0: " + what));
+}
+
+/// As a session needs them (PracticeSet).
+void require_large_enough(const Study& study, std::size_t index, const PlaneGeometry& plane) {
+  const auto path = study.folder / study.practice.classes[index].images.front();
+  try {
+    const auto [width, height] = engine::size_of_image(path);
+    if (width >= plane.width_px && height >= plane.height_px) return;
+  } catch (const FileError& error) {
+    refuse_practice_image(study, index, error.what());
+  }
+  refuse_practice_image(study, index,
+                        path.string() + ": has fewer pixels than the study's plane, " +
+                            std::to_string(plane.width_px) + " x " +
+                            std::to_string(plane.height_px) + "; take a larger image");
+}
+
 /// Practice images are not in the pack, but a missing one should be found before a session needs
 /// it.
 void check_practice_images_exist(const Study& study) {
@@ -385,9 +415,7 @@ void check_practice_images_exist(const Study& study) {
   for (std::size_t i = 0; i < study.practice.classes.size(); ++i) {
     const auto path = study.folder / study.practice.classes[i].images.front();
     if (is_there(path)) continue;
-    throw StudyError(one_line(study.source + ": /practice/classes/" + std::to_string(i) +
-                              "/images/0: " + path.string() +
-                              ": does not exist; correct the path"));
+    refuse_practice_image(study, i, path.string() + ": does not exist; correct the path");
   }
 }
 
@@ -400,6 +428,41 @@ void check_images_exist(const Study& study) {
                  one_line(image.path.string()) + ": does not exist; correct the path");
   }
   check_practice_images_exist(study);
+  for (const std::string& file : picture_files(study.session)) {
+    if (is_there(study.folder / file)) continue;
+    throw StudyError(one_line(study.source + ": /session: the instructions show " +
+                              in_quotes(file) + ", which does not exist; correct the path"));
+  }
+}
+
+PlaneGeometry plane_of(const Study& study) {
+  const std::vector<ImageOfStudy> images = images_of(study);
+  std::vector<std::pair<int, int>> sizes(images.size());
+  std::vector<std::string> faults(images.size());
+  in_parallel(0, images.size(), [&](std::size_t i) {
+    try {
+      sizes[i] = engine::size_of_image(images[i].path);
+    } catch (const FileError& error) {
+      faults[i] = error.what();
+    }
+  });
+  const auto words = [](const std::pair<int, int>& size) {
+    return std::to_string(size.first) + " x " + std::to_string(size.second) + " pixels";
+  };
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (!faults[i].empty()) refuse_image(study, images[i], faults[i]);
+    if (sizes[i] == sizes[0]) continue;
+    refuse_image(study, images[i],
+                 one_line(images[i].path.string()) + ": has " + words(sizes[i]) + ", and " +
+                     one_line(images[0].path.string()) + " has " + words(sizes[0]) +
+                     "; all must be as large as the plane that is felt: crop them to one size with "
+                     "`touchtrial stimuli import`");
+  }
+  const PlaneGeometry plane{study.rendering.pitch_mm, sizes[0].second, sizes[0].first};
+  for (std::size_t i = 0; study.trials.practice > 0 && i < study.practice.classes.size(); ++i) {
+    require_large_enough(study, i, plane);
+  }
+  return plane;
 }
 
 PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pack_folder,

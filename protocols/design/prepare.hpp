@@ -1,6 +1,7 @@
 /// \file Builds the pack of a study. Only fields that are missing or out of date are built.
 #pragma once
 
+#include "core/plane_geometry.hpp"
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/field_statistics.hpp"
 #include "engine/stage_log.hpp"
@@ -70,10 +71,15 @@ struct PrepareOptions {
   std::int64_t large_image_px = kLargeImagePixels;  ///< larger images are processed one at a time
 };
 
-/// Checks that every image of the study exists, and every practice image if there is practice. Call
-/// before anything is written.
+/// Checks that every image of the study exists, every picture of its instructions, and every
+/// practice image if there is practice. Call before anything is written.
 /// \throws StudyError with the place in the study file of the first missing image
 void check_images_exist(const Study& study);
+
+/// The plane of a study: as large as each of its pictures. Reads their headers (size_of_image).
+/// \throws StudyError, with its place in the study file and the remedy, for the first picture that
+///   cannot be read or has another size, and for a practice picture that is smaller
+[[nodiscard]] PlaneGeometry plane_of(const Study& study);
 
 /// Called after each stimulus, from any thread, but never by two threads at the same time.
 using Progress = std::function<void(int done, int of)>;

@@ -65,6 +65,35 @@ std::vector<std::string> rendering_warnings(const engine::RenderingOptions& rend
   return warnings;
 }
 
+std::vector<std::string> validity_warnings(const Study& study) {
+  const ValidityRule& rule = study.trials.validity;
+  const double limit_s = study.trials.explore_limit_s;
+  std::vector<std::string> warnings;
+  const auto warn = [&warnings](const std::string& key, const std::string& what) {
+    warnings.push_back("/trials/validity/" + key + ": " + what +
+                       ", so that no trial can be valid; lower it, or change the study");
+  };
+  const auto warn_of_time = [&](const char* key, double least_s) {
+    if (least_s <= limit_s) return;
+    warn(key, number_text(least_s) + " s, and a presentation can be explored for " +
+                  number_text(limit_s) + " s (/trials/explore_limit_s)");
+  };
+  warn_of_time("exploring_s", rule.least_exploring_s);
+  warn_of_time("contact_s", rule.least_contact_s);
+  if (rule.least_path_mm > kFastestMmS * limit_s) {
+    warn("path_mm", number_text(rule.least_path_mm) +
+                        " mm, more than the fastest stroke that "
+                        "participants are asked for goes in " +
+                        number_text(limit_s) + " s");
+  }
+  const double largest_n = std::min(rule.largest_median_n, study.rendering.max_force_n);
+  if (rule.least_median_n > largest_n) {
+    warn("least_median_n", number_text(rule.least_median_n) + " N, and the force may be " +
+                               number_text(largest_n) + " N at most");
+  }
+  return warnings;
+}
+
 std::string solver_warning(const Study& study, const StimulusIndex& stimulus,
                            const BuiltField& built) {
   if (built.converged) return {};

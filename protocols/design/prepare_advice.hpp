@@ -23,6 +23,9 @@ namespace touchtrial::design {
 [[nodiscard]] std::vector<std::string> rendering_warnings(const engine::RenderingOptions& rendering,
                                                           const engine::StudyGains& gains);
 
+/// Warnings about a validity rule that no trial of the study can meet.
+[[nodiscard]] std::vector<std::string> validity_warnings(const Study& study);
+
 /// \return a warning if the solver stopped before it converged on the stimulus, else empty
 [[nodiscard]] std::string solver_warning(const Study& study, const StimulusIndex& stimulus,
                                          const BuiltField& built);

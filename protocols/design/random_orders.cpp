@@ -286,11 +286,6 @@ bool limited_orders_are_countable(const std::vector<int>& counts, int max_run) {
   return states <= kMostStates && runs <= kMostRuns;
 }
 
-std::string count_limited_orders(const std::vector<int>& counts, int max_run, RunBefore before) {
-  RunCounter counter(counts, max_run);
-  return count_all(counter, max_run, before).str();
-}
-
 std::optional<std::vector<int>> draw_limited_order(const std::vector<int>& counts, int max_run,
                                                    RunBefore before, RandomStream& random) {
   RunCounter counter(counts, max_run);

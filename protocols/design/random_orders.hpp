@@ -7,7 +7,6 @@
 #include "core/random.hpp"
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace touchtrial::design {
@@ -32,10 +31,6 @@ struct RunBefore {
 /// the number of multisets of remaining copies, because symbols with the same number of copies left
 /// are interchangeable. Each state visits every possible next run.
 [[nodiscard]] bool limited_orders_are_countable(const std::vector<int>& counts, int max_run);
-
-/// The number of orders without a run longer than `max_run`, in decimal digits.
-[[nodiscard]] std::string count_limited_orders(const std::vector<int>& counts, int max_run,
-                                               RunBefore before = {});
 
 /// Draws an order without a run longer than `max_run`; all such orders are equally likely.
 /// \return the order, or nothing if none exists

@@ -44,6 +44,8 @@ struct Schedule {
 struct ScheduleDraw {
   SecretKey secret{};    ///< this participant's alone
   int method_order = 0;  ///< row of the Williams design of methods, from 0
+  /// Of a study that divides its methods between visits: whose methods, from 1; 0: all visits'.
+  int visit = 0;
 };
 
 /// Makes the schedule of one participant with the study's protocol. It depends only on the study's

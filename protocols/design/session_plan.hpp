@@ -1,10 +1,12 @@
-/// \file The parts of a session besides its trials: the study file's "practice", "session" and
-/// "registration". Format: docs/study-file.md.
+/// \file The parts of a study besides its trials: the study file's "practice", "session", "visits",
+/// "groups" and "registration". Format: docs/study-file.md.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <ratio>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +25,9 @@ struct StudyClass {
 /// A text in several languages, by their codes ("en", "de").
 using Translated = std::map<std::string, std::string>;
 
+/// Texts by section ("screens") and key ("next"), as in a language file.
+using Texts = std::map<std::string, std::map<std::string, std::string>>;
+
 /// What participants see of the pictures and of their hand.
 enum class Sight {
   curtain,    ///< pictures, but neither hand nor device
@@ -38,6 +43,8 @@ struct Question {
   Translated text;
   std::vector<Translated> options;  ///< answers of a choice, >= 2
   bool required = false;
+  std::optional<double> min{};  ///< of a number
+  std::optional<double> max{};
 
   friend bool operator==(const Question&, const Question&) = default;
 };
@@ -65,11 +72,17 @@ struct MaskingPlan {
   friend bool operator==(const MaskingPlan&, const MaskingPlan&) = default;
 };
 
+/// The largest letters for which every screen has room.
+inline constexpr double kLargestTextScale = 1.5;
+
 /// The study file's "session".
 struct SessionPlan {
-  std::string language = "en";  ///< language of the participant's texts: "en" or "de"
+  std::string language = "en";  ///< of the participant's texts; one of language_codes()
   /// Pages of instructions by language; empty: the program's own.
   std::map<std::string, std::vector<std::string>> instructions;
+  std::map<std::string, Texts> texts;  ///< by language; in place of the program's own
+  double text_scale = 1.0;  ///< of the letters on the participant's screens, 1 to kLargestTextScale
+  bool high_contrast = false;  ///< whether these screens are black on white
   Sight sight = Sight::curtain;
   MaskingPlan masking;
   bool handedness = true;                   ///< whether to ask the handedness inventory
@@ -82,6 +95,40 @@ struct SessionPlan {
 
   friend bool operator==(const SessionPlan&, const SessionPlan&) = default;
 };
+
+/// What each visit presents.
+enum class VisitMethods {
+  all,     ///< every method, in the participant's one order
+  divided  ///< as many of the methods at each visit, in that order
+};
+
+/// The study file's "visits": how often a participant comes. A day has 24 hours, from the opening
+/// of one visit's session to that of the next.
+struct VisitPlan {
+  int count = 1;
+  double least_days = 0.0;            ///< between visits; an earlier one is refused
+  std::optional<double> most_days{};  ///< between visits; a later one is a deviation
+  VisitMethods methods = VisitMethods::all;
+
+  friend bool operator==(const VisitPlan&, const VisitPlan&) = default;
+};
+
+/// From one visit's opening to the next one's; negative if a clock went back.
+[[nodiscard]] inline double days_between(std::chrono::nanoseconds first,
+                                         std::chrono::nanoseconds next) noexcept {
+  return std::chrono::duration<double, std::ratio<86'400>>(next - first).count();
+}
+
+/// The study file's "groups": participants are dealt into them at random, as many in each.
+struct GroupPlan {
+  std::vector<std::string> labels;  ///< >= 2, unique; empty: there are no groups
+  bool open = false;                ///< the experimenter may know who is in which
+
+  friend bool operator==(const GroupPlan&, const GroupPlan&) = default;
+};
+
+/// The visits that enter a registered analysis.
+enum class RegisteredVisits { all, first, last };
 
 /// The quantity that a registration is about.
 enum class Estimand {
@@ -108,7 +155,7 @@ enum class Spending { obrien_fleming, pocock };
 /// The registered reasons for leaving a session out, besides that it was stopped or its participant
 /// withdrew.
 struct ExclusionRules {
-  std::vector<std::string> deviations;     ///< codes; a session with one of them is left out
+  std::vector<std::string> deviations;     ///< codes, the program's first, that leave one out
   std::optional<double> invalid_trials{};  ///< share of its trials; a session with more is left out
 
   friend bool operator==(const ExclusionRules&, const ExclusionRules&) = default;
@@ -120,13 +167,14 @@ struct RegisteredAnalysis {
   std::vector<std::string> methods;  ///< labels: the first less the second; empty: the study's two
   RegisteredTest test = RegisteredTest::t;
   bool one_sided = true;                    ///< against larger values
-  double alpha = 0.05;                      ///< in (0, 0.5]
+  double alpha = 0.05;                      ///< 1e-6 .. 0.5
   std::optional<double> smallest_effect{};  ///< worth having: an accuracy, or a difference
   /// Of non-inferiority: by how much the first method may be worse and still be as good; in (0, 1].
   std::optional<double> margin{};
   std::vector<int> looks;  ///< numbers of participants at interim looks, ascending
   Spending spending = Spending::obrien_fleming;
   std::optional<ExclusionRules> exclusion_rules{};
+  RegisteredVisits visits = RegisteredVisits::all;
 
   friend bool operator==(const RegisteredAnalysis&, const RegisteredAnalysis&) = default;
 };

@@ -47,6 +47,32 @@ std::vector<int> shares(std::span<const Station> stations, int numbers) {
   return more;
 }
 
+SecretKey secret_for(const Station& station, Draws draws) {
+  return derive_key(station.secret, draws == Draws::people ? "schedules" : "rehearsed schedules");
+}
+
+/// A number's group, and its place among the group's numbers at its station.
+struct Dealt {
+  int group = 0;
+  int place = 0;
+};
+
+Dealt dealt(const GroupPlan& plan, const SecretKey& secret, int place) {
+  if (plan.labels.empty()) return {0, place};
+  const std::size_t groups = plan.labels.size();
+  std::vector<int> members(groups, 0);
+  RandomStream random(secret, "groups");
+  for (int left = place;;) {
+    std::vector<std::size_t> block(groups * (plan.open ? 1 + random.below(2) : 1));
+    for (std::size_t i = 0; i < block.size(); ++i) block[i] = i % groups;
+    shuffle(std::span<std::size_t>(block), random);
+    for (const std::size_t group : block) {
+      if (left-- == 0) return {static_cast<int>(group), members[group]};
+      ++members[group];
+    }
+  }
+}
+
 int row_of(const SecretKey& secret, int rows, int place) {
   std::vector<int> order(static_cast<std::size_t>(rows));
   std::iota(order.begin(), order.end(), 0);
@@ -79,7 +105,8 @@ int method_orders(const Study& study) {
   return methods > 1 && study.trials.blocks != Blocks::mixed ? williams_rows(methods) : 1;
 }
 
-ScheduleDraw draw_for(const Study& study, const Station& station, int enrolment, Draws draws) {
+ScheduleDraw draw_for(const Study& study, const Station& station, int enrolment, Draws draws,
+                      int visit) {
   const std::optional<int> place = station.place_of(enrolment);
   if (!place) {
     throw UsageError("enrolment number " + std::to_string(enrolment) + " is not one of station " +
@@ -87,18 +114,41 @@ ScheduleDraw draw_for(const Study& study, const Station& station, int enrolment,
                      "'s; take one of its own, or hand out more with `touchtrial "
                      "plan --extend`");
   }
-  const SecretKey secret =
-      derive_key(station.secret, draws == Draws::people ? "schedules" : "rehearsed schedules");
-  return {.secret = derive_key(secret, "participant " + std::to_string(enrolment)),
-          .method_order = row_of(secret, method_orders(study), *place)};
+  if (visit < 1 || visit > study.visits.count) {
+    throw UsageError("visit " + std::to_string(visit) + " is not in the study, which has " +
+                     std::to_string(study.visits.count));
+  }
+  const SecretKey secret = secret_for(station, draws);
+  const Dealt own = dealt(study.groups, secret, *place);
+  // A visit that presents all methods has its own orders of trials.
+  const bool is_again = visit > 1 && study.visits.methods == VisitMethods::all;
+  return {.secret = derive_key(secret, "participant " + std::to_string(enrolment) +
+                                           (is_again ? ", visit " + std::to_string(visit) : "")),
+          .method_order = row_of(study.groups.labels.empty()
+                                     ? secret
+                                     : derive_key(secret, "group " + std::to_string(own.group)),
+                                 method_orders(study), own.place),
+          .visit = visit};
 }
 
-int order_block_of(const Study& study, std::span<const Station> stations, int enrolment) {
+std::optional<int> group_for(const Study& study, const Station& station, int enrolment,
+                             Draws draws) {
+  const std::optional<int> place = station.place_of(enrolment);
+  if (!place || study.groups.labels.empty()) return std::nullopt;
+  return dealt(study.groups, secret_for(station, draws), *place).group;
+}
+
+int order_block_of(const Study& study, std::span<const Station> stations, int enrolment,
+                   Draws draws) {
   const int rows = method_orders(study);
+  const int groups = std::max(1, static_cast<int>(study.groups.labels.size()));
   int before = 0;  // blocks of earlier stations
   for (const Station& station : stations) {
-    if (const auto place = station.place_of(enrolment)) return before + *place / rows;
-    before += station.size() / rows + 1;
+    if (const auto place = station.place_of(enrolment)) {
+      const Dealt own = dealt(study.groups, secret_for(station, draws), *place);
+      return before + own.place / rows * groups + own.group;
+    }
+    before += (station.size() / rows + 1) * groups;
   }
   return -1;
 }

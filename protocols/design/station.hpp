@@ -47,19 +47,29 @@ enum class Draws { people, rehearsal };
 /// What the schedule of a participant is drawn from. The participant's secret is derived from the
 /// station's. The orders of methods come in blocks: each block has every row of the Williams design
 /// once, in an order drawn from the station's secret, so that a station's numbers stay balanced and
-/// nobody without the secret can tell a participant's order.
-/// \throws UsageError if the number is not the station's
+/// nobody without the secret can tell a participant's order. With groups, the blocks are of each
+/// group's numbers. The order of methods is the same at all visits.
+/// \param visit  from 1
+/// \throws UsageError if the number is not the station's, or the study has no such visit
 [[nodiscard]] ScheduleDraw draw_for(const Study& study, const Station& station, int enrolment,
-                                    Draws draws);
+                                    Draws draws, int visit = 1);
+
+/// The group that a station deals a number into, from 0. Groups are dealt in blocks that have each
+/// group once, or, if groups are open, once or twice at random, so that what was dealt does not
+/// tell what comes.
+/// \return empty if the study has no groups, or the number is another station's
+[[nodiscard]] std::optional<int> group_for(const Study& study, const Station& station,
+                                           int enrolment, Draws draws);
 
 /// The number of different orders of methods among which participants are balanced.
 [[nodiscard]] int method_orders(const Study& study);
 
 /// The block in which an enrolment number's order of methods was dealt. Numbers of the same block
-/// have different orders, each equally likely; blocks of all stations have different numbers, >= 0.
+/// have different orders, each equally likely; blocks of all stations and groups have different
+/// numbers, >= 0.
 /// \return -1 if the number is no station's
 [[nodiscard]] int order_block_of(const Study& study, std::span<const Station> stations,
-                                 int enrolment);
+                                 int enrolment, Draws draws = Draws::people);
 
 /// Stations without numbers and secrets.
 /// \param names  1 to kMostStations

@@ -2,6 +2,8 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/nearest_name.hpp"
+#include "core/text.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/design/study_sections.hpp"
 
@@ -42,9 +44,9 @@ const Protocol& read_protocol(const JsonValue& place) {
 /// The keys of every study, and the sections of all protocols, so that the error for another
 /// protocol's section can name that protocol.
 std::vector<std::string_view> keys_of_studies() {
-  std::vector<std::string_view> keys = {"study",        "protocol", "classes",  "methods",
-                                        "rendering",    "trials",   "practice", "session",
-                                        "registration", "blinding", "seed"};
+  std::vector<std::string_view> keys = {
+      "study",   "protocol",     "classes",  "methods", "rendering", "trials", "practice",
+      "session", "registration", "blinding", "seed",    "visits",    "groups"};
   for (const Protocol* one : protocols()) {
     if (!one->section().empty()) keys.push_back(one->section());
   }
@@ -91,7 +93,10 @@ void check_practice_class(const JsonValue& place, const Study& study, std::size_
     return std::ranges::any_of(other.images,
                                [&](const auto& path) { return path.lexically_normal() == image; });
   };
-  if (std::ranges::count(study.classes, learnt.label, &StudyClass::label) > 0) {
+  const auto has_label = [&](const StudyClass& other) {
+    return edit_distance(learnt.label, other.label) == 0;
+  };
+  if (std::ranges::any_of(study.classes, has_label)) {
     place.refuse_below(
         at + "/label",
         in_quotes(learnt.label) + " is a class of the study; practise with another texture");
@@ -128,6 +133,23 @@ void check_practice(const JsonValue& place, const Study& study) {
   }
 }
 
+/// Whether the methods can be divided between the visits.
+void check_visits(const JsonValue& place, const Study& study) {
+  if (study.visits.methods != VisitMethods::divided) return;
+  if (study.trials.blocks == Blocks::mixed) {
+    place.refuse_below(
+        "/visits/methods",
+        "is \"divided\", but the trials' blocks are \"mixed\", so that no method has "
+        "a block of its own; set /trials/blocks to \"by-method\"");
+  }
+  if (study.presented_methods() % study.visits.count != 0) {
+    place.refuse_below("/visits/methods",
+                       "is \"divided\", but " + std::to_string(study.presented_methods()) +
+                           " methods are not a multiple of " + std::to_string(study.visits.count) +
+                           " visits; change either number");
+  }
+}
+
 Study read_study(const JsonValue& place) {
   const JsonObject root = place.object(keys_of_studies());
   Study study;
@@ -140,6 +162,8 @@ Study read_study(const JsonValue& place) {
   if (const auto member = root.find("trials")) study.trials = read_trials(*member);
   if (const auto member = root.find("practice")) study.practice = read_practice(*member);
   if (const auto member = root.find("session")) study.session = read_session(*member);
+  if (const auto member = root.find("visits")) study.visits = read_visits(*member);
+  if (const auto member = root.find("groups")) study.groups = read_groups(*member);
   if (const auto member = root.find("registration")) {
     study.registration = read_registration(*member, usual_test_of(study));
   }
@@ -150,6 +174,7 @@ Study read_study(const JsonValue& place) {
   check_size(place, study);
   study.protocol->check(place, study);
   check_practice(place, study);
+  check_visits(place, study);
   check_registration(place, study);
   return study;
 }
@@ -176,8 +201,31 @@ int Study::presented_methods() const {
   return protocol->presents_all_methods() ? static_cast<int>(methods.size()) : 1;
 }
 
+std::string Study::presented_labels() const {
+  const auto presented = static_cast<std::size_t>(presented_methods());
+  return listed(std::span(methods).first(presented), ", ", &StudyMethod::label);
+}
+
 int Study::scored_trials() const {
-  return protocol->scored_trials(*this);
+  return protocol->scored_trials(*this) * (visits.methods == VisitMethods::all ? visits.count : 1);
+}
+
+int Study::visits_needed() const {
+  const bool first_alone =
+      registration.analysis && registration.analysis->visits == RegisteredVisits::first;
+  return first_alone ? 1 : visits.count;
+}
+
+bool Study::decides(int visit) const {
+  switch (registration.analysis ? registration.analysis->visits : RegisteredVisits::all) {
+    case RegisteredVisits::first:
+      return visit == 1;
+    case RegisteredVisits::last:
+      return visit == visits.count;
+    case RegisteredVisits::all:
+      break;
+  }
+  return true;
 }
 
 Study parse_study(std::string_view text, const std::filesystem::path& folder,

@@ -39,6 +39,35 @@ enum class Blocks { by_method, mixed };
 /// end.
 enum class OnInterruption { repeat, leave_out, restart_block };
 
+/// The speeds of strokes that the instructions ask for, mm/s. Source: docs/participant-window.md.
+inline constexpr double kSlowestMmS = 50.0;
+inline constexpr double kFastestMmS = 150.0;
+
+/// When a trial is valid: fixed before outcomes are seen. Forces differ between textures, and so do
+/// the path and the contact that forces bend. Whether these are within their limits is therefore
+/// known only after unblinding; whether the exploration was long enough is stored in clear, and so
+/// is what the hand did by itself (store::HandWindows).
+struct ValidityRule {
+  double least_exploring_s = 5.0;  ///< from landing to the last sample
+  double least_contact_s = 5.0;
+  double least_path_mm = 300.0;   ///< in contact
+  double least_median_n = 0.2;    ///< of the norm of the force in contact
+  double largest_median_n = 2.0;  ///< of the same
+  double saturated_share = 0.01;  ///< of the samples in contact; exclusive
+
+  friend bool operator==(const ValidityRule&, const ValidityRule&) = default;
+};
+
+/// What the hand does at the plane before its presentation can be answered. The usual one is half a
+/// second at the slowest stroke that the instructions ask for. Source:
+/// docs/decisions/0063-no-answer-without-a-touch.md.
+struct LeastTouch {
+  double contact_s = 0.5;
+  double path_mm = 25.0;  ///< along the plane
+
+  friend bool operator==(const LeastTouch&, const LeastTouch&) = default;
+};
+
 /// The study file's "trials" object.
 struct TrialOptions {
   int repeats = 5;  ///< presentations of each class (and method) per participant, >= 1
@@ -53,6 +82,8 @@ struct TrialOptions {
   int max_run = 0;  ///< maximum number of presentations of one class in a row; 0: no limit
   OnInterruption on_interruption = OnInterruption::repeat;
   double resume_within_h = 24.0;  ///< how long an interrupted session can still be resumed, > 0
+  ValidityRule validity{};
+  LeastTouch answer_after{};  ///< zeros: an answer needs no touch
 
   friend bool operator==(const TrialOptions&, const TrialOptions&) = default;
 };
@@ -68,6 +99,8 @@ struct Study {
   TrialOptions trials;
   PracticePlan practice;
   SessionPlan session;
+  VisitPlan visits;
+  GroupPlan groups;
   Registration registration;
   std::uint64_t seed = 0;
   std::filesystem::path folder;  ///< image paths are relative to this folder
@@ -78,8 +111,15 @@ struct Study {
   [[nodiscard]] std::string protocol_name() const;
   /// The number of methods that are presented; these are the first ones in the file.
   [[nodiscard]] int presented_methods() const;
-  /// The number of scored presentations of one participant.
+  /// Their labels with commas between them.
+  [[nodiscard]] std::string presented_labels() const;
+  /// The number of scored presentations of one participant, over all visits.
   [[nodiscard]] int scored_trials() const;
+  /// The number of visits without which a participant does not count: all, or the first if the
+  /// registered analysis has that alone.
+  [[nodiscard]] int visits_needed() const;
+  /// Whether a visit enters the analysis that decides.
+  [[nodiscard]] bool decides(int visit) const;
 };
 
 /// The usual test of a difference of methods: crossover if two methods are presented one after the

@@ -88,12 +88,17 @@ void add_plans(nlohmann::json& configuration, const StudyKey& key) {
   }
   if (study.session != SessionPlan{}) {
     nlohmann::json session = to_json(study.session);
-    for (const char* text :
-         {"instructions", "day_sheet", "consent_version", "ethics_number", "closing_questions"}) {
+    for (const char* text : {"instructions", "texts", "day_sheet", "consent_version",
+                             "ethics_number", "closing_questions"}) {
       session.erase(text);
     }
     configuration["session"] = std::move(session);
   }
+  if (study.visits != VisitPlan{}) {
+    configuration["visits"] = to_json(study.visits);
+    configuration["visits"]["needed"] = study.visits_needed();
+  }
+  if (study.groups != GroupPlan{}) configuration["groups"] = to_json(study.groups);
   if (configuration.contains("practice") || configuration.contains("session") ||
       study.registration != Registration{}) {
     configuration["texts"] = texts_tag(key);
@@ -119,14 +124,19 @@ const std::string& StudyCodes::code_of(const StimulusIndex& stimulus) const {
   return found->code;
 }
 
-ScheduleDraw StudyKey::draw_of(int enrolment, Draws draws) const {
+ScheduleDraw StudyKey::draw_of(int enrolment, Draws draws, int visit) const {
   const Station* const own = station_of(stations, enrolment);
   if (own == nullptr) {
     throw UsageError("study " + study.name + ": enrolment number " + std::to_string(enrolment) +
                      " is no station's; hand out more with `touchtrial plan --extend`, as many as "
                      "then if the key is from before it, or from an older recovery sheet");
   }
-  return draw_for(study, *own, enrolment, draws);
+  return draw_for(study, *own, enrolment, draws, visit);
+}
+
+std::optional<int> StudyKey::group_of(int enrolment, Draws draws) const {
+  const Station* const own = station_of(stations, enrolment);
+  return own == nullptr ? std::nullopt : group_for(study, *own, enrolment, draws);
 }
 
 BoxKeys StudyKey::box() const {
@@ -137,8 +147,8 @@ Signer StudyKey::signer() const {
   return Signer(derive_key(master, "investigator's signature"));
 }
 
-ScheduleDraw StationKey::draw_of(int enrolment, Draws draws) const {
-  return draw_for(study, station, enrolment, draws);
+ScheduleDraw StationKey::draw_of(int enrolment, Draws draws, int visit) const {
+  return draw_for(study, station, enrolment, draws, visit);
 }
 
 Signer StationKey::signer() const {
@@ -211,29 +221,57 @@ std::string blinded_configuration(const StudyKey& key) {
   return configuration.dump();
 }
 
+namespace {
+
+/// The parts of a study file, by their keys.
+nlohmann::json parts_of(const Study& study) {
+  nlohmann::json classes = nlohmann::json::array();
+  for (const StudyClass& shown : study.classes) {
+    nlohmann::json images = nlohmann::json::array();
+    for (const auto& image : shown.images) images.push_back(image.string());
+    classes.push_back({shown.label, images});
+  }
+  nlohmann::json methods = nlohmann::json::array();
+  for (const StudyMethod& method : study.methods) methods.push_back(to_json(method));
+  return {{"study", study.name},
+          {"protocol", {study.protocol_name(), study.protocol->options_in_clear(study)}},
+          {"classes", classes},
+          {"methods", methods},
+          {"rendering", to_json(study.rendering)},
+          {"trials", to_json(study.trials)},
+          {"practice", to_json(study.practice)},
+          {"session", to_json(study.session)},
+          {"visits", to_json(study.visits)},
+          {"groups", to_json(study.groups)},
+          {"registration", to_json(study.registration)},
+          {"seed", study.seed}};
+}
+
+}  // namespace
+
 bool are_same(const Study& one, const Study& other) {
-  const auto content = [](const Study& study) {
-    nlohmann::json classes = nlohmann::json::array();
-    for (const StudyClass& shown : study.classes) {
-      nlohmann::json images = nlohmann::json::array();
-      for (const auto& image : shown.images) images.push_back(image.string());
-      classes.push_back({shown.label, images});
-    }
-    nlohmann::json methods = nlohmann::json::array();
-    for (const StudyMethod& method : study.methods) methods.push_back(to_json(method));
-    return nlohmann::json{study.name,
-                          study.protocol_name(),
-                          study.protocol->options_in_clear(study),
-                          classes,
-                          methods,
-                          to_json(study.rendering),
-                          to_json(study.trials),
-                          to_json(study.practice),
-                          to_json(study.session),
-                          to_json(study.registration),
-                          study.seed};
-  };
-  return content(one) == content(other);
+  return parts_of(one) == parts_of(other);
+}
+
+std::string misfit_of(const Study& study, const StudyCodes& key, const std::filesystem::path& file,
+                      const std::string& option) {
+  const std::string what = option == "--key" ? "key" : "file";
+  const std::string text = file.string() + ": is not the " + what + " of " + study.source;
+  if (study.name != key.study.name) {
+    return one_line(text + ", which is study " + in_quotes(study.name) + ": it is of study " +
+                    in_quotes(key.study.name) + "; name the right one with " + option);
+  }
+  const nlohmann::json ours = parts_of(study);
+  const nlohmann::json theirs = parts_of(key.study);
+  std::vector<std::string> differing;
+  for (const auto& [part, content] : ours.items()) {
+    if (content != theirs.at(part)) differing.push_back(part);
+  }
+  const std::string parts = differing.empty() ? "its seal" : listed(differing, ", ");
+  return one_line(text + " as it is now, which has changed since it was prepared: " + parts +
+                  " differ from study " + in_quotes(key.study.name) + " of that " + what +
+                  "; take the change back, name the right " + what + " with " + option +
+                  ", or, only if nobody has taken part yet, run `touchtrial prepare`");
 }
 
 Digest study_seal(const StudyKey& key) {

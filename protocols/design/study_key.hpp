@@ -48,8 +48,10 @@ struct StudyKey : StudyCodes {
   std::vector<Station> stations;  ///< with their secrets; never empty
 
   /// What a participant's schedule is drawn from, whichever station the number belongs to.
-  /// \throws UsageError if the number is no station's
-  [[nodiscard]] ScheduleDraw draw_of(int enrolment, Draws draws) const;
+  /// \throws UsageError if the number is no station's, or the study has no such visit
+  [[nodiscard]] ScheduleDraw draw_of(int enrolment, Draws draws, int visit = 1) const;
+  /// As group_for; empty also if the number is no station's.
+  [[nodiscard]] std::optional<int> group_of(int enrolment, Draws draws) const;
   [[nodiscard]] BoxKeys box() const;
   [[nodiscard]] Signer signer() const;
 };
@@ -60,8 +62,8 @@ struct StationKey : StudyCodes {
   /// The investigator's signature under station_statement.
   Signature certificate{};
 
-  /// \throws UsageError if the number is not the station's
-  [[nodiscard]] ScheduleDraw draw_of(int enrolment, Draws draws) const;
+  /// \throws UsageError if the number is not the station's, or the study has no such visit
+  [[nodiscard]] ScheduleDraw draw_of(int enrolment, Draws draws, int visit = 1) const;
   [[nodiscard]] Signer signer() const;
 };
 
@@ -119,6 +121,14 @@ void save_station_key(const std::filesystem::path& path, const StationKey& key);
 
 /// Whether two studies say the same, wherever their files lie and however these are laid out.
 [[nodiscard]] bool are_same(const Study& one, const Study& other);
+
+/// Says why a file of secrets does not fit a study, with the remedy. Names the study that the file
+/// was made for, or, if that has the same name, the parts of the study file that differ.
+/// \param study  newly read from its file
+/// \param file  that of `key`
+/// \param option  of the command line that names another file, for instance "--key"
+[[nodiscard]] std::string misfit_of(const Study& study, const StudyCodes& key,
+                                    const std::filesystem::path& file, const std::string& option);
 
 /// The study's seal, which is written before trial 1: SHA-256 over key (master secret, whether it
 /// is simulated, meaning of each code), schedule rule, seed and blinded configuration. The study's

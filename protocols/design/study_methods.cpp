@@ -168,6 +168,9 @@ std::vector<StudyMethod> read_methods(const JsonValue& place) {
       item.refuse(in_quotes(method.label) +
                   " is there twice; list it once, or give one of the two another label");
     }
+    for (const StudyMethod& other : methods) {
+      refuse_same_label(item, method.label, other.label, "method");
+    }
     methods.push_back(std::move(method));
   }
   return methods;

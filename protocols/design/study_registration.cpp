@@ -1,5 +1,6 @@
 /// \file The study file's "registration".
 #include "core/text.hpp"
+#include "protocols/design/deviation_codes.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/design/study_sections.hpp"
 
@@ -15,19 +16,39 @@ constexpr int kMostParticipants = 100'000;
 constexpr std::size_t kMostLooks = 20;
 constexpr std::size_t kMostCodes = 64;
 constexpr std::size_t kLongestCode = 64;  // bytes
+constexpr double kLeastAlpha = 1e-6;
+
+/// The number of an item of the study's own day sheet: 3 of "no-day-sheet-3".
+std::optional<int> day_sheet_item(std::string_view code) {
+  const std::string beginning = "no-day-sheet-";
+  if (!code.starts_with(beginning)) return std::nullopt;
+  const std::optional<int> item = number_in<int>(code.substr(beginning.size()));
+  const bool is_one = item && *item > 0 && code == beginning + std::to_string(*item);
+  return is_one ? item : std::nullopt;
+}
 
 void read_statement(const JsonObject& object, std::string_view key, std::string& statement) {
   if (const auto member = object.find(key)) statement = read_paragraphs(*member, kLongestStatement);
 }
 
 ExclusionRules read_exclusion_rules(const JsonValue& place) {
-  const JsonObject object = place.object({"deviations", "invalid_trials"});
+  const JsonObject object = place.object({"deviations", "own_deviations", "invalid_trials"});
   ExclusionRules rules;
   if (const auto member = object.find("deviations")) {
     for (const JsonValue& code : member->items(0, kMostCodes)) {
       rules.deviations.push_back(read_line(code, kLongestCode));
+      if (is_deviation_code(rules.deviations.back())) continue;
+      code.refuse("is no code that the program records, which are " + listed(kDeviationCodes) +
+                  " and no-day-sheet-1, ..; a code that experimenters enter belongs in "
+                  "\"own_deviations\"");
     }
   }
+  if (const auto member = object.find("own_deviations")) {
+    for (const JsonValue& code : member->items(0, kMostCodes)) {
+      rules.deviations.push_back(read_line(code, kLongestCode));
+    }
+  }
+  std::ranges::stable_partition(rules.deviations, is_deviation_code);
   if (const auto member = object.find("invalid_trials")) {
     rules.invalid_trials = member->number({.low = 0.0, .high = 1.0});
   }
@@ -54,7 +75,7 @@ std::vector<int> read_looks(const JsonValue& place) {
 
 constexpr std::string_view kAnalysisKeys[] = {"methods",         "test",   "sides", "alpha",
                                               "smallest_effect", "margin", "looks", "spending",
-                                              "exclusion_rules"};
+                                              "exclusion_rules", "visits"};
 
 /// The usual test of an estimand. Flips of signs are about 0, so a margin needs a t test.
 RegisteredAnalysis usual_analysis(Estimand estimand, bool has_margin, RegisteredTest usual_test) {
@@ -84,7 +105,7 @@ std::optional<RegisteredAnalysis> read_analysis(const JsonObject& object,
   if (const auto member = object.find("test")) analysis.test = member->choice(kRegisteredTestNames);
   if (const auto member = object.find("sides")) analysis.one_sided = member->choice(kSidesNames);
   if (const auto member = object.find("alpha")) {
-    analysis.alpha = member->number({.low = 0.0, .high = 0.5, .open_low = true});
+    analysis.alpha = member->number({.low = kLeastAlpha, .high = 0.5});
   }
   if (const auto member = object.find("smallest_effect")) {
     analysis.smallest_effect = member->number({.low = 0.0, .high = 1.0, .open_low = true});
@@ -99,11 +120,18 @@ std::optional<RegisteredAnalysis> read_analysis(const JsonObject& object,
   if (const auto member = object.find("exclusion_rules")) {
     analysis.exclusion_rules = read_exclusion_rules(*member);
   }
+  if (const auto member = object.find("visits")) {
+    analysis.visits = member->choice(kRegisteredVisitsNames);
+  }
   return analysis;
 }
 
 nlohmann::json to_json(const ExclusionRules& rules) {
-  nlohmann::json text = {{"deviations", rules.deviations}};
+  const auto own = std::ranges::find_if_not(rules.deviations, is_deviation_code);
+  nlohmann::json text = {{"deviations", std::vector(rules.deviations.begin(), own)}};
+  if (own != rules.deviations.end()) {
+    text["own_deviations"] = std::vector(own, rules.deviations.end());
+  }
   if (rules.invalid_trials) text["invalid_trials"] = *rules.invalid_trials;
   return text;
 }
@@ -208,6 +236,31 @@ void check_estimand(const JsonValue& file, const Study& study) {
   }
 }
 
+void check_day_sheet(const JsonValue& file, const Study& study) {
+  const auto& rules = study.registration.analysis->exclusion_rules;
+  if (!rules) return;
+  const std::size_t items = study.session.day_sheet.size();
+  for (std::size_t i = 0; i < rules->deviations.size(); ++i) {
+    const std::optional<int> item = day_sheet_item(rules->deviations[i]);
+    if (!item || static_cast<std::size_t>(*item) <= items) continue;
+    file.refuse_below("/registration/exclusion_rules/deviations/" + std::to_string(i),
+                      "is about item " + std::to_string(*item) + " of \"day_sheet\", which has " +
+                          std::to_string(items) + "; name an item that it has, or add this one");
+  }
+}
+
+void check_looks(const JsonValue& file, const Registration& registration) {
+  const std::vector<int>& looks = registration.analysis->looks;
+  if (looks.empty() || looks.back() < registration.participants) return;
+  const char* const place = "/registration/looks";
+  if (registration.participants == 0) {
+    file.refuse_below(place, "is given without \"participants\"; state the planned number");
+  }
+  file.refuse_below(place, "has a look at " + std::to_string(looks.back()) + " participants, but " +
+                               std::to_string(registration.participants) +
+                               " are planned; look earlier, or state more \"participants\"");
+}
+
 }  // namespace
 
 RegisteredTest usual_test_of(const Study& study) {
@@ -232,7 +285,7 @@ Registration read_registration(const JsonValue& place, RegisteredTest usual_test
   const JsonObject object =
       place.object({"hypothesis", "participants", "stopping_rule", "exclusions", "primary_test",
                     "estimand", "methods", "test", "sides", "alpha", "smallest_effect", "margin",
-                    "looks", "spending", "exclusion_rules", "safety_record_years"});
+                    "looks", "spending", "exclusion_rules", "safety_record_years", "visits"});
   Registration registration;
   read_statement(object, "hypothesis", registration.hypothesis);
   if (const auto member = object.find("participants")) {
@@ -267,6 +320,9 @@ nlohmann::json to_json(const Registration& registration) {
   text["looks"] = analysis.looks;
   text["spending"] = word_for(kSpendingNames, analysis.spending);
   if (analysis.exclusion_rules) text["exclusion_rules"] = to_json(*analysis.exclusion_rules);
+  if (analysis.visits != RegisteredVisits::all) {
+    text["visits"] = word_for(kRegisteredVisitsNames, analysis.visits);
+  }
   return text;
 }
 
@@ -275,13 +331,17 @@ void check_registration(const JsonValue& file, const Study& study) {
   if (!registration.analysis) return;
   check_estimand(file, study);
   check_margin(file, *registration.analysis);
-  const std::vector<int>& looks = registration.analysis->looks;
-  if (!looks.empty() && looks.back() >= registration.participants) {
-    file.refuse_below("/registration/looks",
-                      "has a look at " + std::to_string(looks.back()) + " participants, but " +
-                          std::to_string(registration.participants) +
-                          " are planned; look earlier, or state more \"participants\"");
+  if (registration.analysis->visits != RegisteredVisits::all) {
+    const char* const place = "/registration/visits";
+    if (study.visits.count < 2) {
+      file.refuse_below(place, "chooses a visit, but the study has one; remove it");
+    }
+    if (study.visits.methods == VisitMethods::divided) {
+      file.refuse_below(place, "must be \"all\": each visit has other methods");
+    }
   }
+  check_looks(file, registration);
+  check_day_sheet(file, study);
 }
 
 namespace {
@@ -356,13 +416,19 @@ std::vector<std::pair<std::string, std::string>> fields_of(const Registration& r
                               " points; decided by the " +
                               per_cent_text(1.0 - 2.0 * analysis.alpha) + " % t interval")
           : std::pair<std::string, std::string>("smallest worth having", worth);
-  return {{"estimand", estimand_words(analysis)},
-          {"test", test_words(analysis)},
-          {"alpha", number_text(analysis.alpha)},
-          size,
-          {"interim looks", looks_words(analysis)},
-          {"exclusion rules",
-           analysis.exclusion_rules ? rules_words(*analysis.exclusion_rules) : "not stated"}};
+  std::vector<std::pair<std::string, std::string>> fields = {
+      {"estimand", estimand_words(analysis)},
+      {"test", test_words(analysis)},
+      {"alpha", number_text(analysis.alpha)},
+      size,
+      {"interim looks", looks_words(analysis)},
+      {"exclusion rules",
+       analysis.exclusion_rules ? rules_words(*analysis.exclusion_rules) : "not stated"}};
+  if (analysis.visits != RegisteredVisits::all) {
+    const bool first = analysis.visits == RegisteredVisits::first;
+    fields.emplace_back("visits", first ? "the first alone" : "the last alone");
+  }
+  return fields;
 }
 
 }  // namespace touchtrial::design

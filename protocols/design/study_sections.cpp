@@ -1,5 +1,7 @@
-/// \file The study file's "classes", "trials" and "practice".
+/// \file The study file's "classes", "trials", "practice", "visits" and "groups".
 #include "protocols/design/study_sections.hpp"
+
+#include "core/nearest_name.hpp"
 
 #include <algorithm>
 #include <set>
@@ -64,18 +66,60 @@ void read_resumption(const JsonObject& object, TrialOptions& options) {
 
 }  // namespace
 
+namespace {
+
+void read_bound(const JsonObject& object, std::string_view key, double high, double& bound) {
+  if (const auto member = object.find(key)) bound = member->number({.low = 0.0, .high = high});
+}
+
+constexpr double kLongest_s = 3600.0;
+constexpr double kLongest_mm = 1e6;
+
+ValidityRule read_validity(const JsonValue& place) {
+  constexpr double kLargest_n = 100.0;
+  const JsonObject object = place.object({"exploring_s", "contact_s", "path_mm", "least_median_n",
+                                          "largest_median_n", "saturated_share"});
+  ValidityRule rule;
+  read_bound(object, "exploring_s", kLongest_s, rule.least_exploring_s);
+  read_bound(object, "contact_s", kLongest_s, rule.least_contact_s);
+  read_bound(object, "path_mm", kLongest_mm, rule.least_path_mm);
+  read_bound(object, "least_median_n", kLargest_n, rule.least_median_n);
+  read_bound(object, "largest_median_n", kLargest_n, rule.largest_median_n);
+  if (const auto member = object.find("saturated_share")) {
+    rule.saturated_share = member->number({.low = 0.0, .high = 1.0, .open_low = true});
+  }
+  return rule;
+}
+
+LeastTouch read_least_touch(const JsonValue& place) {
+  const JsonObject object = place.object({"contact_s", "path_mm"});
+  LeastTouch touch;
+  read_bound(object, "contact_s", kLongest_s, touch.contact_s);
+  read_bound(object, "path_mm", kLongest_mm, touch.path_mm);
+  return touch;
+}
+
+}  // namespace
+
+void refuse_same_label(const JsonValue& place, const std::string& label, const std::string& other,
+                       const std::string& of) {
+  if (label == other) {
+    place.refuse(in_quotes(label) + " is the label of another " + of + "; labels must be unique");
+  }
+  if (edit_distance(label, other) == 0) {
+    place.refuse(in_quotes(label) + " and " + in_quotes(other) +
+                 " differ by capitals, blanks or hyphens alone; give one of them another name");
+  }
+}
+
 std::vector<StudyClass> read_classes(const JsonValue& place, std::size_t most_images) {
   std::vector<StudyClass> classes;
   for (const JsonValue& item : place.items(2, kMaxClasses)) {
     const JsonObject object = item.object({"label", "images"});
     StudyClass study_class{read_label(object.at("label")),
                            read_images(object.at("images"), most_images)};
-    const bool taken = std::any_of(classes.begin(), classes.end(), [&](const StudyClass& other) {
-      return other.label == study_class.label;
-    });
-    if (taken) {
-      object.at("label").refuse(in_quotes(study_class.label) +
-                                " is the label of another class; labels must be unique");
+    for (const StudyClass& other : classes) {
+      refuse_same_label(object.at("label"), study_class.label, other.label, "class");
     }
     classes.push_back(std::move(study_class));
   }
@@ -85,7 +129,8 @@ std::vector<StudyClass> read_classes(const JsonValue& place, std::size_t most_im
 TrialOptions read_trials(const JsonValue& place) {
   const JsonObject object =
       place.object({"repeats", "order", "explore_limit_s", "on_timeout", "practice", "break_every",
-                    "catch", "lead_in", "blocks", "max_run", "on_interruption", "resume_within_h"});
+                    "catch", "lead_in", "blocks", "max_run", "on_interruption", "resume_within_h",
+                    "validity", "answer_after"});
   TrialOptions options;
   read_count(object, "repeats", 1, 1000, options.repeats);
   read_count(object, "break_every", 0, 10'000, options.break_every);
@@ -102,6 +147,10 @@ TrialOptions read_trials(const JsonValue& place) {
   }
   if (const auto member = object.find("blocks")) options.blocks = member->choice(kBlocksNames);
   read_resumption(object, options);
+  if (const auto member = object.find("validity")) options.validity = read_validity(*member);
+  if (const auto member = object.find("answer_after")) {
+    options.answer_after = read_least_touch(*member);
+  }
   return options;
 }
 
@@ -122,6 +171,17 @@ nlohmann::json to_json(const TrialOptions& trials) {
   }
   if (trials.resume_within_h != usual.resume_within_h) {
     text["resume_within_h"] = trials.resume_within_h;
+  }
+  if (const ValidityRule& rule = trials.validity; rule != usual.validity) {
+    text["validity"] = {{"exploring_s", rule.least_exploring_s},
+                        {"contact_s", rule.least_contact_s},
+                        {"path_mm", rule.least_path_mm},
+                        {"least_median_n", rule.least_median_n},
+                        {"largest_median_n", rule.largest_median_n},
+                        {"saturated_share", rule.saturated_share}};
+  }
+  if (const LeastTouch& touch = trials.answer_after; touch != usual.answer_after) {
+    text["answer_after"] = {{"contact_s", touch.contact_s}, {"path_mm", touch.path_mm}};
   }
   return text;
 }
@@ -145,6 +205,53 @@ nlohmann::json to_json(const PracticePlan& practice) {
     classes.push_back({{"label", shown.label}, {"images", {shown.images.front().string()}}});
   }
   return {{"classes", classes}, {"criterion", practice.criterion}, {"rounds", practice.rounds}};
+}
+
+VisitPlan read_visits(const JsonValue& place) {
+  constexpr double kMostDays = 3650.0;
+  const JsonObject object = place.object({"count", "least_days", "most_days", "methods"});
+  VisitPlan visits;
+  visits.count = static_cast<int>(object.at("count").integer(2, 100));
+  if (const auto member = object.find("least_days")) {
+    visits.least_days = member->number({.low = 0.0, .high = kMostDays});
+  }
+  if (const auto member = object.find("most_days")) {
+    visits.most_days = member->number({.low = 0.0, .high = kMostDays, .open_low = true});
+    if (*visits.most_days < visits.least_days) {
+      member->refuse("is less than \"least_days\", so that no visit could come; raise it");
+    }
+  }
+  if (const auto member = object.find("methods")) {
+    visits.methods = member->choice(kVisitMethodsNames);
+  }
+  return visits;
+}
+
+nlohmann::json to_json(const VisitPlan& visits) {
+  nlohmann::json text = {{"count", visits.count},
+                         {"least_days", visits.least_days},
+                         {"methods", word_for(kVisitMethodsNames, visits.methods)}};
+  if (visits.most_days) text["most_days"] = *visits.most_days;
+  return text;
+}
+
+GroupPlan read_groups(const JsonValue& place) {
+  constexpr std::size_t kMostGroups = 16;
+  const JsonObject object = place.object({"labels", "open"});
+  GroupPlan groups;
+  for (const JsonValue& item : object.at("labels").items(2, kMostGroups)) {
+    std::string label = read_plain_name(item);
+    if (std::ranges::count(groups.labels, label) > 0) {
+      item.refuse(in_quotes(label) + " is the label of another group; labels must be unique");
+    }
+    groups.labels.push_back(std::move(label));
+  }
+  if (const auto member = object.find("open")) groups.open = member->truth();
+  return groups;
+}
+
+nlohmann::json to_json(const GroupPlan& groups) {
+  return {{"labels", groups.labels}, {"open", groups.open}};
 }
 
 }  // namespace touchtrial::design

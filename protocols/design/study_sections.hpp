@@ -60,6 +60,15 @@ inline constexpr std::array kRegisteredTestNames = {
 
 inline constexpr std::array kSidesNames = {Named<bool>{"one", true}, Named<bool>{"two", false}};
 
+inline constexpr std::array kVisitMethodsNames = {
+    Named<VisitMethods>{"all", VisitMethods::all},
+    Named<VisitMethods>{"divided", VisitMethods::divided}};
+
+inline constexpr std::array kRegisteredVisitsNames = {
+    Named<RegisteredVisits>{"all", RegisteredVisits::all},
+    Named<RegisteredVisits>{"first", RegisteredVisits::first},
+    Named<RegisteredVisits>{"last", RegisteredVisits::last}};
+
 inline constexpr std::array kSpendingNames = {
     Named<Spending>{"obrien-fleming", Spending::obrien_fleming},
     Named<Spending>{"pocock", Spending::pocock}};
@@ -74,9 +83,6 @@ template <typename Value, std::size_t size>
   return {};
 }
 
-/// The languages of the program's own texts, and therefore of a study's texts.
-inline constexpr std::array<std::string_view, 2> kLanguages = {"en", "de"};
-
 /// Whether a text contains a C0 character (line feeds and tabs included), DEL, or a C1 character.
 [[nodiscard]] bool has_control_character(std::string_view text);
 
@@ -90,7 +96,7 @@ inline constexpr std::array<std::string_view, 2> kLanguages = {"en", "de"};
 /// \throws StudyError if the text is too long, or has another control character
 [[nodiscard]] std::string read_paragraphs(const JsonValue& place, std::size_t longest);
 
-/// Reads a line in one or more of the languages.
+/// Reads a line in one or more of the program's languages.
 /// \throws StudyError if the study's language is missing
 [[nodiscard]] Translated read_translated(const JsonValue& place, const std::string& language);
 
@@ -106,6 +112,13 @@ inline constexpr int kMaxScoredTrials = 10'000;
 /// \throws StudyError if the text is not such a name
 [[nodiscard]] std::string read_plain_name(const JsonValue& place);
 
+/// Refuses a label that another one equals, or from which it differs only by what nobody can say
+/// aloud and some file systems do not tell apart: ASCII capitals, blanks and hyphens.
+/// \param of  what has labels: "class"
+/// \throws StudyError with the place
+void refuse_same_label(const JsonValue& place, const std::string& label, const std::string& other,
+                       const std::string& of);
+
 /// These functions read one section each.
 /// \throws StudyError with the place of a value that they do not accept
 [[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place,
@@ -115,6 +128,8 @@ inline constexpr int kMaxScoredTrials = 10'000;
 [[nodiscard]] TrialOptions read_trials(const JsonValue& place);
 [[nodiscard]] PracticePlan read_practice(const JsonValue& place);
 [[nodiscard]] SessionPlan read_session(const JsonValue& place);
+[[nodiscard]] VisitPlan read_visits(const JsonValue& place);
+[[nodiscard]] GroupPlan read_groups(const JsonValue& place);
 /// \param usual_test  of a difference in this study
 [[nodiscard]] Registration read_registration(const JsonValue& place, RegisteredTest usual_test);
 /// Checks that the registered analysis is one of this study.
@@ -123,15 +138,18 @@ void check_registration(const JsonValue& file, const Study& study);
 
 /// The sections in the form of the study file, with every key explicit. A method has only the keys
 /// that belong to it, "control" if it has one, and "label" if it is not the default. The trials
-/// have "max_run", "on_interruption" and "resume_within_h" only if these differ from their
-/// defaults, and a registration has the keys of its analysis only if it has one, so that studies
-/// sealed before these keys existed keep their seals. Equal options give equal JSON.
+/// have "max_run", "on_interruption", "resume_within_h", "validity" and "answer_after" only if
+/// these differ from their defaults, as the session has "texts", "text_scale" and "high_contrast",
+/// and a registration has the keys of its analysis only if it has one, so that studies sealed
+/// before these keys existed keep their seals. Equal options give equal JSON.
 [[nodiscard]] nlohmann::json to_json(const engine::ExtractionOptions& method);
 [[nodiscard]] nlohmann::json to_json(const StudyMethod& method);
 [[nodiscard]] nlohmann::json to_json(const engine::RenderingOptions& rendering);
 [[nodiscard]] nlohmann::json to_json(const TrialOptions& trials);
 [[nodiscard]] nlohmann::json to_json(const PracticePlan& practice);
 [[nodiscard]] nlohmann::json to_json(const SessionPlan& session);
+[[nodiscard]] nlohmann::json to_json(const VisitPlan& visits);
+[[nodiscard]] nlohmann::json to_json(const GroupPlan& groups);
 [[nodiscard]] nlohmann::json to_json(const Registration& registration);
 
 /// Reads the questions of the study file.
@@ -140,7 +158,8 @@ void check_registration(const JsonValue& file, const Study& study);
 [[nodiscard]] std::vector<Question> read_questions(const JsonValue& place,
                                                    const std::string& language);
 
-/// The questions in the form of the study file, with every key explicit except empty "options".
+/// The questions in the form of the study file, with every key explicit except empty "options" and
+/// bounds that are not given.
 [[nodiscard]] nlohmann::json to_json(const std::vector<Question>& questions);
 
 }  // namespace touchtrial::design

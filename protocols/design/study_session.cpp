@@ -1,4 +1,5 @@
 /// \file The study file's "session": its texts, its questions, and its other settings.
+#include "protocols/design/languages.hpp"
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
@@ -28,13 +29,33 @@ void read_options(const JsonObject& object, const std::string& language, Questio
   }
 }
 
+void read_range(const JsonObject& object, Question& question) {
+  constexpr double kLargest = 1e9;
+  const auto read = [&](const char* key, std::optional<double>& bound) {
+    const auto member = object.find(key);
+    if (!member) return;
+    if (question.kind != QuestionKind::number) {
+      member->refuse("belongs to a question of the kind number; remove it");
+    }
+    bound = member->number({.low = -kLargest, .high = kLargest});
+    if (question.min && question.max && *question.min > *question.max) {
+      member->refuse("is " + number_text(*bound) + ", less than min, " +
+                     number_text(*question.min) + "; no number is between them");
+    }
+  };
+  read("min", question.min);
+  read("max", question.max);
+}
+
 Question read_question(const JsonValue& place, const std::string& language) {
-  const JsonObject object = place.object({"id", "kind", "text", "options", "required"});
+  const JsonObject object =
+      place.object({"id", "kind", "text", "options", "required", "min", "max"});
   Question question;
   question.id = read_plain_name(object.at("id"));
   question.kind = object.at("kind").choice(kQuestionKindNames);
   question.text = read_translated(object.at("text"), language);
   read_options(object, language, question);
+  read_range(object, question);
   if (const auto member = object.find("required")) question.required = member->truth();
   return question;
 }
@@ -54,19 +75,30 @@ std::vector<std::string> read_pages(const JsonValue& place) {
   for (const JsonValue& item : place.items(1, kMostPages)) {
     pages.push_back(read_paragraphs(item, kLongestPage));
     if (pages.back().empty()) item.refuse("is empty; write a page, or remove it");
+    check_markup(item, pages.back());
   }
   return pages;
 }
 
 void read_instructions(const JsonValue& place, SessionPlan& session) {
-  const JsonObject object = place.object(kLanguages);
-  for (const std::string_view code : kLanguages) {
+  const JsonObject object = place.object(language_codes());
+  for (const std::string_view code : language_codes()) {
     if (const auto member = object.find(code)) {
       session.instructions[std::string(code)] = read_pages(*member);
     }
   }
   if (!session.instructions.empty() && !session.instructions.contains(session.language)) {
     place.refuse_below("/" + session.language, "is missing, the study's language; add its pages");
+  }
+}
+
+void read_own_texts(const JsonValue& place, SessionPlan& session) {
+  const JsonObject object = place.object(language_codes());
+  for (const std::string_view code : language_codes()) {
+    const auto member = object.find(code);
+    if (!member) continue;
+    Texts texts = read_texts(*member);
+    if (!texts.empty()) session.texts[std::string(code)] = std::move(texts);
   }
 }
 
@@ -142,9 +174,9 @@ std::string read_paragraphs(const JsonValue& place, std::size_t longest) {
 }
 
 Translated read_translated(const JsonValue& place, const std::string& language) {
-  const JsonObject object = place.object(kLanguages);
+  const JsonObject object = place.object(language_codes());
   Translated text;
-  for (const std::string_view code : kLanguages) {
+  for (const std::string_view code : language_codes()) {
     if (const auto member = object.find(code)) {
       text[std::string(code)] = read_line(*member, kLongestQuestion);
     }
@@ -176,20 +208,28 @@ nlohmann::json to_json(const std::vector<Question>& questions) {
                            {"text", question.text},
                            {"required", question.required}};
     if (!question.options.empty()) item["options"] = question.options;
+    if (question.min) item["min"] = *question.min;
+    if (question.max) item["max"] = *question.max;
     list.push_back(std::move(item));
   }
   return list;
 }
 
 SessionPlan read_session(const JsonValue& place) {
-  const JsonObject object = place.object(
-      {"language", "instructions", "sight", "masking", "handedness", "confidence", "day_sheet",
-       "consent_version", "ethics_number", "closing_questions", "closing"});
+  const JsonObject object =
+      place.object({"language", "instructions", "texts", "text_scale", "high_contrast", "sight",
+                    "masking", "handedness", "confidence", "day_sheet", "consent_version",
+                    "ethics_number", "closing_questions", "closing"});
   SessionPlan session;
   if (const auto member = object.find("language")) {
-    session.language = kLanguages[member->choice(std::span(kLanguages))];
+    session.language = language_codes()[member->choice(language_codes())];
   }
   if (const auto member = object.find("instructions")) read_instructions(*member, session);
+  if (const auto member = object.find("texts")) read_own_texts(*member, session);
+  if (const auto member = object.find("text_scale")) {
+    session.text_scale = member->number({.low = 1.0, .high = kLargestTextScale});
+  }
+  read_truth(object, "high_contrast", session.high_contrast);
   if (const auto member = object.find("sight")) session.sight = member->choice(kSightNames);
   if (const auto member = object.find("masking")) session.masking = read_masking(*member);
   read_truth(object, "handedness", session.handedness);
@@ -209,7 +249,7 @@ SessionPlan read_session(const JsonValue& place) {
 nlohmann::json to_json(const SessionPlan& session) {
   nlohmann::json instructions = nlohmann::json::object();
   for (const auto& [language, pages] : session.instructions) instructions[language] = pages;
-  return {
+  nlohmann::json text = {
       {"language", session.language},
       {"instructions", instructions},
       {"sight", word_for(kSightNames, session.sight)},
@@ -221,6 +261,11 @@ nlohmann::json to_json(const SessionPlan& session) {
       {"ethics_number", session.ethics_number},
       {"closing_questions", to_json(session.closing_questions)},
       {"closing", session.closing}};
+  const SessionPlan usual;
+  if (session.texts != usual.texts) text["texts"] = session.texts;
+  if (session.text_scale != usual.text_scale) text["text_scale"] = session.text_scale;
+  if (session.high_contrast) text["high_contrast"] = true;
+  return text;
 }
 
 }  // namespace touchtrial::design

@@ -4,8 +4,8 @@
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "core/version.hpp"
+#include "protocols/design/languages.hpp"
 #include "protocols/design/protocol.hpp"
-#include "protocols/session/trial_trace.hpp"
 
 #include <algorithm>
 
@@ -28,11 +28,6 @@ std::string labels_of(const design::Study& study) {
   return listed(labels);
 }
 
-std::string methods_of(const design::Study& study) {
-  const auto presented = static_cast<std::size_t>(study.presented_methods());
-  return listed(std::span(study.methods).first(presented), ", ", &design::StudyMethod::label);
-}
-
 std::string participants_of(const design::Registration& registration) {
   if (registration.participants == 0) return "";
   return counted(registration.participants, "participant") + ".";
@@ -47,19 +42,47 @@ std::string practice_of(const design::Study& study) {
          " correct, " + counted(practice.rounds, "round") + " at most";
 }
 
+/// The participants' language; texts are part of the instrument.
+std::string language_of(const design::Study& study) {
+  const std::string draft = design::draft_notice(study.session.language);
+  return design::language_of(study.session.language).name + (draft.empty() ? "" : ": " + draft);
+}
+
+/// Empty in a study with one visit.
+std::string visits_of(const design::VisitPlan& visits) {
+  if (visits.count == 1) return "";
+  std::string days = "at least " + number_text(visits.least_days);
+  if (visits.most_days) days += " and at most " + number_text(*visits.most_days);
+  const bool divided = visits.methods == design::VisitMethods::divided;
+  return line("visits", std::to_string(visits.count) + ", " + days + " days between them, " +
+                            (divided ? "the methods divided between them" : "all methods at each"));
+}
+
+std::string touch_of(const design::LeastTouch& touch) {
+  if (touch == design::LeastTouch{0.0, 0.0}) return "no touch needed";
+  return "at least " + number_text(touch.contact_s) + " s at the plane and " +
+         number_text(touch.path_mm) + " mm along it, unless time is up";
+}
+
 std::string design_of(const design::Study& study) {
   const design::TrialOptions& trials = study.trials;
   return line("protocol", study.protocol_name()) +
          line("classes", std::to_string(study.classes.size()) + " (" + labels_of(study) + ")") +
-         line("methods presented", methods_of(study)) +
+         line("methods presented", study.presented_labels()) +
          line("scored trials a participant", std::to_string(study.scored_trials())) +
+         visits_of(study.visits) +
+         (study.groups.labels.empty()
+              ? ""
+              : line("groups", listed(study.groups.labels) +
+                                   (study.groups.open ? ", open to the experimenter" : ""))) +
          line("time to explore", number_text(trials.explore_limit_s) + " s") +
-         line("practice", practice_of(study)) +
+         line("before an answer", touch_of(trials.answer_after)) +
+         line("practice", practice_of(study)) + line("language", language_of(study)) +
          line("catch trials (not scored)", std::to_string(trials.catch_trials)) +
          line("orders", design::schedule_rule(study));
 }
 
-std::string validity_of(const ValidityRule& rule) {
+std::string validity_of(const design::ValidityRule& rule) {
   return "A trial is valid if all of this holds:\n\n" +
          line("exploration from landing",
               "at least " + number_text(rule.least_exploring_s) + " s") +
@@ -120,17 +143,19 @@ store::StudyCommitment commitment_of(const design::StudyKey& key, const engine::
 }
 
 void require_prepared(const design::Study& study, const design::StudyCodes& key,
-                      const engine::Pack& pack) {
+                      const std::filesystem::path& key_file, const engine::Pack& pack) {
   const auto refuse = [&study](const std::string& what) {
     throw UsageError(one_line(study.source + ": " + what));
   };
   if (key.simulated) refuse("its key belongs to a simulated study; run `touchtrial prepare`");
   if (!design::are_same(study, key.study)) {
-    refuse("has changed since it was prepared; run `touchtrial prepare` again");
+    throw UsageError(design::misfit_of(study, key, key_file, "--key"));
   }
   const engine::PackManifest& manifest = pack.manifest();
   if (manifest.study_id != key.study_id) {
-    refuse("pack and key do not belong together; run `touchtrial prepare`");
+    refuse("the key " + key_file.string() + " is of study " + key.study_id + " and the pack " +
+           pack.folder().string() + " of study " + manifest.study_id +
+           "; name the pack's own key with --key, or the key's own pack with --pack");
   }
   for (const design::KeyedStimulus& keyed : key.stimuli) {
     if (std::ranges::count(manifest.entries, keyed.code, &engine::PackEntry::code) == 1) continue;
@@ -146,7 +171,7 @@ std::string registration_page(const design::StudyCodes& key, const engine::Pack&
          section("Sample size", participants_of(registration)) +
          section("Stopping rule", registration.stopping_rule) +
          section("Exclusions", registration.exclusions) +
-         section("Validity of trials", validity_of(ValidityRule{})) +
+         section("Validity of trials", validity_of(study.trials.validity)) +
          section("Primary test", registration.primary_test) +
          section("Analysis, as the program checks it", analysis_of(registration)) +
          section("Design", design_of(study)) + section("Commitment", hashes_of(key, pack));

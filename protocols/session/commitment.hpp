@@ -22,9 +22,10 @@ namespace touchtrial::session {
 
 /// Checks that key and pack belong to the study in its present state.
 /// \param study  newly read from its file
+/// \param key_file  that of `key`
 /// \throws UsageError with the difference and the remedy
 void require_prepared(const design::Study& study, const design::StudyCodes& key,
-                      const engine::Pack& pack);
+                      const std::filesystem::path& key_file, const engine::Pack& pack);
 
 /// The preregistration page, Markdown: the statements of the study's registration, the design, the
 /// validity rule, and the hashes that bind study, key and pack. Reveals the classes' labels

@@ -14,9 +14,13 @@ struct SessionStatus {
   std::string participant;
   /// "day sheet", "instructions", "practice", "ready", "exploring", "answering", ...
   std::string stage;
-  int trial = 0;  ///< presentations begun, with the current one; 0: none yet
-  int of = 0;     ///< presentations in all, with repetitions
+  /// As the participant's window counts: presentations begun, with the current one and with the one
+  /// that is announced; in practice, those of the round. 0: none yet.
+  int trial = 0;
+  int of = 0;  ///< presentations in all, with repetitions; in practice, of the round
   bool practice = false;
+  bool participant_stopped = false;    ///< the participant's comfort stop is not settled yet
+  bool needs_consent = false;          ///< no force until the experimenter consents
   std::chrono::nanoseconds elapsed{};  ///< since the session's opening
   std::string device;                  ///< its name, and what it needs
   // Of the last exploration in real time.

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct InstructionStep {
 
 struct QuestionStep {
   const design::Questionnaire* questionnaire = nullptr;  ///< outlives the step
+  std::string_view typed{};  ///< what the first question's field holds at first; ASCII, likewise
 };
 
 /// Announces a practice round.
@@ -59,6 +61,20 @@ struct BreakStep {
   int of = 0;
 };
 
+/// Says what has just happened.
+struct NoticeStep {
+  enum class What {
+    practice_over,  ///< the trials begin
+    time_is_up,     ///< a presentation has ended without an answer
+    stopped,        ///< a comfort stop: the force is off
+  };
+  What what{};
+  int presentations = 0;  ///< begun so far
+  /// false: the session goes on once the experimenter lets the force on again, and a reply has no
+  /// effect
+  bool may_go_on = true;
+};
+
 /// The session is paused until the experimenter resumes it; a reply has no effect.
 struct PauseStep {};
 
@@ -67,7 +83,7 @@ struct EndStep {};
 /// Data alone, which a window draws, a simulated participant answers, and a test scripts. Nothing
 /// in a step depends on what is presented.
 using Step = std::variant<InstructionStep, QuestionStep, PracticeStep, ReadyStep, AnswerStep,
-                          FeedbackStep, BreakStep, PauseStep, EndStep>;
+                          FeedbackStep, BreakStep, NoticeStep, PauseStep, EndStep>;
 
 struct StepReply {
   /// When the participant replied, on the servo's monotonic clock; empty: now.

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "protocols/design/course.hpp"
-#include "protocols/session/answer_summary.hpp"
+#include "protocols/store/payload.hpp"
 #include "protocols/store/session_recorder.hpp"
 
 #include <chrono>
@@ -16,6 +16,11 @@
 #include <vector>
 
 namespace touchtrial::session {
+
+struct GivenAnswer {
+  int position = 0;
+  std::chrono::nanoseconds took{};  ///< from plane-on
+};
 
 /// The state of a session.
 enum class SessionPhase {
@@ -96,6 +101,7 @@ class Session {
   /// if there is one, and ends a pause.
   void take_up(Time at, const store::ResumedBody& body);
 
+  [[nodiscard]] const design::TrialOptions& options() const noexcept { return options_; }
   [[nodiscard]] SessionPhase phase() const noexcept { return phase_; }
   [[nodiscard]] bool accepts(SessionInput input) const noexcept;
   /// The choice at each position of the answer screen: an index into the protocol's choices.

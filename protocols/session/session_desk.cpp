@@ -14,6 +14,7 @@ constexpr std::chrono::milliseconds kBetweenShows{250};
 constexpr std::chrono::milliseconds kBreath{2};
 
 constexpr const char* kComfortStop = "comfort stop";
+constexpr const char* kStopped = "stopped";  ///< the stage after one
 
 std::string with_text(const std::string& words, const std::string& text) {
   return text.empty() ? words : words + ": " + text;
@@ -64,15 +65,29 @@ SessionDesk::Time SessionDesk::when(const StepReply& reply) {
   return std::clamp(parts_.clock.of(*reply.at), session_.last(), latest);
 }
 
-void SessionDesk::enter(const std::string& stage, bool practice) {
+void SessionDesk::enter(const std::string& stage) {
   status_.stage = stage;
-  status_.practice = practice;
+  status_.practice = false;
+  status_.participant_stopped = stage == kStopped && is_participants_stop_;
+  announces_ = stage == "ready";
+  show();
+}
+
+void SessionDesk::enter_practice(const std::string& stage, int presentation, int of) {
+  status_.stage = stage;
+  status_.practice = true;
+  status_.participant_stopped = false;
+  status_.trial = presentation;
+  status_.of = of;
   show();
 }
 
 void SessionDesk::show() {
-  status_.trial = session_.presentations_begun();
-  status_.of = status_.trial + session_.presentations_left() - (session_.in_presentation() ? 1 : 0);
+  if (!status_.practice) {
+    const int begun = session_.presentations_begun();
+    status_.trial = begun + (announces_ && !session_.in_presentation() ? 1 : 0);
+    status_.of = begun + session_.presentations_left() - (session_.in_presentation() ? 1 : 0);
+  }
   status_.elapsed = now();
   shown_ = std::chrono::steady_clock::now();
   parts_.experimenter.show(status_);
@@ -164,6 +179,8 @@ std::string SessionDesk::note_interruption(const device::ServoReport& report) {
 std::string SessionDesk::count_interruption(const std::string& words) {
   ++status_.interruptions;
   parts_.devices.interrupted();
+  is_stopped_ = reason_.value_or(words) == kComfortStop;
+  is_participants_stop_ = is_stopped_ && !reason_;
   return std::exchange(reason_, std::nullopt).value_or(words);
 }
 
@@ -215,7 +232,8 @@ bool SessionDesk::obey_pause(const Request& request) {
     while (const std::optional<Request> next = next_request()) {
       if (next->kind == Request::Kind::resume) {
         session_.resume(now());
-        enter(stage, status_.practice);
+        status_.stage = stage;
+        show();
         return true;
       }
       if (!obey(*next)) return false;
@@ -232,11 +250,16 @@ bool SessionDesk::obey_pause(const Request& request) {
 bool SessionDesk::obey_comfort_stop(const Request& request) {
   if (session_.phase() == SessionPhase::paused) session_.resume(now());
   const bool interrupts = session_.accepts(SessionInput::interrupt);
-  if (interrupts) session_.interrupt(now(), count_interruption(kComfortStop));
+  if (interrupts) {
+    reason_ = kComfortStop;
+    session_.interrupt(now(), count_interruption(kComfortStop));
+  }
   if (!interrupts || !request.text.empty()) {
     session_.deviate(now(), {.code = kComfortStopCode, .text = request.text});
   }
   if (interrupts) return false;
+  is_stopped_ = true;
+  is_participants_stop_ = false;
   parts_.devices.interrupted();
   return session_.phase() != SessionPhase::ready;
 }
@@ -262,19 +285,37 @@ bool SessionDesk::leave(const std::string& why) {
 
 bool SessionDesk::await_device() {
   const SupplyState device = parts_.devices.make_ready();
-  if (device == SupplyState::ready) return true;
+  if (device == SupplyState::ready) return settle_stop();
   const bool pauses =
       session_.accepts(SessionInput::pause) && session_.phase() != SessionPhase::opened;
   if (pauses) session_.pause(now(), "waiting for the device");
-  enter("waiting for the device");
-  if (!wait_for_device(device)) return false;
+  status_.needs_consent = true;
+  enter(is_stopped_ ? kStopped : "waiting for the device");
+  const bool is_ready = wait_for_device(device);
+  status_.needs_consent = false;
+  if (!is_ready) return false;
+  is_stopped_ = false;
   if (session_.phase() == SessionPhase::paused) session_.resume(now());
   return true;
+}
+
+bool SessionDesk::settle_stop() {
+  if (!is_stopped_) return true;
+  enter(kStopped);
+  if (!attend(NoticeStep{NoticeStep::What::stopped, session_.presentations_begun()})) return false;
+  is_stopped_ = false;
+  return true;
+}
+
+Step SessionDesk::waiting_page() const {
+  if (!is_stopped_) return PauseStep{};
+  return NoticeStep{NoticeStep::What::stopped, session_.presentations_begun(), false};
 }
 
 bool SessionDesk::wait_for_device(SupplyState device) {
   while (device == SupplyState::not_yet) {
     if (!obey()) return false;
+    static_cast<void>(parts_.participant.attend(waiting_page()));
     show_now_and_then();
     breathe();
     device = parts_.devices.make_ready();

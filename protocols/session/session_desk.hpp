@@ -30,7 +30,10 @@ class SessionDesk {
   [[nodiscard]] Time when(const StepReply& reply);
 
   /// Shows the experimenter that another stage has begun.
-  void enter(const std::string& stage, bool practice = false);
+  void enter(const std::string& stage);
+  /// The same in practice.
+  /// \param presentation  of the round, from 1; 0: none yet
+  void enter_practice(const std::string& stage, int presentation, int of);
   /// Shows a step until there is a reply, and lets its time pass.
   /// \return empty if the step was broken off: the session was stopped or left, or the current
   ///   presentation was interrupted
@@ -45,7 +48,8 @@ class SessionDesk {
   /// Obeys the experimenter's requests.
   /// \return whether the current step goes on
   [[nodiscard]] bool obey();
-  /// Waits until forces may be sent. Pauses the session meanwhile if possible.
+  /// Waits until forces may be sent, and after a comfort stop until the participant goes on or the
+  /// experimenter consents. Pauses the session meanwhile if the device is not ready.
   /// \return whether forces may be sent
   [[nodiscard]] bool await_device();
 
@@ -74,6 +78,11 @@ class SessionDesk {
   [[nodiscard]] bool obey_abort(const Request& request);
   [[nodiscard]] bool leave(const std::string& why);
   [[nodiscard]] bool wait_for_device(SupplyState device);
+  /// What the participant sees while the device is not ready.
+  [[nodiscard]] Step waiting_page() const;
+  /// Shows the participant a page about a comfort stop until they go on.
+  /// \return whether they do; at once if there was none
+  [[nodiscard]] bool settle_stop();
   [[nodiscard]] std::string count_interruption(const std::string& words);
   void show();
   void show_now_and_then();
@@ -86,6 +95,9 @@ class SessionDesk {
   SessionStatus status_;
   std::deque<Request> postponed_;
   std::optional<std::string> reason_;  ///< of an interruption that the experimenter asked for
+  bool is_stopped_ = false;            ///< a comfort stop is not settled yet
+  bool is_participants_stop_ = false;  ///< and not the experimenter's
+  bool announces_ = false;             ///< the next presentation is announced
   std::chrono::steady_clock::time_point shown_{};
 };
 

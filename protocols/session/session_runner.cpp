@@ -55,10 +55,17 @@ class TrialRun {
 
 void TrialRun::run() {
   of_ = session_.presentations_begun() + session_.presentations_left();
+  time_is_up_ = false;
   desk_.enter("ready");
   if (!desk_.attend(ReadyStep{session_.presentations_begun() + 1, of_, false})) return;
   const engine::RenderingModel& presented = model();
   if (explore(presented)) answer(presented);
+  const bool is_lost =
+      time_is_up_ && parts_.key.study.trials.on_timeout == design::OnTimeout::no_response;
+  if (!is_lost || !desk_.goes_on()) return;
+  desk_.enter("time is up");
+  static_cast<void>(
+      desk_.attend(NoticeStep{NoticeStep::What::time_is_up, session_.presentations_begun()}));
 }
 
 const engine::RenderingModel& TrialRun::model() const {

@@ -160,8 +160,8 @@ class PracticeRun {
   /// \return empty if it was interrupted; to be repeated if the session goes on
   [[nodiscard]] std::optional<store::PracticeBody> present(const PracticeProgress& at, int position,
                                                            const engine::RenderingModel& model);
-  /// \return whether it ended without an interruption
-  [[nodiscard]] bool explore(const engine::RenderingModel& model);
+  /// \return how it ended; empty if it was interrupted
+  [[nodiscard]] std::optional<device::ServoEnd> explore(const engine::RenderingModel& model);
 
   SessionDesk& desk_;
   const PracticeTextures& textures_;
@@ -186,7 +186,7 @@ bool PracticeRun::run() {
 bool PracticeRun::run_round(int round) {
   const PracticeRound shown = textures_.round(round);
   desk_.parts().participant.see_pictures(shown.labels);
-  desk_.enter("practice", true);
+  desk_.enter_practice("practice", 0, a_round_);
   if (!desk_.attend(PracticeStep{round})) return desk_.goes_on();
   const std::vector<int>& order = shown.order;
   for (PracticeProgress at = progress(); at.round == round && !at.passed; at = progress()) {
@@ -200,7 +200,7 @@ bool PracticeRun::run_round(int round) {
     if (!desk_.goes_on()) return false;
     if (!done) continue;
     desk_.session().practise(desk_.now(), *done);
-    desk_.enter("practice", true);
+    desk_.enter_practice("feedback", done->presentation, a_round_);
     if (!desk_.attend(FeedbackStep{*done->position, position}) && !desk_.goes_on()) return false;
   }
   return true;
@@ -209,24 +209,27 @@ bool PracticeRun::run_round(int round) {
 std::optional<store::PracticeBody> PracticeRun::present(const PracticeProgress& at, int position,
                                                         const engine::RenderingModel& model) {
   const int number = at.done + 1;
+  desk_.enter_practice("ready", number, a_round_);
   if (!desk_.attend(ReadyStep{number, a_round_, true})) return std::nullopt;
-  if (!explore(model)) return std::nullopt;
-  desk_.enter("answering", true);
+  desk_.enter_practice("exploring", number, a_round_);
+  const std::optional<device::ServoEnd> end = explore(model);
+  if (!end) return std::nullopt;
+  desk_.enter_practice("answering", number, a_round_);
   const std::optional<StepReply> reply =
       desk_.attend(AnswerStep{.trial = number,
                               .of = a_round_,
                               .practice = true,
+                              .time_is_up = *end == device::ServoEnd::time_limit,
                               .sight = desk_.parts().key.study.session.sight});
   if (!reply) return std::nullopt;
   return store::PracticeBody{at.round, number, reply->position, reply->position == position};
 }
 
-bool PracticeRun::explore(const engine::RenderingModel& model) {
-  desk_.enter("exploring", true);
+std::optional<device::ServoEnd> PracticeRun::explore(const engine::RenderingModel& model) {
   const Exploration done = desk_.explore(model, textures_.plane, desk_.servo_options(), trace_);
-  if (!is_interrupted(done.servo)) return true;
+  if (!is_interrupted(done.servo)) return done.servo.end;
   desk_.session().note(desk_.now(), "practice interrupted: " + desk_.note_interruption(done.servo));
-  return false;
+  return std::nullopt;
 }
 
 /// \return whether the session goes on
@@ -234,7 +237,11 @@ bool practise(SessionDesk& desk) {
   const PracticeTextures* textures = desk.parts().practice;
   const bool wanted = textures != nullptr && desk.parts().key.study.trials.practice > 0;
   if (!wanted || desk.session().presentations_begun() > 0) return true;
-  return PracticeRun(desk, *textures).run();
+  const std::size_t before = desk.session().remarks().practice.size();
+  if (!PracticeRun(desk, *textures).run()) return false;
+  if (desk.session().remarks().practice.size() == before) return true;  // it was over already
+  desk.enter("practice is over");
+  return insist(desk, NoticeStep{NoticeStep::What::practice_over}).has_value();
 }
 
 void show_pictures(SessionDesk& desk) {

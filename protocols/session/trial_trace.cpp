@@ -17,7 +17,8 @@ struct ContactSums {
   double force_squares = 0.0;
 };
 
-ContactSums sums_of(const store::Trace& trace, double max_force_n, const ValidityRule& rule) {
+ContactSums sums_of(const store::Trace& trace, double max_force_n,
+                    const design::ValidityRule& rule) {
   const auto squared = [](double value) { return value * value; };
   const double saturation = squared(0.999 * max_force_n);
   ContactSums sums;
@@ -42,7 +43,7 @@ ContactSums sums_of(const store::Trace& trace, double max_force_n, const Validit
 
 /// What the hand did at the plane. No texture's force is used but the one across the plane, which
 /// on average is the hand's own push.
-store::HandWindows hand_windows(const store::Trace& trace, const ValidityRule& rule) {
+store::HandWindows hand_windows(const store::Trace& trace, const design::ValidityRule& rule) {
   double samples = 0.0;
   double path_mm = 0.0;
   double normal_n = 0.0;
@@ -68,7 +69,7 @@ store::HandWindows hand_windows(const store::Trace& trace, const ValidityRule& r
   return {.contact = time_s >= rule.least_contact_s,
           .path = path_mm >= rule.least_path_mm,
           .force = is_within(normal_n / samples, rule.least_median_n, rule.largest_median_n),
-          .speed = is_within(path_mm / time_s, kSlowestMmS, kFastestMmS)};
+          .speed = is_within(path_mm / time_s, design::kSlowestMmS, design::kFastestMmS)};
 }
 
 double exploring_s(const store::Trace& trace) {
@@ -99,7 +100,8 @@ store::ServoHealth joined(const store::ServoHealth& one, const store::ServoHealt
 
 }  // namespace
 
-TrialFindings findings_of(const store::Trace& trace, double max_force_n, const ValidityRule& rule) {
+TrialFindings findings_of(const store::Trace& trace, double max_force_n,
+                          const design::ValidityRule& rule) {
   const ContactSums sums = sums_of(trace, max_force_n, rule);
   store::TrialMeasures measures = measures_of(sums, trace.rate_hz);
   // The median is within its bounds if at most half of the samples are beyond each: no sorting.
@@ -158,7 +160,7 @@ store::TraceBody TrialTrace::body(int trial) const {
 }
 
 JudgedEvidence TrialTrace::judged(const Session& session, int trial) const {
-  TrialFindings findings = findings_of(trace_, force_limit_n_);
+  TrialFindings findings = findings_of(trace_, force_limit_n_, session.options().validity);
   if (held_in_contact_ > 0) findings.measures.within_limits = false;
   store::TraceBody body = this->body(trial);
   body.valid = findings.long_enough;

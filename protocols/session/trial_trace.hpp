@@ -14,33 +14,16 @@
 
 namespace touchtrial::session {
 
-/// The validity rule, fixed before outcomes are seen. Forces differ between textures, and so do the
-/// path and the contact that forces bend. Whether these are within their limits is therefore known
-/// only after unblinding; whether the exploration was long enough is stored in clear, and so is
-/// what the hand did by itself (store::HandWindows).
-struct ValidityRule {
-  double least_exploring_s = 5.0;  ///< from landing to the last sample
-  double least_contact_s = 5.0;
-  double least_path_mm = 300.0;   ///< in contact
-  double least_median_n = 0.2;    ///< of the norm of the force in contact
-  double largest_median_n = 2.0;  ///< of the same
-  double saturated_share = 0.01;  ///< of the samples in contact; exclusive
-};
-
-/// The speeds that the instructions ask for, mm/s. Source: docs/participant-window.md.
-inline constexpr double kSlowestMmS = 50.0;
-inline constexpr double kFastestMmS = 150.0;
-
 struct TrialFindings {
   store::TrialMeasures measures;
   /// Follows from the number of samples and the time of landing, which forces do not bend. In
   /// clear.
   bool long_enough = false;
-  /// By the rule's windows and the speeds above, but of what the hand did while it was at the
-  /// plane, at most kLandingHeightMm above it: for how long, how far along the plane, the mean
-  /// force across it, and the mean speed. None depends on the texture as long as this does not hold
-  /// the hand back: over a second the hand meets the force with which it pushes, whatever the
-  /// relief, the lateral force or the force limit. In clear. Source:
+  /// By the rule's windows and the speeds of the instructions, but of what the hand did while it
+  /// was at the plane, at most kLandingHeightMm above it: for how long, how far along the plane,
+  /// the mean force across it, and the mean speed. None depends on the texture as long as this does
+  /// not hold the hand back: over a second the hand meets the force with which it pushes, whatever
+  /// the relief, the lateral force or the force limit. In clear. Source:
   /// docs/decisions/0054-what-a-trial-shows.md.
   store::HandWindows hand{};
   bool saturated = false;  ///< by the rule's share; sealed
@@ -54,7 +37,7 @@ struct TrialFindings {
 /// kLandingHeightMm.
 /// \param max_force_n  limit of the norm of the force, > 0
 [[nodiscard]] TrialFindings findings_of(const store::Trace& trace, double max_force_n,
-                                        const ValidityRule& rule = {});
+                                        const design::ValidityRule& rule = {});
 
 /// Evidence, and whether the trial was valid.
 struct JudgedEvidence {

@@ -6,7 +6,7 @@
 #include "engine/perception/felt_classifier.hpp"
 #include "engine/perception/felt_features.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
-#include "protocols/simulation/prompt_participant.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
 #include "protocols/simulation/subject_model.hpp"
 
 #include <cstdint>

@@ -5,13 +5,46 @@
 #include "device/simulated/simulated_hand.hpp"
 #include "engine/perception/felt_features.hpp"
 #include "engine/perception/texture_sense.hpp"
-#include "protocols/simulation/prompt_participant.hpp"
+#include "protocols/session/participant.hpp"
 #include "protocols/simulation/subject_model.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
+#include <variant>
 
 namespace touchtrial::simulation {
+
+/// A choice, and the time that it took after exploring.
+struct ParticipantAnswer {
+  int position = 0;  ///< index of the picture, from 0
+  std::chrono::nanoseconds thought{};
+};
+
+/// Leaves every question of a questionnaire out, and gives the lowest confidence. Subclasses
+/// explore and choose.
+class PromptParticipant : public session::Participant {
+ public:
+  [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) final {
+    session::StepReply reply;
+    if (const auto* const asked = std::get_if<session::AnswerStep>(&step)) {
+      const ParticipantAnswer given = answer();
+      reply.position = given.position;
+      reply.took = given.thought;
+      if (asked->confidence_levels > 0) reply.confidence = 1;
+    }
+    if (const auto* const asked = std::get_if<session::QuestionStep>(&step)) {
+      reply.answers.resize(asked->questionnaire->questions.size());
+    }
+    if (std::holds_alternative<session::BreakStep>(step)) rest();
+    return reply;
+  }
+
+  /// The choice after exploring.
+  [[nodiscard]] virtual ParticipantAnswer answer() = 0;
+  /// Called at each break.
+  virtual void rest() {}
+};
 
 /// In each trial, strokes the plane on a new path and answers from what was felt. Everything random
 /// is a function of the seed, the participant's number, and the number of earlier trials.
@@ -21,6 +54,15 @@ class SimulatedParticipant : public PromptParticipant {
   /// \param number  from 1
   SimulatedParticipant(const SubjectModel& subject, std::uint64_t seed, int number)
       : subject_(subject), seed_(seed), number_(number) {}
+
+  /// Comes to a later visit, where paths and noise are others than at those before.
+  /// \param visit  from 1
+  void come_to(int visit) noexcept { trials_begun_ = trials_before(visit); }
+  /// How many trials a visit counts as coming after: more than any session has.
+  [[nodiscard]] static std::uint64_t trials_before(int visit) noexcept {
+    constexpr std::uint64_t kTrialsOfVisit = 1'000'000;
+    return static_cast<std::uint64_t>(visit - 1) * kTrialsOfVisit;
+  }
 
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
   void feel(const device::ServoSample& sample) noexcept override;

@@ -34,14 +34,16 @@ struct Setting {
   Digest seal;
 };
 
-/// A session and its participant.
+/// A session, its participant and its visit.
 struct Place {
   int session = 0;
   int number = 0;  ///< participant's, and enrolment number
+  int visit = 1;
 };
 
 /// A session on its way to the database.
 struct FinishedSession {
+  int visit = 1;
   store::BufferedEvents events;
   store::NewKeys keys;
   session::SessionTally tally;
@@ -54,10 +56,14 @@ std::string participant_id(int number) {
   return "P" + digits;
 }
 
-store::SessionOpening opening_of(const Setting& setting, int number) {
+store::SessionOpening opening_of(const Setting& setting, const Place& place) {
   store::SessionOpening opening;
-  opening.participant = participant_id(number);
-  opening.enrolment = number;
+  opening.participant = participant_id(place.number);
+  opening.enrolment = place.number;
+  opening.visit = place.visit;
+  const design::GroupPlan& groups = setting.key.study.groups;
+  const auto group = setting.key.group_of(place.number, design::Draws::rehearsal);
+  if (group && groups.open) opening.group = groups.labels[static_cast<std::size_t>(*group)];
   opening.study_id = setting.key.study_id;
   opening.seal = setting.seal;
   opening.device = "simulated";
@@ -66,23 +72,25 @@ store::SessionOpening opening_of(const Setting& setting, int number) {
 }
 
 /// A function of the simulation's seed, so that it can be repeated, and of the study's secret.
-SecretKey participant_key(const Setting& setting, int number) {
+SecretKey participant_key(const Setting& setting, const Place& place) {
   SeededEntropy entropy(setting.seed);
-  const SecretKey drawn = entropy.secret("participant key of " + participant_id(number));
+  const SecretKey drawn =
+      entropy.secret("participant key of " + participant_id(place.number) +
+                     (place.visit > 1 ? ", visit " + std::to_string(place.visit) : ""));
   return keyed_hash(setting.key.master, ByteView(drawn));
 }
 
 FinishedSession run_session(const Setting& setting, const Place& place) {
-  FinishedSession finished;
-  const SecretKey key = participant_key(setting, place.number);
+  FinishedSession finished{.visit = place.visit, .events = {}, .keys = {}, .tally = {}};
+  const SecretKey key = participant_key(setting, place);
   const design::Schedule schedule = design::make_schedule(
-      setting.key.study, setting.key.draw_of(place.number, design::Draws::rehearsal));
+      setting.key.study, setting.key.draw_of(place.number, design::Draws::rehearsal, place.visit));
   session::Session session(schedule, setting.key.study.trials,
                            store::SessionRecorder(place.session, key, finished.events));
-  session.open({}, opening_of(setting, place.number),
-               design::schedule_to_json(schedule, setting.key));
+  session.open({}, opening_of(setting, place), design::schedule_to_json(schedule, setting.key));
   const std::unique_ptr<SimulatedParticipant> participant =
       setting.population.participant(place.number);
+  participant->come_to(place.visit);
   finished.tally =
       session::run_session_in_virtual_time(session, setting.key, setting.source, *participant);
   finished.keys = store::wrap_participant_key(setting.key.investigator_box, place.session, key);
@@ -92,28 +100,37 @@ FinishedSession run_session(const Setting& setting, const Place& place) {
 /// Stores sessions in the order in which they arrive, and counts them and their presentations.
 class Collector {
  public:
-  Collector(store::StudyStore& store, const design::Progress& progress, int participants)
-      : store_(store), progress_(progress), participants_(participants) {
+  /// \param sessions  how many will come
+  Collector(store::StudyStore& store, const design::Progress& progress,
+            const design::VisitPlan& visits, int sessions)
+      : store_(store), progress_(progress), visits_(visits), sessions_(sessions) {
     const std::vector<store::Event> file_chain = store.events(0);
     if (!file_chain.empty()) at_ = file_chain.back().at;
   }
 
   void take(const FinishedSession& session) {
-    // Virtual sessions follow one another without a pause.
+    // Virtual sessions follow one another without a pause, but for the days between visits.
+    if (session.visit > visit_) {
+      using Days = std::chrono::duration<double, std::ratio<86'400>>;
+      at_ += std::chrono::ceil<std::chrono::nanoseconds>(Days(visits_.least_days));
+    }
+    visit_ = session.visit;
     at_ += session.tally.duration;
     store_.add_session(session.events, session.keys, at_);
     ++report_.sessions;
     report_.presentations += session.tally.presentations;
     report_.invalid_trials += session.tally.invalid_trials;
     report_.ticks += session.tally.ticks;
-    if (progress_) progress_(report_.sessions, participants_);
+    if (progress_) progress_(report_.sessions, sessions_);
   }
   [[nodiscard]] const SimulationReport& report() const noexcept { return report_; }
 
  private:
   store::StudyStore& store_;
   const design::Progress& progress_;
-  int participants_;
+  const design::VisitPlan& visits_;
+  int sessions_;
+  int visit_ = 1;
   std::chrono::nanoseconds at_{};
   SimulationReport report_;
 };
@@ -125,17 +142,19 @@ void check(const SimulationOptions& options) {
   }
 }
 
-/// Runs sessions in parallel and stores them in the order of the participants.
+/// Runs sessions in parallel and stores them in the order of the visits and, of each visit, of the
+/// participants.
 void run_sessions(const Setting& setting, const SimulationOptions& options, int first_session,
-                  Collector& collector) {
+                  int sessions, Collector& collector) {
   int started = 0;
   const auto next = [&](tbb::flow_control& flow) {
-    if (started == options.participants) flow.stop();
+    if (started == sessions) flow.stop();
     return started++;
   };
   using Finished = std::shared_ptr<const FinishedSession>;
   const auto run = [&](int i) -> Finished {
-    const Place place{first_session + i, options.first_participant + i};
+    const Place place{first_session + i, options.first_participant + i % options.participants,
+                      1 + i / options.participants};
     return std::make_shared<const FinishedSession>(run_session(setting, place));
   };
   const auto store = [&](const Finished& session) { collector.take(*session); };
@@ -160,8 +179,9 @@ SimulationReport simulate_study(const design::StudyKey& key, const engine::Pack&
   const std::unique_ptr<const Population> population =
       population_of({key, source, subject, options.seed, options.jobs});
   const Setting setting{key, source, *population, options.seed, key.seal};
-  Collector collector(store, progress, options.participants);
-  run_sessions(setting, options, store.next_session(), collector);
+  const int sessions = options.participants * key.study.visits.count;
+  Collector collector(store, progress, key.study.visits, sessions);
+  run_sessions(setting, options, store.next_session(), sessions, collector);
   return collector.report();
 }
 

@@ -148,7 +148,7 @@ std::string subject_model_json(const SubjectModel& model) {
                         {"slowest_mm_s", model.slowest_mm_s},
                         {"fastest_mm_s", model.fastest_mm_s},
                         {"training_passes", model.training_passes}};
-  return subject.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(subject);
 }
 
 }  // namespace touchtrial::simulation

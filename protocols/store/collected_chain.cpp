@@ -38,9 +38,10 @@ class Feed {
   [[nodiscard]] const std::map<int, SessionOnFile>& sessions() const { return file_.sessions(); }
 
   /// The feed with the lowest rank comes first.
-  [[nodiscard]] std::tuple<int, nanoseconds, int> rank() const {
-    const int enrolment = session().opened.enrolment;
-    return {simulated_ ? enrolment : 0, head().at, simulated_ ? 0 : enrolment};
+  [[nodiscard]] std::tuple<int, int, nanoseconds, int> rank() const {
+    const SessionOpenedBody& opened = session().opened;
+    return {simulated_ ? opened.visit : 0, simulated_ ? opened.enrolment : 0, head().at,
+            simulated_ ? 0 : opened.enrolment};
   }
   void advance() {
     ++next_;
@@ -98,26 +99,27 @@ void require_one_study(std::span<const StationChain> stations) {
   }
 }
 
-/// Participant ids and enrolment numbers of some sessions.
+/// Participant ids and enrolment numbers of some sessions, each with its visit.
 class Places {
  public:
   void insert(const SessionOpenedBody& session) {
-    participants_.insert(session.participant);
-    enrolments_.insert(session.enrolment);
+    participants_.emplace(session.participant, session.visit);
+    enrolments_.emplace(session.enrolment, session.visit);
   }
   /// Of several sessions with the same place, removes one.
   void remove(const SessionOpenedBody& session) {
-    participants_.extract(session.participant);
-    enrolments_.extract(session.enrolment);
+    participants_.extract({session.participant, session.visit});
+    enrolments_.extract({session.enrolment, session.visit});
   }
   /// Whether one of the sessions has the same participant id or enrolment number.
   [[nodiscard]] bool has(const SessionOpenedBody& session) const {
-    return participants_.contains(session.participant) || enrolments_.contains(session.enrolment);
+    return participants_.contains({session.participant, session.visit}) ||
+           enrolments_.contains({session.enrolment, session.visit});
   }
 
  private:
-  std::multiset<std::string> participants_;
-  std::multiset<int> enrolments_;
+  std::multiset<std::pair<std::string, int>> participants_;
+  std::multiset<std::pair<int, int>> enrolments_;
 };
 
 /// Makes the collected chain, event by event.
@@ -199,17 +201,19 @@ class Collection {
     return feed_of(place).sessions().at(place.own_session);
   }
 
-  /// A participant id and an enrolment number belong to one session that nobody replaced. Replaced
-  /// sessions take no place, whenever they were replaced.
+  /// A participant id and an enrolment number belong to one session of a visit that nobody
+  /// replaced. Replaced sessions take no place, whenever they were replaced.
   void refuse_taken_twice() const {
-    std::map<std::string, SessionPlace> participants;
-    std::map<int, SessionPlace> enrolments;
+    std::map<std::pair<std::string, int>, SessionPlace> participants;
+    std::map<std::pair<int, int>, SessionPlace> enrolments;
     for (const SessionPlace& place : chain_.sessions) {
       if (session_at(place).replaced_at) continue;
       const SessionOpenedBody& opened = session_at(place).opened;
-      const auto [participant, is_new] = participants.emplace(opened.participant, place);
+      const auto [participant, is_new] =
+          participants.emplace(std::pair(opened.participant, opened.visit), place);
       if (!is_new) refuse_taken(participant->second, place);
-      const auto [enrolment, is_free] = enrolments.emplace(opened.enrolment, place);
+      const auto [enrolment, is_free] =
+          enrolments.emplace(std::pair(opened.enrolment, opened.visit), place);
       if (!is_free) refuse_taken(enrolment->second, place);
     }
   }
@@ -317,6 +321,7 @@ class Collection {
       const Event* const look = last_of(feed.station(), EventKind::study_unblinded);
       if (look == nullptr) return;
       const StudyState state = state_of_chain(feed.station().events);
+      if (!state.unblinded) return;
       at = std::max(at, look->at);
       interim = interim || state.interim.has_value();
       if (std::ranges::find(reasons, state.unblinding_reason) == reasons.end()) {

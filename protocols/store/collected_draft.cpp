@@ -62,7 +62,7 @@ struct CollectedDraft::Impl {
   /// Sessions that are seen and sessions that are felt are never pooled.
   void check_kind(const Event& opened) {
     const SessionOpening opening = body_of(opened, opening_from_json);
-    const bool seen = opening.station && opening.station->visual;
+    const bool seen = opening.is_visual();
     if (visual.value_or(seen) != seen) {
       throw StoreError("session " + std::to_string(opened.own_session()) + " is " +
                        (seen ? "seen on a screen, and others are felt"

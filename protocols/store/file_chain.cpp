@@ -3,6 +3,7 @@
 #include "protocols/store/damage.hpp"
 #include "protocols/store/payload_json.hpp"
 
+#include <algorithm>
 #include <string>
 
 namespace touchtrial::store {
@@ -30,10 +31,11 @@ StudyState state_of_chain(std::span<const Event> chain) {
       }
       continue;
     }
-    state.unblinded = true;
+    state.unblinded = !body.question_alone;
     state.unblinding_reason = body.reason;
-    state.interim = body.interim ? std::optional(ended) : std::nullopt;
-    if (body.interim && body.sessions) {
+    state.interim = body.interim && state.unblinded ? std::optional(ended) : std::nullopt;
+    state.question = body.question_alone ? std::optional(ended) : std::nullopt;
+    if (state.interim && body.sessions) {
       state.interim = std::set<int>(body.sessions->begin(), body.sessions->end());
     }
   }
@@ -95,12 +97,26 @@ void FileChain::open_session(const Event& event) {
 }
 
 void FileChain::take_place(const Event& event, const SessionOpenedBody& body) {
-  if (!participants_.insert(body.participant).second) {
+  if (!participants_.emplace(body.participant, body.visit).second) {
     throw EventFault(event, "participant " + body.participant + " has a session already");
   }
-  if (!enrolments_.insert(body.enrolment).second) {
+  if (!enrolments_.emplace(body.enrolment, body.visit).second) {
     throw EventFault(event, "enrolment " + std::to_string(body.enrolment) + " is taken already");
   }
+  if (body.visit > 1) require_visit_before(event, body);
+}
+
+/// A later visit follows a complete one of the same participant.
+void FileChain::require_visit_before(const Event& event, const SessionOpenedBody& body) const {
+  const bool found = std::ranges::any_of(sessions_, [&](const auto& entry) {
+    const SessionOnFile& one = entry.second;
+    return one.opened.participant == body.participant && one.opened.visit == body.visit - 1 &&
+           one.opened.enrolment == body.enrolment && one.closed && one.closed->complete &&
+           !one.replaced_at;
+  });
+  if (found) return;
+  throw EventFault(event, "visit " + std::to_string(body.visit) + " of participant " +
+                              body.participant + " follows no complete visit");
 }
 
 void FileChain::close_session(const Event& event) {
@@ -156,8 +172,8 @@ void FileChain::replace(const Event& event) {
   }
   session.replaced_by = body.by;
   session.replaced_at = event.sequence;
-  participants_.erase(session.opened.participant);
-  enrolments_.erase(session.opened.enrolment);
+  participants_.erase({session.opened.participant, session.opened.visit});
+  enrolments_.erase({session.opened.enrolment, session.opened.visit});
 }
 
 /// The session that an event is about.
@@ -229,8 +245,8 @@ void SessionCheck::check_opening(const Event& event) const {
     throw EventFault(session_, 0, "the session belongs to another study");
   }
   if (opening.participant != on_file_.opened.participant ||
-      opening.enrolment != on_file_.opened.enrolment) {
-    throw EventFault(session_, 0, "participant or enrolment differs from the file's chain");
+      opening.enrolment != on_file_.opened.enrolment || opening.visit != on_file_.opened.visit) {
+    throw EventFault(session_, 0, "participant, enrolment or visit differs from the file's chain");
   }
 }
 

@@ -13,6 +13,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::store {
@@ -33,13 +34,17 @@ struct StudyState {
   std::string unblinding_reason;  ///< of the last unblinding of the study
   /// If the last unblinding was an interim look: the sessions that had ended before it.
   std::optional<std::set<int>> interim;
+  /// If the last unblinding showed the registered question alone: the sessions that had ended
+  /// before it. The study then counts as blind, but for the report of that question.
+  std::optional<std::set<int>> question;
 
   std::vector<PersonLook> looks;  ///< at one participant each, in order
   std::set<int> looked_at;        ///< the sessions that they show
 
-  /// Whether the study's results have a session. An interim look shows nothing of sessions that end
-  /// after it.
+  /// Whether the study's results, or the answer to its registered question, have a session. An
+  /// interim look shows nothing of sessions that end after it.
   [[nodiscard]] bool reports(int session) const {
+    if (question) return question->contains(session);
     return unblinded && (!interim || interim->contains(session));
   }
   /// Whether a session's outcomes may be shown, if only to look at that participant.
@@ -78,7 +83,7 @@ struct SessionOnFile {
   }
 };
 
-/// When participant ids and enrolment numbers must be unique.
+/// When participant ids and enrolment numbers must be unique, each with its visit.
 enum class UniquePlaces {
   always,     ///< at every moment, among sessions not yet replaced: a station's own file
   in_the_end  ///< among sessions that nobody ever replaced, which collected_chain ensures
@@ -106,13 +111,14 @@ class FileChain {
   void replace(const Event& event);
   [[nodiscard]] SessionOnFile& known(const Event& event);
   void take_place(const Event& event, const SessionOpenedBody& body);
+  void require_visit_before(const Event& event, const SessionOpenedBody& body) const;
 
   UniquePlaces unique_;
   std::optional<StudyCommitment> commitment_;
   std::map<int, SessionOnFile> sessions_;
-  /// Only of sessions that nobody has replaced.
-  std::set<std::string> participants_;
-  std::set<int> enrolments_;
+  /// With the visit; only of sessions that nobody has replaced.
+  std::set<std::pair<std::string, int>> participants_;
+  std::set<std::pair<int, int>> enrolments_;
   std::vector<Event> seen_by_;  ///< what decides whose outcomes were seen: ends and looks
   bool closed_ = false;
 };

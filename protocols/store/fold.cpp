@@ -28,7 +28,8 @@ void open_session(DerivedRows& rows, const Event& event) {
                                   .device = opening.device,
                                   .replaced_by = {},
                                   .own_session = event.own_session(),
-                                  .station = 0};
+                                  .station = 0,
+                                  .visit = opening.visit};
 }
 
 SessionRow& open_row(DerivedRows& rows, const Event& event) {

@@ -6,16 +6,24 @@
 #include "protocols/store/event.hpp"
 #include "protocols/store/payload.hpp"
 
+#include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace touchtrial::store {
 
 enum class SessionState { open, completed, stopped };
+/// As they are written, in the order of the enumerators.
+inline constexpr std::array<std::string_view, 3> kSessionStates = {"open", "completed", "stopped"};
+[[nodiscard]] constexpr std::string_view name_of(SessionState state) {
+  return kSessionStates[static_cast<std::size_t>(state)];
+}
 
 struct SessionRow {
   int session = 0;  ///< from 1
@@ -35,6 +43,7 @@ struct SessionRow {
   /// sealed boxes are bound to it.
   int own_session = 0;
   int station = 0;  ///< the station that it was collected from, from 1; 0: recorded in this file
+  int visit = 1;    ///< of the participant, from 1
 
   /// Whether it may still go on, as far as the session itself is concerned.
   [[nodiscard]] bool may_go_on() const noexcept {
@@ -46,6 +55,11 @@ struct SessionRow {
 /// How a trial ended. `voided`: its block was restarted, so that this trial no longer counts,
 /// whatever its state was, and is never presented again.
 enum class TrialState { presented, answered, timed_out, interrupted, voided };
+inline constexpr std::array<std::string_view, 5> kTrialStates = {
+    "presented", "answered", "timed-out", "interrupted", "voided"};
+[[nodiscard]] constexpr std::string_view name_of(TrialState state) {
+  return kTrialStates[static_cast<std::size_t>(state)];
+}
 
 struct TrialRow {
   int session = 0;

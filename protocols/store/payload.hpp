@@ -48,6 +48,7 @@ struct SessionOpenedBody {
   int session = 0;
   std::string participant;
   int enrolment = 0;
+  int visit = 1;        ///< of the participant, from 1
   Digest first{};       ///< hash of the session's `opened`
   Digest key{};         ///< SHA-256 of the wrapped participant key
   Digest safety_key{};  ///< SHA-256 of the wrapped safety key
@@ -115,6 +116,7 @@ struct LossBody {
 struct UnblindingBody {
   std::string reason;
   bool interim = false;
+  bool question_alone = false;  ///< of an interim look: shows nothing but the registered question
   /// In a collected study: the sessions that the stations' looks show.
   std::optional<std::vector<int>> sessions{};
   std::string participant{};  ///< whose outcomes alone are looked at; empty: everybody's
@@ -138,6 +140,8 @@ struct StationRecord {
 struct SessionOpening {
   std::string participant;  ///< 1 to 32 of [0-9A-Za-z+-_]; unique in a study
   int enrolment = 0;        ///< from 1; decides the schedule; unique in a study
+  int visit = 1;            ///< of the participant, from 1
+  std::string group{};      ///< the participant's, if the study's groups are open; else empty
   std::string study_id;
   Digest seal{};
   std::string device;         ///< driver name
@@ -146,6 +150,8 @@ struct SessionOpening {
   bool simulated = false;
   bool pilot = false;
   std::optional<StationRecord> station{};  ///< real time only
+
+  [[nodiscard]] bool is_visual() const noexcept { return station && station->visual; }
 };
 
 // Of some bodies only a part is in clear (split_body). What their members are in an event that is

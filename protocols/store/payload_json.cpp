@@ -32,6 +32,15 @@ Value member_of(const std::string& text, const char* key, Least... least) {
 
 }  // namespace
 
+/// Left out of a first visit.
+template <typename Io>
+void visit_member(Io& io, In<Io, int>& visit) {
+  if constexpr (std::is_same_v<Io, BodyWriter>) {
+    if (visit == 1) return;
+  }
+  io.if_any("visit", visit, 2);
+}
+
 // What each body holds: key, member, and the least value of a whole number unless it is 0.
 
 template <typename Io>
@@ -74,6 +83,8 @@ template <typename Io>
 void members(Io& io, In<Io, SessionOpening>& body) {
   io("participant", body.participant);
   io("enrolment", body.enrolment, 1);
+  visit_member(io, body.visit);
+  io.if_any("group", body.group);
   io("study_id", body.study_id);
   io("seal", body.seal);
   io("device", body.device);
@@ -194,6 +205,7 @@ void members(Io& io, In<Io, SessionOpenedBody>& body) {
   io("session", body.session, 1);
   io("participant", body.participant);
   io("enrolment", body.enrolment, 1);
+  visit_member(io, body.visit);
   io("first", body.first);
   io("key", body.key);
   io("safety_key", body.safety_key);
@@ -244,6 +256,7 @@ template <typename Io>
 void members(Io& io, In<Io, UnblindingBody>& body) {
   io("reason", body.reason);
   io("interim", body.interim);
+  io.if_any("question_alone", body.question_alone);
   io("sessions", body.sessions);
   io.if_any("participant", body.participant);
 }

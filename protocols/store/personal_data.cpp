@@ -18,7 +18,7 @@ namespace touchtrial::store {
 namespace {
 
 constexpr int kPersonalApplicationId = 0x54545250;  // "TTRP"
-constexpr int kPersonalVersion = 1;
+constexpr int kPersonalVersion = 2;
 constexpr int kPersonalBusyTimeoutMs = 2000;
 
 [[noreturn]] void refuse_personal_data(const std::filesystem::path& path, const std::string& why) {
@@ -45,17 +45,36 @@ void set_up(SQLite::Database& connection, const std::filesystem::path& path) {
   if (id == kPersonalApplicationId && version > kPersonalVersion) {
     refuse_personal_data(path, "was written by a newer Touchtrial; use that version");
   }
-  if (id != 0 || connection.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() != 0) {
+  const bool is_first_version = id == kPersonalApplicationId && version == 1;
+  if (!is_first_version &&
+      (id != 0 || connection.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() != 0)) {
     refuse_personal_data(path, "is no personal-data file of Touchtrial; move it away");
   }
   SQLite::Transaction transaction(connection);
+  if (is_first_version) connection.exec("ALTER TABLE people RENAME TO former_people");
   connection.exec(
-      "CREATE TABLE people(participant TEXT PRIMARY KEY, consent_version TEXT NOT NULL, "
-      "consented_utc TEXT NOT NULL, age INTEGER, gender TEXT NOT NULL, contact TEXT NOT NULL) "
-      "STRICT");
+      "CREATE TABLE people(participant TEXT NOT NULL, number INTEGER NOT NULL, consent_version "
+      "TEXT NOT NULL, consented_utc TEXT NOT NULL, age INTEGER, gender TEXT NOT NULL, contact TEXT "
+      "NOT NULL, PRIMARY KEY(participant, number)) STRICT");
+  if (is_first_version) {
+    connection.exec(
+        "INSERT INTO people SELECT participant, 1, consent_version, consented_utc, age, gender, "
+        "contact FROM former_people; DROP TABLE former_people");
+  }
   connection.exec("PRAGMA application_id = " + std::to_string(kPersonalApplicationId));
   connection.exec("PRAGMA user_version = " + std::to_string(kPersonalVersion));
   transaction.commit();
+}
+
+PersonalRecord record_in(SQLite::Statement& row) {
+  PersonalRecord record;
+  record.participant = row.getColumn("participant").getString();
+  record.consent_version = row.getColumn("consent_version").getString();
+  record.consented_utc = row.getColumn("consented_utc").getString();
+  if (!row.isColumnNull("age")) record.age = row.getColumn("age").getInt();
+  record.gender = row.getColumn("gender").getString();
+  record.contact = row.getColumn("contact").getString();
+  return record;
 }
 
 /// Calls `work`; errors of SQLite come out as StoreError with file and remedy.
@@ -98,7 +117,10 @@ PersonalData& PersonalData::operator=(PersonalData&&) noexcept = default;
 
 void PersonalData::put(const PersonalRecord& record) {
   translated(impl_->path, [&] {
-    SQLite::Statement query(impl_->connection, "INSERT OR REPLACE INTO people VALUES(?,?,?,?,?,?)");
+    SQLite::Statement query(
+        impl_->connection,
+        "INSERT INTO people VALUES(?1, (SELECT coalesce(max(number), 0) + 1 FROM people WHERE "
+        "participant = ?1), ?2, ?3, ?4, ?5, ?6)");
     query.bind(1, record.participant);
     query.bind(2, record.consent_version);
     query.bind(3, record.consented_utc);
@@ -110,18 +132,23 @@ void PersonalData::put(const PersonalRecord& record) {
 }
 
 std::optional<PersonalRecord> PersonalData::find(const std::string& participant) const {
-  return translated(impl_->path, [&]() -> std::optional<PersonalRecord> {
-    SQLite::Statement query(impl_->connection, "SELECT * FROM people WHERE participant = ?");
-    query.bind(1, participant);
-    if (!query.executeStep()) return std::nullopt;
-    PersonalRecord record;
-    record.participant = query.getColumn(0).getString();
-    record.consent_version = query.getColumn(1).getString();
-    record.consented_utc = query.getColumn(2).getString();
-    if (!query.isColumnNull(3)) record.age = query.getColumn(3).getInt();
-    record.gender = query.getColumn(4).getString();
-    record.contact = query.getColumn(5).getString();
-    return record;
+  std::optional<PersonalRecord> last;
+  for (PersonalRecord& record : all()) {
+    if (record.participant != participant) continue;
+    if (last && !record.age) record.age = last->age;
+    if (last && record.gender.empty()) record.gender = last->gender;
+    if (last && record.contact.empty()) record.contact = last->contact;
+    last = std::move(record);
+  }
+  return last;
+}
+
+std::vector<PersonalRecord> PersonalData::all() const {
+  return translated(impl_->path, [&] {
+    SQLite::Statement query(impl_->connection, "SELECT * FROM people ORDER BY participant, number");
+    std::vector<PersonalRecord> records;
+    while (query.executeStep()) records.push_back(record_in(query));
+    return records;
   });
 }
 

@@ -1,21 +1,24 @@
-/// \file Who the participants are, in a separate file beside the database that no export reads.
-/// Format: docs/data-dictionary.md, "Personal data".
+/// \file Who the participants are, and what they consented to, in a separate file beside the database.
+/// Exports take the versions of consent forms from it, and the rest for one person alone. Format:
+/// docs/data-dictionary.md, "Personal data".
 #pragma once
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace touchtrial::store {
 
+/// One consent, and what the participant said then.
 struct PersonalRecord {
   std::string participant;
   std::string consent_version;  ///< version of the form that was signed
-  std::string consented_utc;    ///< ISO 8601
-  std::optional<int> age;       ///< years
-  std::string gender;           ///< in their own words; may be empty
-  std::string contact;          ///< may be empty
+  std::string consented_utc{};  ///< ISO 8601
+  std::optional<int> age{};     ///< years; empty: not given then
+  std::string gender{};         ///< in their own words; empty: not given then
+  std::string contact{};        ///< empty: not given then
 
   friend bool operator==(const PersonalRecord&, const PersonalRecord&) = default;
 };
@@ -35,10 +38,14 @@ class PersonalData {
   PersonalData(PersonalData&&) noexcept;
   PersonalData& operator=(PersonalData&&) noexcept;
 
-  /// Adds a participant, or replaces the participant's record.
+  /// Adds a consent. Earlier ones of the participant stay.
   /// \throws StoreError if it cannot be written
   void put(const PersonalRecord& record);
+  /// The participant's last consent, with the age, gender and contact that were given last.
   [[nodiscard]] std::optional<PersonalRecord> find(const std::string& participant) const;
+  /// Every consent, by participant, each participant's in the order in which they were recorded.
+  [[nodiscard]] std::vector<PersonalRecord> all() const;
+  /// Removes every consent of a participant.
   /// \return whether there was such a participant
   /// \throws StoreError if it cannot be written
   bool remove(const std::string& participant);

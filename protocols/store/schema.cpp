@@ -8,7 +8,8 @@
 namespace touchtrial::store {
 namespace {
 
-constexpr std::array<Migration, kSchemaVersion - kOldestSchemaVersion> kMigrations = {};
+constexpr std::array<Migration, kSchemaVersion - kOldestSchemaVersion> kMigrations = {
+    [](SQLite::Database& database) { database.exec(add_visits_sql("INTEGER")); }};
 
 /// All others are WITHOUT ROWID, which suits small rows under keys of several columns.
 bool has_row_numbers(const TableDefinition& table) {

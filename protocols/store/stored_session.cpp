@@ -1,5 +1,6 @@
 // Sessions and participants of a StoredStudy: who is let in, goes on, ends, withdraws or is
 // replaced.
+#include "core/utc.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/rows.hpp"
 #include "protocols/store/stored_study.hpp"
@@ -12,17 +13,10 @@ namespace {
 
 constexpr std::size_t kLongestParticipant = 32;
 
-bool is_participant_id(const std::string& id) {
-  const auto allowed = [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '+' ||
-           c == '-' || c == '_';
-  };
-  return !id.empty() && id.size() <= kLongestParticipant &&
-         std::all_of(id.begin(), id.end(), allowed);
-}
-
-bool is_visual(const SessionOpening& opening) {
-  return opening.station && opening.station->visual;
+/// Whether a session goes on where the participant's last visit ended.
+bool is_next_visit(const SessionOpening& opening, const SessionRow& last) {
+  return opening.visit == last.visit + 1 && opening.enrolment == last.enrolment &&
+         last.state == SessionState::completed && !last.withdrawn;
 }
 
 bool is_closed(const Database& database) {
@@ -55,17 +49,6 @@ std::chrono::nanoseconds years_after(std::chrono::nanoseconds utc, int years) {
   return (sys_days(date) + (time - day)).time_since_epoch();
 }
 
-/// "2036-01-31"
-std::string day_of(std::chrono::nanoseconds utc) {
-  using namespace std::chrono;
-  const year_month_day date(floor<days>(sys_time<nanoseconds>(utc)));
-  const auto digits = [](unsigned number) {
-    return (number < 10 ? "0" : "") + std::to_string(number);
-  };
-  return std::to_string(int{date.year()}) + "-" + digits(unsigned{date.month()}) + "-" +
-         digits(unsigned{date.day()});
-}
-
 /// A trace comes with the event that names it, and with no other.
 void require_match(const Event& event, const SealedTrace* trace) {
   if (event.kind != EventKind::trace_stored) {
@@ -79,6 +62,15 @@ void require_match(const Event& event, const SealedTrace* trace) {
 }
 
 }  // namespace
+
+bool is_participant_id(const std::string& id) {
+  const auto allowed = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '+' ||
+           c == '-' || c == '_';
+  };
+  return !id.empty() && id.size() <= kLongestParticipant &&
+         std::all_of(id.begin(), id.end(), allowed);
+}
 
 void StoredStudy::refuse_if_over() const {
   if (stations() > 0) {
@@ -109,6 +101,7 @@ void StoredStudy::admit(const Event& opened, const SessionKeys& keys, std::chron
                  to_json(SessionOpenedBody{.session = opened.session,
                                            .participant = opening.participant,
                                            .enrolment = opening.enrolment,
+                                           .visit = opening.visit,
                                            .first = opened.hash,
                                            .key = sha256(keys.wrapped.participant),
                                            .safety_key = sha256(keys.wrapped.safety),
@@ -157,14 +150,14 @@ void StoredStudy::refuse_mixture(const SessionOpening& opening) const {
     refuse(commitment().pilot ? "is the database of a pilot; give the study's own sessions another"
                               : "is no pilot's database; give pilot sessions another");
   }
-  const bool visual = is_visual(opening);
+  const bool visual = opening.is_visual();
   if (visual && !opening.pilot) {
     refuse("device '" + opening.device +
            "' is seen on a screen and not felt, which is not blind; use it in a pilot's database, "
            "or choose a device that is felt");
   }
   const std::optional<Event> earlier = read_event(database_, 1, 0);
-  if (earlier && is_visual(body_of(*earlier, opening_from_json)) != visual) {
+  if (earlier && body_of(*earlier, opening_from_json).is_visual() != visual) {
     refuse(std::string("its sessions are ") + (visual ? "felt" : "seen on a screen") +
            ", and device '" + opening.device + "' is " + (visual ? "seen" : "felt") +
            ": they are never pooled; use another database");
@@ -174,11 +167,22 @@ void StoredStudy::refuse_mixture(const SessionOpening& opening) const {
 void StoredStudy::refuse_if_taken(const SessionOpening& opening) const {
   Query query = database_.query(
       "SELECT session, participant FROM sessions WHERE (participant = ?1 OR enrolment = ?2) "
-      "AND replaced_by IS NULL ORDER BY participant = ?1 DESC");
+      "AND replaced_by IS NULL ORDER BY participant = ?1 DESC, visit DESC");
   query.bind(opening.participant).bind(opening.enrolment);
-  if (!query.step()) return;
+  if (!query.step()) {
+    if (opening.visit == 1) return;
+    refuse("participant " + opening.participant + " has no visit before visit " +
+           std::to_string(opening.visit) + "; begin with the first");
+  }
   const std::string session = "session " + std::to_string(query.integer(0));
   if (query.text(1) == opening.participant) {
+    const SessionRow last = this->session(static_cast<int>(query.integer(0)));
+    if (is_next_visit(opening, last)) return;
+    if (opening.visit > 1) {
+      refuse("visit " + std::to_string(opening.visit) + " of participant " + opening.participant +
+             " does not follow " + session + ", which is visit " + std::to_string(last.visit) +
+             "; a visit follows the one before it, complete and with the same number");
+    }
     refuse("participant " + opening.participant + " already has " + session +
            "; give another participant id");
   }
@@ -205,7 +209,7 @@ void StoredStudy::refuse_if_promised(const SessionOpening& opening) const {
   Query query = database_.query(
       "SELECT session, replaced_by FROM sessions WHERE participant = ? ORDER BY session DESC");
   query.bind(opening.participant);
-  if (!query.step()) return;
+  if (!query.step() || query.is_null(1)) return;  // nobody, or an earlier visit
   refuse("participant " + opening.participant + " was replaced by participant " + query.text(1) +
          " (session " + std::to_string(query.integer(0)) + "); give another participant id");
 }
@@ -283,7 +287,7 @@ void StoredStudy::refuse_while_kept(int session, std::chrono::nanoseconds at) co
   if (!key.step()) refuse(whose + " is already erased");
   const auto until = years_after(opening_on_file(session).at, commitment().safety_record_years);
   if (at >= until) return;
-  refuse(whose + " is kept until " + day_of(until) + ", for " +
+  refuse(whose + " is kept until " + utc_day(until) + ", for " +
          std::to_string(commitment().safety_record_years) +
          " years, as the study says; come back then");
 }
@@ -293,6 +297,16 @@ void StoredStudy::replace(const ReplacementBody& replacement, std::chrono::nanos
   const SessionRow row = session(replacement.session);
   check_replaced(row);
   check_replacement(row, replacement.by);
+  if (replacement.by != row.participant) {
+    for (const SessionRow& other : read_sessions(database_)) {
+      const bool is_visit = other.participant == row.participant && other.session != row.session &&
+                            other.replaced_by.empty();
+      if (!is_visit) continue;
+      ReplacementBody body = replacement;
+      body.session = other.session;
+      append_about(other.session, EventKind::participant_replaced, at, to_json(body));
+    }
+  }
   append_about(replacement.session, EventKind::participant_replaced, at, to_json(replacement));
 }
 

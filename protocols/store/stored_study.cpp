@@ -60,8 +60,9 @@ SessionRow StoredStudy::session(int session) const {
 }
 
 std::optional<SessionRow> StoredStudy::session_of(const std::string& participant) const {
-  Query query =
-      database_.query("SELECT session FROM sessions WHERE participant = ? AND replaced_by IS NULL");
+  Query query = database_.query(
+      "SELECT session FROM sessions WHERE participant = ? AND replaced_by IS NULL "
+      "ORDER BY visit DESC");
   query.bind(participant);
   if (!query.step()) return std::nullopt;
   return session(static_cast<int>(query.integer(0)));

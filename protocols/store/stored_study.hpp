@@ -51,7 +51,7 @@ class StoredStudy {
   [[nodiscard]] int next_enrolment() const;
   /// The number that the participant inherits, else next_enrolment.
   [[nodiscard]] int enrolment_for(const std::string& participant) const;
-  /// The participant's session that nobody replaced, if any.
+  /// The participant's session of the last visit that nobody replaced, if any.
   [[nodiscard]] std::optional<SessionRow> session_of(const std::string& participant) const;
   /// \throws StoreError if there is no such session
   [[nodiscard]] SessionRow session(int session) const;

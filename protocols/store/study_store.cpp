@@ -305,6 +305,19 @@ void StudyStore::unblind(std::chrono::nanoseconds at, const std::string& reason,
   });
 }
 
+void StudyStore::look_at_question(std::chrono::nanoseconds at, const std::string& reason) {
+  impl_->change([&] {
+    impl_->study.require_reason(reason, "unblinding");
+    if (impl_->study.state().closed) {
+      impl_->study.refuse(
+          "the study is closed, so that this is no interim look; unblind it without --interim");
+    }
+    impl_->study.append_to_file(
+        EventKind::study_unblinded, at,
+        to_json(UnblindingBody{.reason = reason, .interim = true, .question_alone = true}));
+  });
+}
+
 void StudyStore::look_at(const std::string& participant, std::chrono::nanoseconds at,
                          const std::string& reason) {
   impl_->change([&] {

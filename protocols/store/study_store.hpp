@@ -25,6 +25,9 @@ namespace touchtrial::store {
 /// event, which vouches for the events before it, and of unblindings.
 enum class TraceCheck { full, skip };
 
+/// Whether a text may name a participant: 1 to 32 of 0-9, A-Z, a-z, "+", "-", "_".
+[[nodiscard]] bool is_participant_id(const std::string& id);
+
 /// A fault of the evidence, and its place.
 struct ChainFault {
   int session = 0;  ///< as Event::session
@@ -80,7 +83,8 @@ class StudyStore {
   /// The end of the file's chain.
   [[nodiscard]] ChainHead file_head() const;
   [[nodiscard]] std::vector<SessionRow> sessions() const;
-  /// The participant's session that nobody replaced, whatever its state.
+  /// The participant's session that nobody replaced, whatever its state; of several visits, the
+  /// last one's.
   [[nodiscard]] std::optional<SessionRow> session_of(const std::string& participant) const;
   /// All sessions of a participant, by number, including those before a restart.
   [[nodiscard]] std::vector<SessionRow> sessions_of(const std::string& participant) const;
@@ -105,9 +109,10 @@ class StudyStore {
   /// Stores a finished session in one transaction: its key, events and traces, its opening and
   /// closing on the file's chain, and its derived rows.
   /// \param keys  wrap_participant_key's result
-  /// \throws StoreError if participant or enrolment is already taken (by which session), the study
-  ///   is closed, the session is a pilot and the study not (or the other way round), its device is
-  ///   seen and others' are felt, or the chain does not hold; nothing is stored then
+  /// \throws StoreError if participant or enrolment is already taken (by which session), a later
+  ///   visit follows no complete one, the study is closed, the session is a pilot and the study not
+  ///   (or the other way round), its device is seen and others' are felt, or the chain does not
+  ///   hold; nothing is stored then
   void add_session(const BufferedEvents& session, const NewKeys& keys, std::chrono::nanoseconds at);
 
   /// Starts a session whose events are stored one by one, each in its own transaction. The file
@@ -143,6 +148,9 @@ class StudyStore {
   /// \throws StoreError if the study is open and `interim` is false, if it is closed and `interim`
   ///   is true, or if `reason` is empty
   void unblind(std::chrono::nanoseconds at, const std::string& reason, bool interim);
+  /// An interim look at the answer to the registered question, which shows nothing else.
+  /// \throws StoreError if the study is closed, or if `reason` is empty
+  void look_at_question(std::chrono::nanoseconds at, const std::string& reason);
   /// A look at one participant's outcomes, while the study is open or after. It shows the sessions
   /// that the participant has had so far.
   /// \throws StoreError if the participant has none, one of them may still go on, all are erased,
@@ -170,7 +178,8 @@ class StudyStore {
                 const std::string& not_erased = "");
 
   /// Lets `by` take the place of a session's participant: the next session under that id inherits
-  /// the enrolment number. The replaced session stays as it is, but enters no outcomes.
+  /// the enrolment number. The replaced session stays as it is, but enters no outcomes. Another
+  /// participant takes the place at all visits.
   /// \param by  another participant, or the same one, whose session is restarted
   /// \throws StoreError if there is no such session, it was replaced already or may still go on (it
   ///   must have been stopped, excluded or withdrawn), `by` has a session or replaces somebody else

@@ -39,7 +39,8 @@ constexpr auto kSessions = std::to_array<TableColumn>({{"session", integer},
                                                        {"device", text},
                                                        {"replaced_by", text, true},
                                                        {"own_session", integer, true},
-                                                       {"station", integer, false, "0"}});
+                                                       {"station", integer, false, "0"},
+                                                       {"visit", integer, false, "1"}});
 constexpr auto kTrials = std::to_array<TableColumn>({{"session", integer},
                                                      {"trial", integer},
                                                      {"block", integer},
@@ -57,9 +58,9 @@ constexpr auto kOfEvent = std::to_array<Names>({"session", "sequence"});
 constexpr auto kOfSession = std::to_array<Names>({"session"});
 constexpr auto kOfTrial = std::to_array<Names>({"session", "trial"});
 
-constexpr auto kTakenOnce =
-    std::to_array<UniqueIndex>({{"sessions_participant", "participant", "replaced_by IS NULL"},
-                                {"sessions_enrolment", "enrolment", "replaced_by IS NULL"}});
+constexpr auto kTakenOnce = std::to_array<UniqueIndex>(
+    {{"sessions_participant", "participant, visit", "replaced_by IS NULL"},
+     {"sessions_enrolment", "enrolment, visit", "replaced_by IS NULL"}});
 
 constexpr auto kTrialsRefer = std::to_array<TableReference>({{"session", "sessions"}});
 
@@ -182,9 +183,16 @@ std::string create_indices_sql(const TableDefinition& table) {
   std::string sql;
   for (const UniqueIndex& index : table.unique) {
     sql += "CREATE UNIQUE INDEX " + std::string(index.name) + " ON " + std::string(table.name) +
-           "(" + std::string(index.column) + ") WHERE " + std::string(index.where) + ";\n";
+           "(" + std::string(index.columns) + ") WHERE " + std::string(index.where) + ";\n";
   }
   return sql;
+}
+
+std::string add_visits_sql(std::string_view integer) {
+  return "ALTER TABLE sessions ADD COLUMN visit " + std::string(integer) +
+         " NOT NULL DEFAULT 1;\nDROP INDEX sessions_participant;\nDROP INDEX "
+         "sessions_enrolment;\n" +
+         create_indices_sql(table_definition(Table::sessions));
 }
 
 Cells session_cells(const SessionRow& row, OwnNumber own) {
@@ -201,7 +209,8 @@ Cells session_cells(const SessionRow& row, OwnNumber own) {
           row.device,
           row.replaced_by.empty() ? Cell() : Cell(row.replaced_by),
           says_own ? Cell(std::int64_t{row.own_session}) : Cell(),
-          std::int64_t{row.station}};
+          std::int64_t{row.station},
+          std::int64_t{row.visit}};
 }
 
 Cells trial_cells(const TrialRow& row) {
@@ -243,7 +252,8 @@ SessionRow session_row(std::span<const Cell> cells) {
           .device = row.text(),
           .replaced_by = row.text_or_empty(),
           .own_session = row.optional_whole().value_or(session),
-          .station = row.whole()};
+          .station = row.whole(),
+          .visit = row.whole()};
 }
 
 TrialRow trial_row(std::span<const Cell> cells) {

@@ -17,7 +17,7 @@
 namespace touchtrial::store {
 
 /// Counts every change of the tables, in files and on servers.
-inline constexpr int kSchemaVersion = 5;
+inline constexpr int kSchemaVersion = 6;
 /// The oldest version that can be brought forward; earlier ones were never released.
 inline constexpr int kOldestSchemaVersion = 5;
 
@@ -34,11 +34,11 @@ struct TableColumn {
   bool bulky = false;
 };
 
-/// No two of the rows that meet the condition have the same value in the column.
+/// No two of the rows that meet the condition have the same values in the columns.
 struct UniqueIndex {
   std::string_view name;
-  std::string_view column;
-  std::string_view where;  ///< SQL condition
+  std::string_view columns;  ///< SQL list
+  std::string_view where;    ///< SQL condition
 };
 
 /// A column that names a row of another table.
@@ -70,6 +70,10 @@ enum class Table { events, traces, participant_keys, safety_keys, station_keys, 
 /// What a dialect of SQL calls the types, in the order of ColumnType.
 using TypeNames = std::array<std::string_view, 4>;
 
+/// Version 6: sessions have visits. The statements of all dialects that bring version 5 forward.
+/// \param integer  what the dialect calls that type
+[[nodiscard]] std::string add_visits_sql(std::string_view integer);
+
 /// "CREATE TABLE trials(...)", to which each dialect adds its own clauses.
 [[nodiscard]] std::string create_table_sql(const TableDefinition& table, const TypeNames& types);
 /// One statement for each of the table's unique indices.
@@ -79,11 +83,6 @@ using TypeNames = std::array<std::string_view, 4>;
 using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
 /// The values of a row of a derived table, in the order of its columns.
 using Cells = std::vector<Cell>;
-
-/// The states as they are written, in the order of the enumerators.
-inline constexpr std::array<std::string_view, 3> kSessionStates = {"open", "completed", "stopped"};
-inline constexpr std::array<std::string_view, 5> kTrialStates = {
-    "presented", "answered", "timed-out", "interrupted", "voided"};
 
 /// When a row of sessions has a value in own_session.
 enum class OwnNumber { if_other, always };

@@ -1,11 +1,14 @@
 #include "analysis/collection.hpp"
 
+#include "analysis/collection_records.hpp"
 #include "analysis/fake_study.hpp"
+#include "analysis/json_figures.hpp"
 #include "analysis/quality.hpp"
 #include "core/errors.hpp"
 #include "support/catch.hpp"
 
 #include <chrono>
+#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -40,6 +43,14 @@ TEST_CASE("load_collection tells what the study prescribes") {
   CHECK(prescription.sight == "curtain");
   CHECK(prescription.masking_wanted);
   CHECK(prescription.masking_dbfs == -30.0);
+  CHECK(prescription.validity == design::ValidityRule{});
+}
+
+TEST_CASE("A prescription has the validity rule that the study sets") {
+  FakeStudy study(design::identification::classification(),
+                  {.trials = R"({"validity": {"contact_s": 2.5, "saturated_share": 0.5}})"});
+  CHECK(analysis::load_collection(study.store()).prescription.validity ==
+        design::ValidityRule{.least_contact_s = 2.5, .saturated_share = 0.5});
 }
 
 TEST_CASE("A prescription follows the section on sessions where there is one") {
@@ -94,6 +105,22 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
   CHECK(collection.servo_trials[11].trial == 12);
   CHECK(collection.servo_trials[11].health.lateness_p99_us == 40.0);
   CHECK_FALSE(collection.visual);
+}
+
+TEST_CASE("The dates of collecting are those of sessions in real time that were not erased") {
+  std::vector<analysis::SessionRecord> sessions(4);
+  CHECK_FALSE(analysis::dates_of(sessions));
+  sessions[1].opened_utc = "2026-02-11T10:00:00Z";
+  CHECK(analysis::dates_of(sessions)->first == "2026-02-11");
+  sessions[2].opened_utc = "2026-01-31";
+  sessions[3].opened_utc = "2026-01-30T10:00:00Z";
+  sessions[3].row.erased = true;
+  CHECK(analysis::dates_of(sessions)->first == "2026-01-31");
+  CHECK(analysis::dates_of(sessions)->last == "2026-02-11");
+  analysis::Collection collection;
+  CHECK(analysis::collection_object(collection)["dates"].is_null());
+  collection.sessions = sessions;
+  CHECK(analysis::collection_object(collection)["dates"]["last"] == "2026-02-11");
 }
 
 TEST_CASE("Without the key a record lacks what a session's people said and answered") {

@@ -19,6 +19,8 @@ design::StudyKey fake_key(const design::Protocol& protocol, const FakeOptions& o
   if (!options.registration.empty()) {
     text["registration"] = nlohmann::json::parse(options.registration);
   }
+  if (!options.sections.empty()) text.update(nlohmann::json::parse(options.sections));
+  if (!options.session.empty()) text["session"] = nlohmann::json::parse(options.session);
   const design::Study study = design::parse_study(text.dump(), ".", "fake.json");
   SeededEntropy entropy(11);
   design::StudyKey key = design::make_study_key(study, entropy, options.simulated);
@@ -118,6 +120,25 @@ void record_trial(store::SessionRecorder& recorder, const FakeSession& session,
 
 }  // namespace
 
+FakeSession talkative(const std::string& participant, int enrolment, const std::string& closing) {
+  return {.participant = participant,
+          .enrolment = enrolment,
+          .answers = FakeStudy::always_right(),
+          .before_trials = [closing](store::SessionRecorder& recorder) {
+            recorder.questioned(
+                milliseconds(10), "handedness",
+                R"({"pen_hand":0,"spoon":1,"throwing":0,"toothbrush":0,"writing":0})");
+            recorder.remarked(milliseconds(20), store::EventKind::paused, "a phone rang");
+            recorder.resumed(milliseconds(30), {.after = "pause", .away_s = 0.01});
+            recorder.remarked(milliseconds(40), store::EventKind::noted, "wears a ring");
+            for (int i = 1; i <= 3; ++i) {
+              recorder.presented(milliseconds(1000 * i), 1, 0);
+              recorder.interrupted(milliseconds(1000 * i + 500), 1, "comfort stop");
+            }
+            recorder.questioned(milliseconds(5000), "closing", closing);
+          }};
+}
+
 std::string fake_study_text(const design::Protocol& protocol, const std::string& first_label) {
   const bool comparison = protocol.presents_all_methods();
   nlohmann::json study{{"study", comparison ? "pair" : "single"},
@@ -141,11 +162,15 @@ void FakeStudy::add(const FakeSession& session) {
   const SecretKey own = entropy.secret("participant");
   store::BufferedEvents buffer;
   store::SessionRecorder recorder(number, own, buffer);
-  const design::Schedule schedule = design::make_schedule(
-      key_.study, key_.draw_of(session.enrolment, key_.simulated || store_.commitment().pilot
-                                                      ? design::Draws::rehearsal
-                                                      : design::Draws::people));
+  const design::Draws draws = key_.simulated || store_.commitment().pilot ? design::Draws::rehearsal
+                                                                          : design::Draws::people;
+  const design::Schedule schedule =
+      design::make_schedule(key_.study, key_.draw_of(session.enrolment, draws, session.visit));
   store::SessionOpening opening;
+  opening.visit = session.visit;
+  const design::GroupPlan& groups = key_.study.groups;
+  const auto group = key_.group_of(session.enrolment, draws);
+  if (group && groups.open) opening.group = groups.labels[static_cast<std::size_t>(*group)];
   opening.participant = session.participant;
   opening.enrolment = session.enrolment;
   opening.study_id = key_.study_id;
@@ -179,7 +204,7 @@ void FakeStudy::add(const FakeSession& session) {
     return;
   }
   recorder.closed(milliseconds(10'000'000), session.complete, session.summary, session.saturated);
-  store_.add_session(buffer, keys, milliseconds(number));
+  store_.add_session(buffer, keys, session.after + milliseconds(number));
 }
 
 void FakeStudy::close_and_unblind() {

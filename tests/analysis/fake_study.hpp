@@ -6,6 +6,7 @@
 #include "protocols/store/study_store.hpp"
 #include "support/temp_folder.hpp"
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -38,6 +39,8 @@ struct FakeSession {
   store::HandWindows hand{};                      ///< of every second trial
   int saturated = 0;                              ///< that the session ends with
   bool ends = true;  ///< false: it is left open after its last presentation
+  int visit = 1;
+  std::chrono::hours after{};  ///< later on the file's chain than sessions usually are
 };
 
 struct FakeOptions {
@@ -46,6 +49,8 @@ struct FakeOptions {
   bool pilot = false;
   std::string trials{};        ///< JSON that changes the study's trials; may be empty
   std::string registration{};  ///< JSON; may be empty
+  std::string session{};       ///< JSON; may be empty
+  std::string sections{};      ///< JSON that changes or adds sections of the study; may be empty
   bool with_pack = false;      ///< tiny fields in `folder() / "study.pack"`
   /// Divides eight enrolment numbers between stations of these names; the file is the first's.
   std::vector<std::string> stations{};
@@ -75,6 +80,11 @@ class FakeStudy {
   design::StudyKey key_;
   store::StudyStore store_;
 };
+
+/// A pause, a note, three interruptions of trial 1 and a stop that did not last, with the answers
+/// to two questionnaires: the inventory of somebody right-handed, and `closing`.
+[[nodiscard]] FakeSession talkative(const std::string& participant, int enrolment,
+                                    const std::string& closing);
 
 /// Its study file.
 [[nodiscard]] std::string fake_study_text(const design::Protocol& protocol,

@@ -1,7 +1,7 @@
 #include "analysis/outcomes.hpp"
 
+#include "analysis/collection.hpp"
 #include "analysis/fake_study.hpp"
-#include "analysis/session_rules.hpp"
 #include "analysis/text_matching.hpp"
 #include "core/errors.hpp"
 #include "support/catch.hpp"

@@ -46,10 +46,37 @@ TEST_CASE("make_quality counts sessions, answers and validity without a key") {
   CHECK(quality.presented == 28);
   CHECK(quality.answered == 27);
   CHECK(quality.no_response == 1);
-  CHECK(quality.interrupted == 0);
+  CHECK(quality.interrupted == 1);
+  CHECK(quality.not_repeated == 0);
   CHECK(quality.with_trace == 28);
   CHECK(quality.valid == 16);
   CHECK(quality.lowest_rate_hz == 1000.0);
+}
+
+TEST_CASE("A quality report counts interruptions, repeated or not, pauses and notes") {
+  FakeStudy study(design::identification::classification());
+  study.add(talkative("P01", 1, "{}"));
+  study.add({.participant = "P02",
+             .enrolment = 2,
+             .answers = FakeStudy::always_right(),
+             .complete = false,
+             .interrupt_trial = 1,
+             .stop_after = 1});
+  study.add(talkative("P03", 3, "{}"));
+  study.store().withdraw(3, std::chrono::milliseconds(40), "");
+  const analysis::QualityReport report = analysis::make_quality(study.store());
+  CHECK(report.quality.interrupted == 4);
+  CHECK(report.quality.not_repeated == 0);
+  const analysis::SessionRecord& one = report.collection.sessions.at(0);
+  CHECK(one.interruptions == 3);
+  CHECK(one.pauses == 1);
+  CHECK(one.notes == 1);
+  CHECK(report.collection.sessions.at(2).interruptions == 0);
+  CHECK(contains(analysis::quality_text(report), "interrupted 4\n"));
+  const auto json = nlohmann::json::parse(analysis::quality_json(report));
+  CHECK(json["responses"]["interrupted"] == 4);
+  CHECK(json["responses"]["not_repeated"] == 0);
+  CHECK(json["collection"]["sessions"][0]["interruptions"] == 3);
 }
 
 TEST_CASE("A quality report shows by session how answers are spread") {

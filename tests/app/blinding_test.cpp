@@ -44,7 +44,10 @@ struct OddStudy : StudyFolder {
     }
     json odd = study_of("classification");
     odd["classes"] = classes;
-    odd["trials"] = {{"repeats", kRepeats}, {"explore_limit_s", 2.0}, {"catch", catch_trials}};
+    odd["trials"] = {{"repeats", kRepeats},
+                     {"explore_limit_s", 2.0},
+                     {"catch", catch_trials},
+                     {"validity", {{"exploring_s", 2.0}, {"contact_s", 2.0}}}};
     odd["seed"] = std::stoll(kOddSeed);
     replace_file(path() / "cloths.json", odd.dump());
     replace_file(path() / "quick.json",

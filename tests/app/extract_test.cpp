@@ -258,8 +258,9 @@ TEST_CASE("every command has help that exits with 0") {
   const TempFolder folder;
   CHECK(run_touchtrial(folder.path(), {"--help"}).exit_code == 0);
   CHECK(run_touchtrial(folder.path(), {"--version"}).exit_code == 0);
-  for (const std::string command : {"extract", "evaluate", "stimuli", "prepare", "simulate",
-                                    "close", "unblind", "verify", "report", "export"}) {
+  for (const std::string command :
+       {"extract", "evaluate", "stimuli", "prepare", "simulate", "close", "unblind", "verify",
+        "report", "export", "status", "consent"}) {
     const ProgramResult result = run_touchtrial(folder.path(), {command, "--help"});
     INFO(command);
     CHECK(result.exit_code == 0);
@@ -276,4 +277,20 @@ TEST_CASE("a bad argument points to the help of its own command") {
   CHECK_THAT(errors_of({"stimuli", "import", "--crops", "x"}),
              holds_text("see touchtrial stimuli import --help"));
   CHECK_THAT(errors_of({"--no-such-option"}), holds_text("see touchtrial --help"));
+}
+
+TEST_CASE("a misspelt option is answered with the one that was probably meant") {
+  const TempFolder folder;
+  const auto errors_of = [&](const std::vector<std::string>& arguments) {
+    const ProgramResult result = run_touchtrial(folder.path(), arguments);
+    CHECK(result.exit_code == 2);
+    CHECK(line_count(result.errors) == 1);
+    return result.errors;
+  };
+  CHECK_THAT(errors_of({"exclude", "a.db", "--participant", "P07", "--reasn", "asleep"}),
+             holds_text("--reasn: is not an option; did you mean --reason?"));
+  CHECK_THAT(errors_of({"stimuli", "sheet", "a.json", "--outptu=b.png"}),
+             holds_text("--outptu: is not an option; did you mean --output?"));
+  CHECK_THAT(errors_of({"close", "a.db", "--quite-another"}),
+             !holds_text("did you mean") && holds_text("--quite-another"));
 }

@@ -82,8 +82,8 @@ TEST_CASE("fit refuses blind studies, strange labels, and absurd numbers, in one
   const StudyFolder study;
   REQUIRE(study.simulate("s.db", {"--keep-blind"}).exit_code == 0);
   require_refused(fit(study, {}), 2, "not unblinded");
-  REQUIRE(study.run({"close", study.in("s.db")}).exit_code == 0);
-  REQUIRE(study.run({"unblind", study.in("s.db"), "--reason", "test"}).exit_code == 0);
+  REQUIRE(study.run({"close", study.in("s.db"), "--yes"}).exit_code == 0);
+  REQUIRE(study.run({"unblind", study.in("s.db"), "--reason", "test", "--yes"}).exit_code == 0);
   replace_file(study.path() / "strange.json",
                std::string(R"({"label_swap": [["linen", "velvet"]]})"));
   require_refused(study.run({"fit", study.in("s.db"), "--subject", study.in("strange.json")}), 2,

@@ -9,9 +9,6 @@
 #include <vector>
 
 #include <SQLiteCpp/Database.h>
-#include <pty.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 using namespace touchtrial;
 
@@ -53,61 +50,6 @@ void check_key_refused(const ProgramResult& result, int exit_code,
   for (const std::string& word : words) CHECK_THAT(result.errors, holds_text(word));
 }
 
-/// The program on a terminal of its own.
-class TerminalRun {
- public:
-  explicit TerminalRun(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), TOUCHTRIAL_PROGRAM);
-    std::vector<char*> argv;
-    for (std::string& word : arguments) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    child_ = ::forkpty(&terminal_, nullptr, nullptr, nullptr);
-    if (child_ == 0) {
-      ::execv(argv[0], argv.data());
-      ::_exit(127);
-    }
-    REQUIRE(child_ > 0);
-  }
-  ~TerminalRun() { ::close(terminal_); }
-  TerminalRun(const TerminalRun&) = delete;
-  TerminalRun& operator=(const TerminalRun&) = delete;
-
-  /// Reads until the text was shown, then types the line.
-  void answer(const std::string& prompt, const std::string& line) {
-    read_until(prompt);
-    const std::string typed = line + "\r";
-    REQUIRE(::write(terminal_, typed.data(), typed.size()) == static_cast<ssize_t>(typed.size()));
-  }
-  /// The exit code.
-  [[nodiscard]] int finish() {
-    read_until("");
-    int status = 0;
-    REQUIRE(::waitpid(child_, &status, 0) == child_);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  [[nodiscard]] const std::string& shown() const { return shown_; }
-
- private:
-  /// \param text  empty: read to the end
-  void read_until(const std::string& text) {
-    while (text.empty() || shown_.find(text, read_) == std::string::npos) {
-      char letter = 0;
-      if (::read(terminal_, &letter, 1) != 1) {
-        INFO(shown_);
-        REQUIRE(text.empty());
-        return;
-      }
-      shown_ += letter;
-    }
-    read_ = shown_.size();
-  }
-
-  int terminal_ = -1;
-  pid_t child_ = -1;
-  std::string shown_;
-  std::size_t read_ = 0;
-};
-
 }  // namespace
 
 TEST_CASE("key check proves a prepared study, and says where the key lies") {
@@ -130,6 +72,36 @@ TEST_CASE("key check proves a prepared study, and says where the key lies") {
   check_key_refused(study.key({"check", study.in("cloths.json")}), 1, {"there is no key", "--key"});
   check_key_refused(study.key({"check", study.in("stick/cloths.key")}), 2,
                     {"no station's file", "name the study file"});
+}
+
+TEST_CASE(
+    "the key that was named is found again by its database's place, and nothing else is kept") {
+  const KeyedStudy study;
+  study.rehearse();
+  const fs::path memory = study.path() / ".config/touchtrial/keys.json";
+  fs::create_directory(study.path() / "stick");
+  fs::rename(study.path() / "cloths.key", study.path() / "stick/cloths.key");
+  check_key_refused(study.key({"check", study.in("study.db")}), 1, {"there is no key beside"});
+  CHECK_FALSE(fs::exists(memory));
+  REQUIRE(
+      study.key({"check", study.in("study.db"), "--key", study.in("stick/cloths.key")}).exit_code ==
+      0);
+  const json kept = json::parse(content(memory));
+  CHECK(kept == json{{fs::canonical(study.path() / "study.db").string(),
+                      fs::canonical(study.path() / "stick/cloths.key").string()}});
+  CHECK(fs::status(memory).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
+  CHECK(study.key({"check", study.in("study.db")}).exit_code == 0);
+  const ProgramResult unblinded =
+      study.run({"unblind", study.in("study.db"), "--interim", "--reason", "look", "--yes"});
+  INFO(unblinded.errors);
+  CHECK(unblinded.exit_code == 0);
+  CHECK(study.run({"report", study.in("study.db")}).exit_code == 0);
+  fs::rename(study.path() / "stick/cloths.key", study.path() / "elsewhere.key");
+  check_key_refused(
+      study.key({"check", study.in("study.db")}), 1,
+      {"there is no key beside", "none at", "stick/cloths.key as last time", "--key"});
+  replace_file(memory, std::string("[damaged"));
+  check_key_refused(study.key({"check", study.in("study.db")}), 1, {"there is no key beside"});
 }
 
 TEST_CASE("key check names the station whose file does not hold") {
@@ -161,11 +133,11 @@ TEST_CASE("key check counts the sessions of a database that the key opens") {
   REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
   REQUIRE(study
               .run({"withdraw", study.in("a.db"), "--participant", "P002", "--reason", "asked",
-                    "--erase"})
+                    "--erase", "--yes"})
               .exit_code == 0);
   REQUIRE(study
               .run({"withdraw", study.in("a.db"), "--participant", "P003", "--reason", "asked",
-                    "--keep-data"})
+                    "--keep-data", "--yes"})
               .exit_code == 0);
   const ProgramResult checked = study.key({"check", study.in("a.db")});
   INFO(checked.output << checked.errors);

@@ -63,12 +63,14 @@ MondayDesk::MondayDesk() {
   json document = study_of("classification");
   document["trials"]["repeats"] = 6;
   document["trials"]["explore_limit_s"] = 1.0;
+  document["trials"]["validity"] = {{"exploring_s", 1.0}, {"contact_s", 1.0}, {"path_mm", 100.0}};
   for (std::size_t i = 0; i < kLabels.size(); ++i) {
     engine::write_png(study() / (kLabels[i] + "-photo.png"), texture_number(static_cast<int>(i)));
   }
   replace_file(study() / "study.json", document.dump());
   replace_file(root() / "quick.json", R"({"weber": 0.1, "explore_s": 0.5, "training_passes": 2})");
-  // `run` has a participant, who takes as long as a person would if the desk asks for that.
+  // `run` has a participant, who takes as long as a person would if the desk asks for that; nobody
+  // is there whom `withdraw` could ask.
   make_program(
       root() / "bin" / "touchtrial",
       fmt::format("if [ -f {0}/clock ]; then export FAKE_CLOCK_AHEAD_S=$(cat {0}/clock); fi\n"
@@ -76,6 +78,7 @@ MondayDesk::MondayDesk() {
                   "if [ \"$1\" = run ]; then\n"
                   "  set -- \"$@\" --subject {0}/quick.json --headless $PACE\n"
                   "fi\n"
+                  "if [ \"$1\" = withdraw ]; then set -- \"$@\" --yes; fi\n"
                   "export LD_PRELOAD={1}\n"
                   "exec {2} \"$@\"\n",
                   root().string(), TOUCHTRIAL_FAKE_MACHINE, TOUCHTRIAL_PROGRAM));

@@ -103,6 +103,66 @@ TEST_CASE("prepare touches nothing when a picture of the study is missing") {
   CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
 }
 
+TEST_CASE("prepare refuses pictures of unequal size, with the remedy, and writes nothing") {
+  const StudyFolder study;
+  write_png(study.path() / "corduroy-photo.png", GreyImage(60, 120, 90));
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"prepare", study.in("cloths.json")},
+        std::vector<std::string>{"simulate", study.in("cloths.json"), "--participants", "1", "--db",
+                                 study.in("study.db")}}) {
+    const ProgramResult result = study.run(command);
+    INFO(result.errors);
+    CHECK(result.exit_code == 2);
+    CHECK(line_count(result.errors) == 1);
+    for (const char* part : {"cloths.json: /classes/2/images/0", "corduroy-photo.png",
+                             "120 x 60 pixels", "120 x 120 pixels", "touchtrial stimuli import"}) {
+      CHECK_THAT(result.errors, holds_text(part));
+    }
+  }
+  CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
+  CHECK_FALSE(fs::exists(study.path() / "cloths.pack"));
+  CHECK_FALSE(fs::exists(study.path() / "study.db"));
+}
+
+TEST_CASE("prepare refuses a practice picture that is smaller than the plane") {
+  const StudyFolder study;
+  json document = study_of("classification");
+  document["trials"]["practice"] = 1;
+  document["practice"] = {{"classes",
+                           {{{"label", "felt"}, {"images", {"felt.png"}}},
+                            {{"label", "silk"}, {"images", {"silk.png"}}}}},
+                          {"criterion", 1}};
+  replace_file(study.path() / "cloths.json", document.dump());
+  write_png(study.path() / "silk.png", GreyImage(120, 120, 90));
+  write_png(study.path() / "felt.png", GreyImage(119, 120, 90));
+  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
+  INFO(result.errors);
+  CHECK(result.exit_code == 2);
+  CHECK_THAT(result.errors, holds_text("/practice/classes/0/images/0"));
+  CHECK_THAT(result.errors, holds_text("fewer pixels than the study's plane, 120 x 120"));
+  CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
+}
+
+TEST_CASE("prepare says how large the plane is, and whether it is a hand's") {
+  const StudyFolder study;
+  const auto prepared = [&](double pitch_mm, bool as_json) {
+    json document = study_of("classification");
+    document["rendering"] = {{"pitch_mm", pitch_mm}};
+    replace_file(study.path() / "cloths.json", document.dump());
+    std::vector<std::string> command = {"prepare", study.in("cloths.json")};
+    if (as_json) command.emplace_back("--json");
+    return study.run(command).output;
+  };
+  CHECK_THAT(prepared(0.2, false), holds_text("plane    24 x 24 mm, 120 x 120 pixels of 0.2 mm\n"));
+  CHECK_THAT(prepared(0.1, false), holds_text("plane    12 x 12 mm") && holds_text("too small"));
+  CHECK_THAT(prepared(5.0, false),
+             holds_text("plane    600 x 600 mm") && holds_text("larger than a hand reaches"));
+  const json plane = json::parse(prepared(0.2, true)).at("plane");
+  CHECK(plane.at("width_mm") == Approx(24.0));
+  CHECK(plane.at("height_mm") == Approx(24.0));
+  CHECK(plane.at("remark") == "");
+}
+
 TEST_CASE("prepare explains what it did for each stimulus") {
   const StudyFolder study;
   const ProgramResult result = study.run({"prepare", study.in("cloths.json"), "--explain"});

@@ -19,7 +19,7 @@ json registered_study() {
       {"estimand", "mean-accuracy"},
       {"smallest_effect", 0.5},
       {"looks", {6}},
-      {"exclusion_rules", {{"deviations", {"asleep"}}, {"invalid_trials", 0.2}}}};
+      {"exclusion_rules", {{"own_deviations", {"asleep"}}, {"invalid_trials", 0.2}}}};
   return study;
 }
 
@@ -42,6 +42,8 @@ TEST_CASE("prereg writes the registration, the design and the hashes, and no sec
         "- exclusion rules: a session with a deviation \"asleep\" or more than 20 % of trials not "
         "valid",
         "3 (corduroy, granite, linen)", "scored trials a participant: 6", "at least 300 mm",
+        "exploration from landing: at least 2 s",
+        "before an answer: at least 0.5 s at the plane and 25 mm along it, unless time is up",
         "- seal: `", "- pack: `"}) {
     CHECK_THAT(result.output, holds_text(part));
   }
@@ -70,5 +72,53 @@ TEST_CASE("prereg refuses a study that is not prepared, or has changed since") {
   CHECK(page().exit_code == 0);
   replace_file(study.path() / "cloths.json", registered_study().dump());
   CHECK(page().exit_code == 2);
-  CHECK_THAT(page().errors, holds_text("has changed since it was prepared"));
+  CHECK_THAT(page().errors, holds_text("has changed since it was prepared: registration differ"));
+}
+
+TEST_CASE("a key of another study is named as such, and nobody is told to prepare") {
+  const StudyFolder study;
+  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  json other = study_of("classification");
+  other["study"] = "carpets";
+  replace_file(study.path() / "carpets.json", other.dump());
+  REQUIRE(study.run({"prepare", study.in("carpets.json")}).exit_code == 0);
+  const std::vector<std::vector<std::string>> commands = {
+      {"prereg", study.in("cloths.json"), "--key", study.in("carpets.key")},
+      {"key", "check", study.in("cloths.json"), "--key", study.in("carpets.key")},
+      {"stimuli", "sheet", study.in("cloths.json"), "-o", study.in("sheet.html"), "--key",
+       study.in("carpets.key")},
+      {"run", study.in("cloths.json"), "--participant", "P01", "--db", study.in("study.db"),
+       "--subject", study.in("quick.json"), "--headless", "--station-file",
+       study.in("carpets.station")}};
+  for (const std::vector<std::string>& command : commands) {
+    const ProgramResult refused = study.run(command);
+    INFO(command.front() << ": " << refused.errors);
+    CHECK(refused.exit_code != 0);
+    CHECK(line_count(refused.errors) == 1);
+    CHECK_THAT(refused.errors, holds_text("carpets.") && holds_text("it is of study \"carpets\"") &&
+                                   holds_text("cloths.json, which is study \"cloths\""));
+    CHECK(refused.errors.find("prepare") == std::string::npos);
+  }
+}
+
+TEST_CASE("a draft of the program's texts is said to be one wherever results can be read") {
+  const StudyFolder study;
+  json document = registered_study();
+  document["session"]["language"] = "fr";
+  replace_file(study.path() / "cloths.json", document.dump());
+  const std::string draft = "the program's texts in French are a draft, not validated";
+  CHECK_THAT(study.run({"prepare", study.in("cloths.json")}).errors, holds_text(draft));
+  CHECK_THAT(study.run({"prereg", study.in("cloths.json")}).output,
+             holds_text("- language: French: " + draft));
+  const ProgramResult simulated =
+      study.run({"simulate", study.in("cloths.json"), "--participants", "2", "--seed", "1", "--db",
+                 study.in("study.db"), "--subject", study.in("quick.json"), "--keep-blind"});
+  INFO(simulated.errors);
+  REQUIRE(simulated.exit_code == 0);
+  CHECK_THAT(study.run({"report", study.in("study.db")}).output, holds_text(draft));
+  replace_file(study.path() / "cloths.json", registered_study().dump());
+  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  const ProgramResult english = study.run({"prereg", study.in("cloths.json")});
+  CHECK_THAT(english.output, holds_text("- language: English\n"));
+  CHECK(english.output.find("draft") == std::string::npos);
 }

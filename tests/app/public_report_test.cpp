@@ -29,8 +29,8 @@ TEST_CASE("report --public writes neither ids nor reasons, in text, page, JSON a
                                             "--reason", "qqreason", "--after-outcomes"});
   INFO(excluded.errors);
   REQUIRE(excluded.exit_code == 0);
-  const ProgramResult noted = study.run(
-      {"note", study.in("s.db"), "--participant", "P001", "--deviation", "qqcode", "qqnote"});
+  const ProgramResult noted = study.run({"note", study.in("s.db"), "--participant", "P001",
+                                         "--deviation", "qqcode", "--own-code", "qqnote"});
   INFO(noted.errors);
   REQUIRE(noted.exit_code == 0);
   const auto report = [&](std::vector<std::string> more) {

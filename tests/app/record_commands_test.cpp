@@ -4,6 +4,7 @@
 #include "app/touchtrial_process.hpp"
 #include "core/cipher.hpp"
 #include "core/files.hpp"
+#include "protocols/design/deviation_codes.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/personal_data.hpp"
@@ -40,6 +41,7 @@ struct PeopleStudy : StudyFolder {
                                      const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {command, in("study.db"), "--participant", participant};
     arguments.insert(arguments.end(), more.begin(), more.end());
+    if (command == "withdraw" || command == "unblind") arguments.emplace_back("--yes");
     return StudyFolder::run(arguments);
   }
   /// One more participant, in virtual time.
@@ -56,8 +58,9 @@ struct PeopleStudy : StudyFolder {
     return json::parse(reported.output);
   }
   [[nodiscard]] json outcomes() const {
-    REQUIRE(StudyFolder::run({"close", in("study.db")}).exit_code == 0);
-    REQUIRE(StudyFolder::run({"unblind", in("study.db"), "--reason", "test"}).exit_code == 0);
+    REQUIRE(StudyFolder::run({"close", in("study.db"), "--yes"}).exit_code == 0);
+    REQUIRE(StudyFolder::run({"unblind", in("study.db"), "--reason", "test", "--yes"}).exit_code ==
+            0);
     return quality();
   }
 };
@@ -145,6 +148,57 @@ TEST_CASE("consent is recorded in a file of its own that only its owner may read
   CHECK(record->gender == "woman");
   CHECK(record->contact.empty());
   CHECK_FALSE(fs::exists(database));
+}
+
+TEST_CASE("every consent is kept and shown, and an id that may be mistyped is asked about") {
+  const TempFolder folder;
+  const std::string database = (folder.path() / "study.db").string();
+  const auto consent = [&](const std::vector<std::string>& more, const std::string& input = "") {
+    std::vector<std::string> arguments = {"consent", database};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_touchtrial(folder.path(), arguments, input);
+  };
+  const auto signed_by = [&](const std::string& id, const std::string& version) {
+    return consent({"--participant", id, "--version", version});
+  };
+  const std::string details = "age: 34\ncontact: ann@example.org\n";
+  REQUIRE(
+      consent({"--participant", "P07", "--version", "1", "--details", "-"}, details).exit_code ==
+      0);
+  const ProgramResult again = signed_by("P07", "2");
+  REQUIRE(again.exit_code == 0);
+  CHECK(again.output.find("the consent to version 1 of 20") != std::string::npos);
+  CHECK(again.output.find("are kept") != std::string::npos);
+  const auto record = PersonalData(personal_data_path(database)).find("P07");
+  REQUIRE(record);
+  CHECK(record->consent_version == "2");
+  CHECK(record->age == 34);
+  CHECK(record->contact == "ann@example.org");
+
+  const json shown = json::parse(consent({"--participant", "P07", "--show", "--json"}).output);
+  REQUIRE(shown["consents"].size() == 2);
+  CHECK(shown["consents"][0]["version"] == "1");
+  CHECK(shown["consents"][0]["age"] == 34);
+  CHECK(shown["consents"][1]["age"].is_null());
+  CHECK(consent({"--participant", "P07", "--show"}).output.find("ann@example.org") !=
+        std::string::npos);
+  check_refused(consent({"--participant", "P08", "--show"}), 1, {"no consent of participant P08"});
+
+  // The next in the row is nobody's slip; other capitals, zeros and swapped digits may be one.
+  CHECK(signed_by("P08", "2").exit_code == 0);
+  for (const char* const id : {"p07", "P7", "P007", "P70", "PP07", "O07"}) {
+    check_refused(signed_by(id, "2"), 2, {id, "P07", "--yes"});
+  }
+  CHECK(signed_by("P70", "2").exit_code == 2);
+  CHECK(consent({"--participant", "P70", "--version", "2", "--yes"}).exit_code == 0);
+  const ProgramResult list = consent({"--list"});
+  CHECK(list.output.find("P70") != std::string::npos);
+  CHECK(list.output.find("ann@") == std::string::npos);
+  const json people = json::parse(consent({"--list", "--json"}).output)["participants"];
+  REQUIRE(people.size() == 3);
+  CHECK(people[0]["consents"] == 2);
+  CHECK(people[0]["version"] == "2");
+  check_refused(consent({"--version", "2"}), 2, {"--participant"});
 }
 
 TEST_CASE("consent refuses personal details on the command line, and details that it cannot read") {
@@ -484,11 +538,11 @@ TEST_CASE("one participant's outcomes are exported after a recorded look at them
   CHECK(text("clear/P002_personal.csv").find("somebody@example.org") != std::string::npos);
   CHECK(line_count(text("clear/P002_sessions.csv")) == 1 + 1);
   check_refused(
-      study.run({"unblind", study.in("study.db"), "--participant", "P9", "--reason", "x"}), 1,
-      {"P9", "no session"});
+      study.run({"unblind", study.in("study.db"), "--participant", "P9", "--reason", "x", "--yes"}),
+      1, {"P9", "no session"});
   REQUIRE(study
               .run({"unblind", study.in("study.db"), "--participant", "P002", "--reason",
-                    "asked for the data"})
+                    "asked for the data", "--yes"})
               .exit_code == 0);
   REQUIRE(exported("whole", key).exit_code == 0);
   CHECK(text("whole/P002_trials.csv").find("response") != std::string::npos);
@@ -510,6 +564,11 @@ TEST_CASE("notes and deviations are on the file's chain, before and after closin
       study.people("note", "P003", {"--deviation", "no-curtain", "it was in the wash"}).exit_code ==
       0);
   check_refused(study.people("note", "P003", {""}), 1, {"study.db"});
+  check_refused(study.people("note", "P003", {"--deviation", "no-curtian", "torn"}), 2,
+                {"did you mean no-curtain?", "no-placement", "no-day-sheet-NUMBER", "--own-code"});
+  check_refused(study.people("note", "P003", {"--deviation", "sneezed", "twice"}), 2,
+                {"sneezed is none of the program's codes: answers-lost, comfort-stop"});
+  CHECK_THAT(study.run({"note", "--help"}).output, holds_text("practice-not-passed"));
   check_refused(study.people("note", "P9", {"who"}), 1, {"P9", "no session"});
   check_refused(study.people("note", "P003"), 2, {"TEXT"});
   const std::vector<Event> chain = study.store().events(0);
@@ -526,6 +585,14 @@ TEST_CASE("notes and deviations are on the file's chain, before and after closin
   CHECK(study.outcomes().at("participants") == 4);
   CHECK(study.people("note", "P003", {"wrote a letter"}).exit_code == 0);
   check_verified(study);
+}
+
+TEST_CASE("the data dictionary explains every code of a deviation") {
+  const std::string page = content(fs::path(TOUCHTRIAL_SOURCE_DIR) / "docs/data-dictionary.md");
+  for (const std::string_view code : design::kDeviationCodes) {
+    INFO(code);
+    CHECK(page.find("`" + std::string(code) + "`") != std::string::npos);
+  }
 }
 
 TEST_CASE("every command that records prints the head for the day sheet") {
@@ -551,8 +618,50 @@ TEST_CASE("every command that records prints the head for the day sheet") {
   check_head(study.people("withdraw", "P002", {"--erase-safety"}));
   check_head(study.people("unblind", "P003", reason));
   check_head(study.people("exclude", "P004", reason));
-  check_head(study.run({"close", study.in("study.db")}));
-  check_head(study.run({"unblind", study.in("study.db"), "--reason", "the planned test"}));
+  check_head(study.run({"close", study.in("study.db"), "--yes"}));
+  check_head(study.run({"unblind", study.in("study.db"), "--reason", "the planned test", "--yes"}));
+}
+
+TEST_CASE("what cannot be undone says whom it concerns and what is lost, and is not done unasked") {
+  const PeopleStudy study;
+  PersonalData(personal_data_path(study.database()))
+      .put({.participant = "P001",
+            .consent_version = "3",
+            .consented_utc = "2026-01-02T03:04:05Z",
+            .age = {},
+            .gender = "",
+            .contact = ""});
+  const std::vector<Event> before = study.store().events(0);
+  const auto check_unasked = [&](const std::vector<std::string>& arguments,
+                                 const std::vector<std::string>& words) {
+    check_refused(study.run(arguments), 2, words);
+    CHECK(study.store().events(0).size() == before.size());
+    TerminalRun asked(arguments);
+    asked.answer("type yes to go on: ", "y");
+    CHECK(asked.finish() == 2);
+    for (const std::string& word : words) {
+      if (word != "--yes") CHECK_THAT(asked.shown(), holds_text(word));
+    }
+    CHECK_THAT(asked.shown(), holds_text("not confirmed; nothing was done"));
+    CHECK(study.store().events(0).size() == before.size());
+  };
+  const std::string db = study.in("study.db");
+  const std::vector<std::string> erasing = {"withdraw", db,         "--participant", "P001",
+                                            "--erase",  "--reason", "asked to"};
+  check_unasked(erasing, {"P001", "session 1 with 6 answers", "personal data", "--yes"});
+  check_unasked({"withdraw", db, "--participant", "P002", "--keep-data", "--reason", "moves away"},
+                {"P002", "takes no further part", "the data stay", "--yes"});
+  check_unasked({"close", db}, {"takes no session any more", "it has 4", "--yes"});
+  check_unasked({"unblind", db, "--interim", "--reason", "look"},
+                {"every session that has ended", "--yes"});
+  check_unasked({"unblind", db, "--participant", "P003", "--reason", "look"},
+                {"participant P003", "--yes"});
+  CHECK(PersonalData(personal_data_path(study.database())).find("P001"));
+  TerminalRun agreed(erasing);
+  agreed.answer("type yes to go on: ", "yes");
+  CHECK(agreed.finish() == 0);
+  CHECK(session_of(study.store(), "P001").erased);
+  check_verified(study);
 }
 
 TEST_CASE("what is recorded is signed with a station's file or with a key, not with both") {

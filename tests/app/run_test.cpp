@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -62,8 +63,8 @@ void check_balanced(const StudyFolder& study, int participants) {
   const ProgramResult verified = study.run({"verify", study.in("db")});
   INFO(verified.output << verified.errors);
   CHECK(verified.exit_code == 0);
-  REQUIRE(study.run({"close", study.in("db")}).exit_code == 0);
-  REQUIRE(study.run({"unblind", study.in("db"), "--reason", "test"}).exit_code == 0);
+  REQUIRE(study.run({"close", study.in("db"), "--yes"}).exit_code == 0);
+  REQUIRE(study.run({"unblind", study.in("db"), "--reason", "test", "--yes"}).exit_code == 0);
   const ProgramResult reported = study.run({"report", study.in("db"), "--json"});
   REQUIRE(reported.exit_code == 0);
   const json report = json::parse(reported.output);
@@ -95,6 +96,51 @@ TEST_CASE("run makes the database, acknowledges every response, and is refused a
   CHECK(again.errors.find("another participant") != std::string::npos);
   CHECK(run(study, "P02").exit_code == 0);
   check_balanced(study, 2);
+}
+
+TEST_CASE("a run that is refused leaves nothing, and the corrected command runs") {
+  const StudyFolder study;
+  const bool is_prepared = GENERATE(true, false);
+  if (is_prepared) REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  // A simulated study's pack stays, because the next run can use it.
+  static_cast<void>(run(study, "P 01"));
+  const auto files = [&] {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(study.path())) {
+      names.insert(entry.path().filename().string());
+    }
+    return names;
+  };
+  const std::set<std::string> before = files();
+  CHECK_FALSE(before.contains("db"));
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& part) {
+    std::vector<std::string> command = {"run",  study.in("cloths.json"), "--participant", "P01",
+                                        "--db", study.in("db")};
+    command.insert(command.end(), more.begin(), more.end());
+    const ProgramResult result = study.run(command);
+    INFO(result.errors);
+    CHECK(result.exit_code != 0);
+    CHECK(line_count(result.errors) >= 1);
+    CHECK_THAT(result.errors, holds_text(part));
+    CHECK(files() == before);
+  };
+  refused({"--subject", study.in("nobody.json"), "--headless"}, "nobody.json");
+  if (is_prepared) {
+    refused({"--device", "mouse"}, "give --pilot");
+    // There are never so many monitors, nor any where there is no display.
+    refused({"--device", "mouse", "--pilot", "--monitor", "16", "--no-sound"}, "window: ");
+    refused({"--device", "simulated", "--no-sound"}, "is not a terminal");
+  }
+  CHECK(run(study, "P01").exit_code == 0);
+}
+
+TEST_CASE("a database in a folder that is not there is refused before anything else") {
+  const StudyFolder study;
+  const ProgramResult refused =
+      study.run({"run", study.in("cloths.json"), "--participant", "P01", "--db",
+                 study.in("nowhere/db"), "--subject", study.in("quick.json"), "--headless"});
+  CHECK(refused.exit_code != 0);
+  CHECK_THAT(refused.errors, holds_text("there is no folder for it"));
 }
 
 TEST_CASE("stations use their own numbers of a plan, and a replacement uses its predecessor's") {
@@ -212,7 +258,7 @@ TEST_CASE("closing a study names the sessions that can no longer be continued") 
   const StudyFolder study;
   REQUIRE(Interrupted(study, "P01", SIGKILL).exit_code == -1);
   REQUIRE(run(study, "P02").exit_code == 0);
-  const ProgramResult closed = study.run({"close", study.in("db")});
+  const ProgramResult closed = study.run({"close", study.in("db"), "--yes"});
   INFO(closed.errors);
   CHECK(closed.exit_code == 0);
   CHECK(line_count(closed.errors) == 1);

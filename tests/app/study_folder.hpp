@@ -47,7 +47,10 @@ inline json study_of(const std::string& protocol) {
           {"protocol", protocol},
           {"classes", classes},
           {"methods", methods},
-          {"trials", {{"repeats", 2}, {"explore_limit_s", 2.0}}},
+          {"trials",
+           {{"repeats", 2},
+            {"explore_limit_s", 2.0},
+            {"validity", {{"exploring_s", 2.0}, {"contact_s", 2.0}}}}},
           {"seed", 11}};
 }
 

@@ -121,11 +121,12 @@ TEST_CASE("before unblinding, report and export show quality and no outcome") {
 TEST_CASE("outcomes show only after closing and unblinding, which are recorded") {
   const StudyFolder study;
   REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
-  CHECK(study.run({"unblind", study.in("a.db"), "--reason", "curious"}).exit_code == 1);
-  CHECK(study.run({"unblind", study.in("a.db")}).exit_code == 2);
-  CHECK(study.run({"close", study.in("a.db")}).exit_code == 0);
-  CHECK(study.run({"close", study.in("a.db")}).exit_code == 1);
-  CHECK(study.run({"unblind", study.in("a.db"), "--reason", "collection is over"}).exit_code == 0);
+  CHECK(study.run({"unblind", study.in("a.db"), "--reason", "curious", "--yes"}).exit_code == 1);
+  CHECK(study.run({"unblind", study.in("a.db"), "--yes"}).exit_code == 2);
+  CHECK(study.run({"close", study.in("a.db"), "--yes"}).exit_code == 0);
+  CHECK(study.run({"close", study.in("a.db"), "--yes"}).exit_code == 1);
+  CHECK(study.run({"unblind", study.in("a.db"), "--reason", "collection is over", "--yes"})
+            .exit_code == 0);
   const json report = json::parse(study.run({"report", study.in("a.db"), "--json"}).output);
   CHECK(report.contains("methods"));
   CHECK(study.run({"verify", study.in("a.db")}).exit_code == 0);
@@ -134,8 +135,78 @@ TEST_CASE("outcomes show only after closing and unblinding, which are recorded")
 TEST_CASE("an interim look is possible before closing, if it is declared as one") {
   const StudyFolder study;
   REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
-  CHECK(study.run({"unblind", study.in("a.db"), "--reason", "safety", "--interim"}).exit_code == 0);
+  CHECK(study.run({"unblind", study.in("a.db"), "--reason", "safety", "--interim", "--yes"})
+            .exit_code == 0);
   CHECK(json::parse(study.run({"report", study.in("a.db"), "--json"}).output).contains("methods"));
+}
+
+TEST_CASE("a registered look shows the registered question alone") {
+  const StudyFolder study;
+  json file = study_of("classification");
+  file["registration"] = {
+      {"participants", 8}, {"estimand", "mean-accuracy"}, {"looks", json::array({4})}};
+  replace_file(study.path() / "cloths.json", file.dump());
+  REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
+  const auto look = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"unblind",  study.in("a.db"), "--interim",
+                                      "--reason", "plan",           "--yes"};
+    words.insert(words.end(), more.begin(), more.end());
+    return study.run(words);
+  };
+  REQUIRE(look({}).exit_code == 0);
+
+  const json report = json::parse(study.run({"report", study.in("a.db"), "--json"}).output);
+  CHECK(report.at("question_alone") == true);
+  CHECK(report.at("looks").at(0).at("kind") == "registered");
+  CHECK(report.at("primary").at("choices").size() == 1);
+  CHECK(report.at("primary").at("level") < report.at("primary").at("alpha"));
+  CHECK(report.at("prevalence").is_null());
+  CHECK_FALSE(report.contains("methods"));
+  const std::string text = study.run({"report", study.in("a.db")}).output;
+  CHECK_THAT(text, holds_text("INTERIM LOOK at the registered question"));
+  CHECK_THAT(text, !holds_text("granite  "));
+  REQUIRE(study.run({"report", study.in("a.db"), "-o", study.in("page")}).exit_code == 0);
+  CHECK_FALSE(fs::exists(study.path() / "page" / "figures"));
+
+  REQUIRE(study.run({"export", study.in("a.db"), "--out", study.in("csv")}).exit_code == 0);
+  CHECK_FALSE(fs::exists(study.path() / "csv" / "confusion_adaptive.csv"));
+  CHECK_THAT(content(study.path() / "csv" / "trials.csv"), !holds_text("granite"));
+  CHECK_THAT(content(study.path() / "csv" / "participants.csv"), !holds_text("order_block"));
+  CHECK_THAT(
+      study.run({"export", study.in("a.db"), "--format", "r", "--out", study.in("r")}).errors,
+      holds_text("blind but for the registered question"));
+  CHECK_THAT(study.run({"fit", study.in("a.db")}).errors,
+             holds_text("blind but for the registered question"));
+  CHECK_THAT(study
+                 .run({"export", study.in("a.db"), "--participant", "P001", "--key",
+                       study.in("a.db.key"), "--out", study.in("one")})
+                 .errors,
+             holds_text("no look at the outcomes of participant P001 is recorded"));
+
+  const json quoted = json::parse(study.run({"report", study.in("a.db"), "--json"}).output);
+  REQUIRE(look({"--unregistered"}).exit_code == 0);
+  const json all = json::parse(study.run({"report", study.in("a.db"), "--json"}).output);
+  CHECK(all.contains("methods"));
+  CHECK(all.at("looks").at(1).at("kind") == "unregistered");
+  CHECK_THAT(all.at("departures").dump(), holds_text("This look was not registered"));
+  CHECK(all.at("primary").at("estimate") == quoted.at("primary").at("estimate"));
+}
+
+TEST_CASE("an interim look at a number of participants that was not registered is refused") {
+  const StudyFolder study;
+  json file = study_of("classification");
+  file["registration"] = {
+      {"participants", 8}, {"estimand", "mean-accuracy"}, {"looks", json::array({3, 6})}};
+  replace_file(study.path() / "cloths.json", file.dump());
+  REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
+  const ProgramResult refused =
+      study.run({"unblind", study.in("a.db"), "--interim", "--reason", "curious"});
+  CHECK(refused.exit_code == 1);
+  CHECK_THAT(refused.errors,
+             holds_text("4 participants are complete, and the registered looks are at 3 and 6"));
+  CHECK(line_count(refused.errors) == 1);
+  CHECK_FALSE(
+      json::parse(study.run({"report", study.in("a.db"), "--json"}).output).contains("primary"));
 }
 
 TEST_CASE("outcomes need the study's own key") {

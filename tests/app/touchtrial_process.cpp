@@ -4,10 +4,13 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include <fcntl.h>
+#include <pty.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 extern char** environ;
 
@@ -32,7 +35,14 @@ ProgramResult run_program(const std::filesystem::path& program, const std::files
   posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), flags, 0600);
   posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), flags, 0600);
   pid_t child = 0;
-  const int failed = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
+  // What the program remembers for its user must not be the tester's.
+  std::string home = "XDG_CONFIG_HOME=" + (folder / ".config").string();
+  std::vector<char*> environment;
+  for (char** entry = environ; *entry != nullptr; ++entry) environment.push_back(*entry);
+  if (std::getenv("XDG_CONFIG_HOME") == nullptr) environment.push_back(home.data());
+  environment.push_back(nullptr);
+  const int failed =
+      posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environment.data());
   posix_spawn_file_actions_destroy(&actions);
   REQUIRE(failed == 0);
   int status = 0;
@@ -52,6 +62,49 @@ ProgramResult run_touchtrial_limited(const std::filesystem::path& folder, const 
                                     TOUCHTRIAL_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return run_program("/bin/sh", folder, words);
+}
+
+TerminalRun::TerminalRun(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), TOUCHTRIAL_PROGRAM);
+  std::vector<char*> argv;
+  for (std::string& word : arguments) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  child_ = ::forkpty(&terminal_, nullptr, nullptr, nullptr);
+  if (child_ == 0) {
+    ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+  REQUIRE(child_ > 0);
+}
+
+TerminalRun::~TerminalRun() {
+  ::close(terminal_);
+}
+
+void TerminalRun::answer(const std::string& prompt, const std::string& line) {
+  read_until(prompt);
+  const std::string typed = line + "\r";
+  REQUIRE(::write(terminal_, typed.data(), typed.size()) == static_cast<ssize_t>(typed.size()));
+}
+
+int TerminalRun::finish() {
+  read_until("");
+  int status = 0;
+  REQUIRE(::waitpid(child_, &status, 0) == child_);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+void TerminalRun::read_until(const std::string& text) {
+  while (text.empty() || shown_.find(text, read_) == std::string::npos) {
+    char letter = 0;
+    if (::read(terminal_, &letter, 1) != 1) {
+      INFO(shown_);
+      REQUIRE(text.empty());
+      return;
+    }
+    shown_ += letter;
+  }
+  read_ = shown_.size();
 }
 
 int line_count(const std::string& text) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <sys/types.h>
+
 namespace touchtrial {
 
 struct ProgramResult {
@@ -29,6 +31,30 @@ struct ProgramResult {
 [[nodiscard]] ProgramResult run_touchtrial_limited(const std::filesystem::path& folder,
                                                    const std::string& limit,
                                                    const std::vector<std::string>& arguments);
+
+/// `touchtrial` on a terminal of its own.
+class TerminalRun {
+ public:
+  explicit TerminalRun(std::vector<std::string> arguments);
+  ~TerminalRun();
+  TerminalRun(const TerminalRun&) = delete;
+  TerminalRun& operator=(const TerminalRun&) = delete;
+
+  /// Reads until the text was shown, then types the line.
+  void answer(const std::string& prompt, const std::string& line);
+  /// The exit code.
+  [[nodiscard]] int finish();
+  [[nodiscard]] const std::string& shown() const { return shown_; }
+
+ private:
+  /// \param text  empty: read to the end
+  void read_until(const std::string& text);
+
+  int terminal_ = -1;
+  pid_t child_ = -1;
+  std::string shown_;
+  std::size_t read_ = 0;
+};
 
 /// The number of lines in a text, the last one finished or not.
 [[nodiscard]] int line_count(const std::string& text);

@@ -30,3 +30,17 @@ TEST_CASE("what stands behind a zero byte is not ignored, and the message names 
   CHECK(parse_strict_json("{\"a\": \"x\\u0000y\"}", "study.json").object({"a"}).at("a").text() ==
         "x\0y"s);
 }
+
+TEST_CASE("comments mean nothing, wherever they stand outside a text") {
+  const std::string commented =
+      "// first\n{ \"a\": /* in the middle */ 1, // of a line\n  \"b\": \"// a text\" }\n// last";
+  const JsonObject object = parse_strict_json(commented, "study.json").object({"a", "b"});
+  CHECK(object.at("a").integer(0, 9) == 1);
+  CHECK(object.at("b").text() == "// a text");
+  CHECK(without_comments(commented) == "{\n  \"a\": 1,\n  \"b\": \"// a text\"\n}\n");
+  CHECK(without_comments("{\"b\":1, \"a\":2}") == "{\"b\":1, \"a\":2}");
+  CHECK(refusal_of_text("// one\n{\"a\": 1,}")
+            .starts_with("study.json: line 2, column 9: syntax error"));
+  CHECK(refusal_of_text("{\"a\": 1} /* open").find("line 1") != std::string::npos);
+  CHECK(refusal_of_text("{\"a\": 1} # no comment").find("line 1") != std::string::npos);
+}

@@ -3,6 +3,7 @@
 
 #include "device/falcon/falcon_device.hpp"
 #include "device/falcon/rig/falcon_rig.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
 namespace touchtrial {
@@ -31,11 +32,14 @@ TEST_CASE("a table's normal points up and a wall's to the person, and back again
 }
 
 TEST_CASE("a plane's positions count from its top-left corner") {
-  const Vec3 corner_mm{-20.0, 5.0, -10.0};
   for (const Axes& axes : {kTable, kWall}) {
-    const Vec3 place_mm = corner_mm + 7.0 * axes.x + 11.0 * axes.y + -2.0 * axes.z;
-    CHECK(norm(device::to_plane_position_mm(place_mm, {axes.orientation, corner_mm}) -
-               Vec3{7.0, 11.0, -2.0}) < 1e-12);
+    RestingDevice resting;
+    device::DeviceSample sample;
+    REQUIRE(resting.read(sample) == device::DeviceStatus::ok);
+    const Vec3 away_mm = 7.0 * axes.x + 11.0 * axes.y + -2.0 * axes.z;
+    device::PlacedDevice placed(resting, {axes.orientation, sample.position_mm - away_mm});
+    REQUIRE(placed.read(sample) == device::DeviceStatus::ok);
+    CHECK(norm(sample.position_mm - Vec3{7.0, 11.0, -2.0}) < 1e-12);
   }
 }
 

@@ -31,6 +31,10 @@ device::DeviceUse use_at(Vec3 centre_mm) {
   return use;
 }
 
+Vec3 on_plane_mm(Vec3 device_mm, const device::PlanePlacement& placement) {
+  return device::to_plane_direction(device_mm - placement.origin_mm, placement.orientation);
+}
+
 }  // namespace
 
 TEST_CASE("a plane that fills a box but for the margin fits and a pixel more does not") {
@@ -46,7 +50,7 @@ TEST_CASE("a horizontal plane lies in the middle with its first corner far and l
   REQUIRE(fit.placement.has_value());
   CHECK(fit.placement->orientation == device::PlaneOrientation::horizontal);
   CHECK(fit.placement->origin_mm == Vec3{-25.0, 0.0, -20.0});
-  CHECK(device::to_plane_position_mm({0.0, 0.0, 0.0}, *fit.placement) == Vec3{25.0, 20.0, 0.0});
+  CHECK(on_plane_mm({0.0, 0.0, 0.0}, *fit.placement) == Vec3{25.0, 20.0, 0.0});
 }
 
 TEST_CASE("a vertical plane lies in the middle with its first corner high and left") {
@@ -54,7 +58,7 @@ TEST_CASE("a vertical plane lies in the middle with its first corner high and le
       plane_of(50.0, 40.0), box_of(160.0, 120.0, 70.0), {}, device::PlaneOrientation::vertical);
   REQUIRE(fit.placement.has_value());
   CHECK(fit.placement->origin_mm == Vec3{-25.0, 20.0, 0.0});
-  CHECK(device::to_plane_position_mm({0.0, 0.0, 3.0}, *fit.placement) == Vec3{25.0, 20.0, 3.0});
+  CHECK(on_plane_mm({0.0, 0.0, 3.0}, *fit.placement) == Vec3{25.0, 20.0, 3.0});
 }
 
 TEST_CASE("orientation decides which side of the box a plane is measured against") {

@@ -1,5 +1,5 @@
-#include "analysis/statistics/confidence.hpp"
 #include "analysis/statistics/confusion.hpp"
+#include "analysis/statistics/d_prime.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/order_effects.hpp"
 #include "analysis/statistics/strata.hpp"

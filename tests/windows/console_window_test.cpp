@@ -44,6 +44,13 @@ session::SessionStatus status(const std::string& stage = "answering") {
   return now;
 }
 
+session::SessionStatus stopped() {
+  session::SessionStatus now = status("stopped");
+  now.participant_stopped = true;
+  now.needs_consent = true;
+  return now;
+}
+
 app::ParticipantWindowOptions options(app::ConsoleExperimenter& console) {
   app::ParticipantWindowOptions all;
   all.size_px = {kParticipantWidth, 720};
@@ -53,10 +60,11 @@ app::ParticipantWindowOptions options(app::ConsoleExperimenter& console) {
 
 /// Both windows side by side, with a hand on mouse and keyboard.
 struct Room {
-  Room() : screen(VirtualScreen::open("2240x1080")), window(options(console)) {
+  /// \param place  of the console on a screen of this size
+  explicit Room(const std::string& size = "2240x1080",
+                std::pair<int, int> place = {kParticipantWidth, 0})
+      : screen(VirtualScreen::open(size)), window(options(console)), corner(place) {
     window.see_pictures({"bark", "cloth"});
-    screen->move_window(kTitle, 0, 0);
-    screen->move_window(kConsoleTitle, kParticipantWidth, 0);
   }
 
   template <typename Session>
@@ -73,7 +81,7 @@ struct Room {
   /// Clicks in the experimenter's window and gives it the focus, like a window manager.
   void click(std::pair<int, int> at) {
     screen->focus_window(kConsoleTitle);
-    screen->move_pointer(kParticipantWidth + at.first, at.second);
+    screen->move_pointer(corner.first + at.first, corner.second + at.second);
     screen->press();
     screen->release();
     settle();
@@ -98,6 +106,7 @@ struct Room {
   app::ConsoleExperimenter console{nobody};
   std::unique_ptr<VirtualScreen> screen;
   app::ParticipantWindow window;
+  std::pair<int, int> corner;  ///< of the console
 };
 
 /// Where the buttons are, in window units; found by the colour of the comfort stop.
@@ -166,6 +175,17 @@ TEST_CASE("the console's buttons request what they say") {
     room.type("n o minus c u r t a i n Tab f e l l Return");
     CHECK(is(room.request(), Kind::deviation, "fell", "no-curtain"));
     CHECK_FALSE(room.console.request());
+  });
+}
+
+TEST_CASE("the console lies below the participant's window where there is no room beside it") {
+  Room room("1280x1200", {0, 720});
+  room.run([&] {
+    room.console.show(status());
+    const engine::ColourImage picture = room.window.console_picture();
+    CHECK(picture.height() == 480);
+    room.click(buttons_of(picture).pause);
+    CHECK(is(room.request(), Kind::pause));
   });
 }
 
@@ -242,6 +262,20 @@ TEST_CASE("the console is the same to the last byte, whatever the participant se
   });
 }
 
+TEST_CASE("the console shows the participant's stop until it is settled") {
+  Room room;
+  room.run([&] {
+    session::SessionStatus plain = stopped();
+    plain.participant_stopped = false;
+    room.console.show(plain);
+    const engine::ColourImage before = room.window.console_picture();
+    room.console.show(stopped());
+    CHECK(room.window.console_picture() != before);
+    room.console.show(plain);
+    CHECK(room.window.console_picture() == before);
+  });
+}
+
 TEST_CASE("a missing monitor of the console is named") {
   const auto screen = VirtualScreen::open();
   session::Experimenter nobody;
@@ -275,6 +309,8 @@ TEST_CASE("screenshots of every state of the console, for TOUCHTRIAL_SCREENSHOTS
     keep(room.window.console_picture(), "console-deviation");
     room.click(buttons.abort);
     keep(room.window.console_picture(), "console-abort");
+    room.console.show(stopped());
+    keep(room.window.console_picture(), "console-stopped");
     room.window.show_exploring({0.2, 256, 256});
     room.console.show(status("exploring"));
     keep(room.window.console_picture(), "console-exploring");

@@ -1,11 +1,14 @@
 // The participant's window on a virtual screen, driven by real key and mouse events.
 #include "app/participant/participant_window.hpp"
 
+#include "app/participant/card_screen.hpp"
 #include "app/participant/window_subject.hpp"
+#include "app/texts/study_texts.hpp"
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_control.hpp"
 #include "engine/pictures/colour_image.hpp"
-#include "protocols/simulation/prompt_participant.hpp"
+#include "protocols/identification/design/identification.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
 #include "stimuli/generator.hpp"
 #include "support/catch.hpp"
 #include "windows/virtual_screen.hpp"
@@ -114,6 +117,16 @@ session::AnswerStep answer_step(int trial = 1) {
   return {.trial = trial, .of = 25};
 }
 
+class CountedCues final : public app::Cues {
+ public:
+  void tone(app::Cue cue) noexcept override {
+    if (cue == app::Cue::too_hard) ++too_hard;
+    if (cue == app::Cue::stopped) ++stopped;
+  }
+  std::atomic<int> too_hard{0};
+  std::atomic<int> stopped{0};
+};
+
 TEST_CASE("replies to 25 trials hold the choices made by keys, with times after the keys") {
   Sitting sitting;
   sitting.run([&] {
@@ -164,11 +177,11 @@ TEST_CASE("a key that was pressed before a screen was shown does nothing on it")
   });
 }
 
-TEST_CASE("Escape does nothing on a screen") {
+TEST_CASE("neither Escape nor the keys of a preview do anything in a session") {
   Sitting sitting;
   sitting.run([&] {
     sitting.show(session::ReadyStep{1, 25, false});
-    sitting.type("Escape");
+    sitting.type("Escape Next Prior");
     for (int i = 0; i < 20; ++i)
       CHECK_FALSE(sitting.window.attend(session::ReadyStep{1, 25, false}));
     CHECK_FALSE(sitting.window.gone());
@@ -212,6 +225,50 @@ TEST_CASE("while a plane is on the space bar stops the force and Enter ends the 
   });
 }
 
+TEST_CASE("the second press of a space bar that is pressed twice to go on stops nothing") {
+  Sitting sitting;
+  sitting.run([&] {
+    sitting.show(session::ReadyStep{1, 25, false});
+    app::InputEvent space;
+    space.key = app::Key::space;
+    const auto begun = steady_clock::now();
+    const auto press_after = [&](int ms) {
+      space.at = begun + milliseconds(ms);
+      sitting.window.inject(space);
+      device::ServoControl servo;
+      sitting.window.exploring(servo);
+      return servo.comfort_stop_asked();
+    };
+    space.at = begun;
+    sitting.window.inject(space);
+    REQUIRE(sitting.reply_to(session::ReadyStep{1, 25, false}));
+    sitting.window.show_exploring(kPlane);
+    CHECK_FALSE(press_after(200));
+    CHECK(press_after(300));  // somebody wants to stop
+    // The next trial begins without a second press.
+    sitting.show(session::ReadyStep{2, 25, false});
+    space.at = begun + milliseconds(10'000);
+    sitting.window.inject(space);
+    sitting.window.show_exploring(kPlane);
+    CHECK(press_after(10'501));
+  });
+}
+
+TEST_CASE("a comfort stop is heard and has a page of its own") {
+  CountedCues cues;
+  app::ParticipantWindowOptions wanted = options();
+  wanted.cues = &cues;
+  Sitting sitting(wanted);
+  sitting.run([&] {
+    sitting.window.show_exploring(kPlane);
+    const session::NoticeStep stopped{session::NoticeStep::What::stopped, 1, false};
+    sitting.show(stopped);
+    sitting.type("Return space");
+    for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.attend(stopped));
+    CHECK(cues.stopped == 1);
+  });
+}
+
 TEST_CASE(
     "a window that is closed while a force is on stops it at once and gives no more replies") {
   Sitting sitting;
@@ -237,6 +294,67 @@ void feel_texture(app::ParticipantWindow& window, double force_n) {
   }
 }
 
+TEST_CASE("Enter does not answer before the surface was felt, and the screen says so") {
+  app::ParticipantWindowOptions wanted = options();
+  wanted.least_touch = {.contact_s = 0.5, .path_mm = 25.0};
+  Sitting sitting(wanted);
+  sitting.run([&] {
+    sitting.show(session::ReadyStep{1, 25, false});
+    sitting.window.show_exploring(kPlane);
+    CHECK(sitting.window.wait_until_shown(kPatience));
+    std::this_thread::sleep_for(milliseconds(600));
+    const auto has_text = [&] {
+      const engine::ColourImage picture = sitting.window.picture();
+      const auto samples = picture.samples();
+      return std::ranges::any_of(
+          samples, [&](const engine::Rgb& sample) { return sample != samples.front(); });
+    };
+    CHECK_FALSE(has_text());
+    device::ServoControl servo;
+    const auto press_enter = [&] {
+      sitting.screen->type("Return");
+      sitting.settle();
+      sitting.window.exploring(servo);
+    };
+    press_enter();
+    CHECK_FALSE(servo.finish_asked());
+    CHECK(has_text());
+    const auto feel = [&](int from, int to, double z_mm) {
+      for (int tick = from; tick < to; ++tick) {
+        device::ServoSample sample;
+        sample.tick = tick;
+        sample.position_mm = {0.1 * tick, 20.0, z_mm};
+        sitting.window.feel(sample);
+      }
+      sitting.window.exploring(servo);
+    };
+    feel(0, 2000, 3.1);  // above the plane
+    feel(2000, 2500, -0.1);
+    CHECK(has_text());
+    press_enter();
+    CHECK_FALSE(servo.finish_asked());
+    feel(2500, 2502, -0.1);  // half a second
+    CHECK_FALSE(has_text());
+    CHECK_FALSE(servo.finish_asked());
+    press_enter();
+    CHECK(servo.finish_asked());
+    // Going back to the same surface needs no more; the next surface does.
+    sitting.show(answer_step(1));
+    sitting.window.show_exploring(kPlane);
+    std::this_thread::sleep_for(milliseconds(600));
+    servo.forget_wishes();
+    press_enter();
+    CHECK(servo.finish_asked());
+    sitting.show(answer_step(1));
+    sitting.show(session::ReadyStep{2, 25, false});
+    sitting.window.show_exploring(kPlane);
+    std::this_thread::sleep_for(milliseconds(600));
+    servo.forget_wishes();
+    press_enter();
+    CHECK_FALSE(servo.finish_asked());
+  });
+}
+
 TEST_CASE("the exploring screen does not depend on what is felt, to the last byte") {
   Sitting sitting;
   sitting.run([&] {
@@ -257,14 +375,6 @@ TEST_CASE("the exploring screen does not depend on what is felt, to the last byt
     }
   });
 }
-
-class CountedCues final : public app::Cues {
- public:
-  void tone(app::Cue cue) noexcept override {
-    if (cue == app::Cue::too_hard) ++too_hard;
-  }
-  std::atomic<int> too_hard{0};
-};
 
 TEST_CASE("a force above 2 N sounds a tone once, until it has been lower") {
   CountedCues cues;
@@ -314,7 +424,13 @@ TEST_CASE("a simulated participant answers with the window's keys") {
     questions.questions.push_back({"a", design::QuestionKind::text, {{"en", "Text"}}, {}, false});
     questions.questions.push_back(
         {"b", design::QuestionKind::choice, {{"en", "One"}}, {{{"en", "x"}}, {{"en", "y"}}}, true});
-    CHECK(reply_to(session::QuestionStep{&questions}).answers == std::vector<std::string>{"", "0"});
+    questions.questions.push_back({"c", design::QuestionKind::number, {{"en", "Age"}}, {}, true});
+    questions.questions.push_back({"d", design::QuestionKind::text, {{"en", "Text"}}, {}, true});
+    CHECK(reply_to(session::QuestionStep{&questions}).answers ==
+          std::vector<std::string>{"", "0", "1", "1"});
+    const session::NoticeStep stopped{session::NoticeStep::What::stopped, 1, false};
+    for (int i = 0; i < 5; ++i) CHECK_FALSE(subject.attend(stopped));
+    static_cast<void>(reply_to(session::NoticeStep{session::NoticeStep::What::stopped, 1}));
     for (int trial = 0; trial < 7; ++trial) {
       static_cast<void>(reply_to(session::ReadyStep{trial + 1, 7, false}));
       session::AnswerStep step = answer_step(trial + 1);
@@ -356,43 +472,46 @@ TEST_CASE("the window fills the requested monitor") {
   });
 }
 
+/// A study whose instructions have every page.
+design::Study full_study(const std::string& language) {
+  design::Study study;
+  study.protocol = &design::identification::comparison();
+  study.classes.resize(5);
+  study.trials.practice = 5;
+  study.session.language = language;
+  study.session.confidence_levels = 5;
+  return study;
+}
+
 /// Screens that a participant may see, for people to inspect.
-std::vector<std::pair<std::string, session::Step>> gallery() {
-  static const design::Questionnaire questions = {
-      "closing",
-      {{"hand",
-        design::QuestionKind::choice,
-        {{"en", "Which hand do you write with?"}, {"de", "Mit welcher Hand schreiben Sie?"}},
-        {{{"en", "always the left"}, {"de", "immer mit der linken"}},
-         {{"en", "usually the left"}, {"de", "meistens mit der linken"}},
-         {{"en", "either"}, {"de", "mit beiden"}},
-         {{"en", "usually the right"}, {"de", "meistens mit der rechten"}},
-         {{"en", "always the right"}, {"de", "immer mit der rechten"}}},
-        true}}};
-  static const design::Questionnaire free_text = {
-      "closing",
-      {{"strategy",
-        design::QuestionKind::text,
-        {{"en", "How did you decide?"}, {"de", "Wie haben Sie entschieden?"}},
-        {}}}};
-  const std::string page =
-      "How to feel\n\nHold the stylus like a pen and rest your forearm. Stroke the surface to the "
-      "left and to the right, in long and even strokes, about as hard as you would write.\n\nTake "
-      "as long as you like. When you have felt enough, press Enter and choose the picture that "
-      "belongs to the surface.";
-  return {{"instructions", session::InstructionStep{{page, page}}},
-          {"question", session::QuestionStep{&questions}},
-          {"text", session::QuestionStep{&free_text}},
-          {"practice", session::PracticeStep{1}},
-          {"ready", session::ReadyStep{7, 25, false}},
-          {"answer", session::AnswerStep{.trial = 7, .of = 25, .may_explore_again = true}},
-          {"time-is-up", session::AnswerStep{.trial = 8, .of = 25, .time_is_up = true}},
-          {"spoken", session::AnswerStep{.trial = 9, .of = 25, .sight = design::Sight::blindfold}},
-          {"wrong", session::FeedbackStep{0, 4}},
-          {"right", session::FeedbackStep{1, 1}},
-          {"break", session::BreakStep{10, 25}},
-          {"pause", session::PauseStep{}},
-          {"end", session::EndStep{}}};
+/// \param texts  must outlive the steps
+/// \param strategy  a question with a free answer; the same
+std::vector<std::pair<std::string, session::Step>> gallery(const session::SessionTexts& texts,
+                                                           const design::Questionnaire& strategy) {
+  std::vector<std::pair<std::string, session::Step>> steps;
+  for (std::size_t i = 0; i < texts.instructions.size(); ++i) {
+    steps.emplace_back("instructions-" + std::to_string(i + 1),
+                       session::InstructionStep{{texts.instructions[i]}});
+  }
+  const std::vector<std::pair<std::string, session::Step>> others = {
+      {"question", session::QuestionStep{&texts.handedness.value()}},
+      {"text", session::QuestionStep{&strategy}},
+      {"practice", session::PracticeStep{1}},
+      {"ready", session::ReadyStep{7, 25, false}},
+      {"answer", session::AnswerStep{.trial = 7, .of = 25, .may_explore_again = true}},
+      {"time-is-up", session::AnswerStep{.trial = 8, .of = 25, .time_is_up = true}},
+      {"spoken", session::AnswerStep{.trial = 9, .of = 25, .sight = design::Sight::blindfold}},
+      {"wrong", session::FeedbackStep{0, 4}},
+      {"right", session::FeedbackStep{1, 1}},
+      {"break", session::BreakStep{10, 25}},
+      {"practice-over", session::NoticeStep{session::NoticeStep::What::practice_over}},
+      {"no-response", session::NoticeStep{session::NoticeStep::What::time_is_up, 3}},
+      {"stopped", session::NoticeStep{session::NoticeStep::What::stopped, 3, false}},
+      {"stopped-alone", session::NoticeStep{session::NoticeStep::What::stopped, 3}},
+      {"pause", session::PauseStep{}},
+      {"end", session::EndStep{}}};
+  steps.insert(steps.end(), others.begin(), others.end());
+  return steps;
 }
 
 void keep(app::ParticipantWindow& window, const std::filesystem::path& file) {
@@ -406,16 +525,22 @@ TEST_CASE("screenshots of every screen, for TOUCHTRIAL_SCREENSHOTS=FOLDER", "[.]
   REQUIRE(folder != nullptr);
   const auto [width, height] =
       GENERATE(std::pair(1280, 720), std::pair(1920, 1080), std::pair(3840, 2160));
-  const std::string language = GENERATE("en", "de");
+  const std::string language = GENERATE("en", "de", "es", "fr", "ja", "zh");
   app::ParticipantWindowOptions wanted = options(width, height);
-  wanted.language = language;
+  wanted.session.language = language;
+  if (const char* const scale = std::getenv("TOUCHTRIAL_TEXT_SCALE")) {
+    wanted.session.text_scale = std::stod(scale);
+    wanted.session.high_contrast = true;
+  }
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
   Sitting sitting(wanted, size.c_str());
   const auto file = [&](const std::string& name) {
     return std::filesystem::path(folder) / (name + "-" + language + "-" + size + ".png");
   };
   sitting.run([&] {
-    for (const auto& [name, step] : gallery()) {
+    const session::SessionTexts texts = app::session_texts(full_study(language));
+    const design::Questionnaire strategy{"closing", {texts.closing->questions.at(1)}};
+    for (const auto& [name, step] : gallery(texts, strategy)) {
       sitting.show(step);
       if (name == "question" || name == "answer") sitting.type("4");
       if (name == "text") sitting.type("B y space f e e l");
@@ -434,6 +559,10 @@ TEST_CASE("screenshots of every screen, for TOUCHTRIAL_SCREENSHOTS=FOLDER", "[.]
     feel_texture(sitting.window, 0.9);
     CHECK(sitting.window.wait_until_shown(kPatience));
     keep(sitting.window, file("exploring-practice"));
+    const auto card = std::make_shared<app::CardScreen>(25.4 / 96.0);
+    CHECK_FALSE(sitting.window.attend(card));
+    CHECK(sitting.window.wait_until_shown(kPatience));
+    keep(sitting.window, file("card"));
   });
 }
 

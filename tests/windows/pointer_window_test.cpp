@@ -164,5 +164,12 @@ TEST_CASE("a monitor's stated size is used only if it can be true") {
   CHECK(app::stated_mm_per_unit(1600, 800) == 0.0);
 }
 
+TEST_CASE("a size that the system made up for a monitor that states none is known as such") {
+  CHECK(app::is_made_up(508, 1920));
+  CHECK(app::is_made_up(339, 1280));
+  CHECK_FALSE(app::is_made_up(509, 1920));  // 23 inches
+  CHECK_FALSE(app::is_made_up(598, 3840));  // 27 inches
+}
+
 }  // namespace
 }  // namespace touchtrial

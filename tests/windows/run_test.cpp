@@ -1,5 +1,7 @@
 // "touchtrial run" as experimenter and participant have it, on a screen that nobody sees.
+#include "analysis/collection.hpp"
 #include "analysis/sealed_sessions.hpp"
+#include "app/participant/participant_window.hpp"
 #include "app/touchtrial_process.hpp"
 #include "core/files.hpp"
 #include "protocols/store/study_store.hpp"
@@ -33,6 +35,7 @@ struct Laboratory {
     json study = json::parse(text_of(read_file(source / "config/classification.json", 1U << 20U)));
     study["trials"]["practice"] = 0;
     study["trials"]["break_every"] = 0;
+    study["trials"]["answer_after"] = {{"contact_s", 0}, {"path_mm", 0}};
     study.erase("practice");
     study["session"] = {{"handedness", false}, {"closing", false}};
     replace_file(in("config/study.json"), study.dump());
@@ -105,7 +108,7 @@ TEST_CASE("a simulated participant answers with the window's keys as without a w
 class Pilot {
  public:
   Pilot(const Laboratory& lab, const VirtualScreen& screen)
-      : screen_(screen), program_(command_in(lab), {}) {}
+      : screen_(screen), program_(command_in(lab), {"ALSA_CONFIG_PATH=" + sound_card_in(lab)}) {}
 
   /// \return the program's exit code
   int sit_through() {
@@ -122,6 +125,13 @@ class Pilot {
  private:
   static constexpr std::chrono::milliseconds kBetweenKeys{20};
 
+  /// A sound card that writes what it plays to the file `played.raw`.
+  static std::string sound_card_in(const Laboratory& lab) {
+    replace_file(lab.in("asoundrc"),
+                 "pcm.!default { type file\n slave.pcm { type null }\n file \"" +
+                     lab.in("played.raw") + "\"\n format \"raw\" }\n");
+    return lab.in("asoundrc");
+  }
   static std::vector<std::string> command_in(const Laboratory& lab) {
     std::vector<std::string> command =
         lab.run_arguments("pilot.db", {"--device", "mouse", "--pilot", "--window", "1280x720"});
@@ -158,7 +168,7 @@ class Pilot {
   std::map<int, int> meant_;  ///< position by presentation that was answered
 };
 
-TEST_CASE("a person pilots a whole session of 25 trials from the keyboard") {
+TEST_CASE("a person pilots a whole session of 25 trials from the keyboard, without a sound card") {
   const auto screen = VirtualScreen::open("1280x720");
   const Laboratory lab;
   Pilot pilot(lab, *screen);
@@ -167,7 +177,80 @@ TEST_CASE("a person pilots a whole session of 25 trials from the keyboard") {
   REQUIRE(code == 0);
   CHECK(pilot.meant().size() == 25);
   CHECK(positions_as_answered(lab, "pilot.db") == pilot.meant());
+  const auto opened =
+      analysis::load_collection(
+          store::StudyStore::open(lab.in("pilot.db"), store::StudyStore::Access::read_only))
+          .sessions.at(0)
+          .opened_utc;
+  CHECK(opened.size() == std::string("2026-01-31T14:05:09Z").size());
   lab.verify("pilot.db");
+  CHECK_FALSE(fs::exists(lab.in("played.raw")));
+}
+
+TEST_CASE("a simulated participant gets past required questions of every kind before a window") {
+  const auto screen = VirtualScreen::open("1280x720");
+  const Laboratory lab;
+  json study = json::parse(text_of(read_file(lab.in("config/study.json"), 1U << 20U)));
+  study["study"] = "asking";
+  study["trials"]["repeats"] = 1;
+  json questions = json::array();
+  for (const char* kind : {"choice", "number", "text"}) {
+    for (const bool required : {true, false}) {
+      json question = {{"id", kind + std::string(required ? "-must" : "-may")},
+                       {"kind", kind},
+                       {"text", {{"en", "?"}}},
+                       {"required", required}};
+      if (std::string(kind) == "choice") {
+        question["options"] = {{{"en", "one"}}, {{"en", "two"}}};
+      }
+      questions.push_back(question);
+    }
+  }
+  study["session"] = {{"closing_questions", questions}};
+  replace_file(lab.in("config/asking.json"), study.dump());
+  const ProgramResult seen = run_touchtrial(
+      lab.folder.path(),
+      {"run", lab.in("config/asking.json"), "--participant", "P01", "--db", lab.in("asking.db"),
+       "--subject", lab.in("quick.json"), "--no-sound", "--window", "1280x720"});
+  INFO(seen.errors);
+  CHECK(seen.exit_code == 0);
+}
+
+/// While it lives, the program's configuration is in a folder of its own.
+class OwnConfiguration {
+ public:
+  OwnConfiguration() { ::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1); }
+  ~OwnConfiguration() { ::unsetenv("XDG_CONFIG_HOME"); }
+  OwnConfiguration(const OwnConfiguration&) = delete;
+  OwnConfiguration& operator=(const OwnConfiguration&) = delete;
+
+  TempFolder folder;
+};
+
+TEST_CASE("a screen that was measured with a card has a known scale from then on") {
+  const OwnConfiguration own;
+  const auto screen = VirtualScreen::open("1280x720");
+  app::ParticipantWindowOptions window;
+  window.size_px = {640, 480};
+  CHECK_FALSE(app::ParticipantWindow(window).screen().is_known);
+  testing::ChildProcess program({TOUCHTRIAL_PROGRAM, "screen", "calibrate", "--window", "1280x720"},
+                                {});
+  // A key that is pressed before the frame is shown does nothing.
+  while (program.listen(std::chrono::milliseconds(20))) screen->type("Return");
+  CHECK(program.finish() == 0);
+  INFO(program.output());
+  const fs::path file = own.folder.path() / "touchtrial" / "screens.json";
+  CHECK_THAT(program.output(), holds_text("kept in " + file.string()));
+  const json kept = json::parse(text_of(read_file(file, 1U << 20U)));
+  REQUIRE(kept.at("screens").size() == 1);
+  const app::ScreenScale scale = app::ParticipantWindow(window).screen();
+  CHECK(scale.is_known);
+  CHECK(scale.is_measured);
+  CHECK(scale.monitor == kept.at("screens").at(0).at("monitor"));
+  CHECK(scale.mm_per_unit == kept.at("screens").at(0).at("mm_per_unit").get<double>());
+
+  replace_file(file, R"({"screens": 3})");
+  CHECK_FALSE(app::ParticipantWindow(window).screen().is_known);
 }
 
 }  // namespace

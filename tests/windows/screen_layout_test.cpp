@@ -1,14 +1,24 @@
-// Checks that everything a participant reads lies on the screen, in both languages and at several
+// Checks that everything a participant reads lies on the screen, in all languages and at several
 // sizes. The screens are drawn without a window, and the places of texts and buttons are compared.
 #include "app/participant/answer_screen.hpp"
 #include "app/participant/canvas.hpp"
+#include "app/participant/card_screen.hpp"
+#include "app/participant/exploring_screen.hpp"
 #include "app/participant/page_layout.hpp"
 #include "app/participant/screen.hpp"
+#include "app/texts/study_texts.hpp"
+#include "app/windows/look.hpp"
+#include "protocols/design/languages.hpp"
+#include "protocols/identification/design/identification.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -32,24 +42,32 @@ class Squares final : public app::PictureShelf {
   double side_mm_;
 };
 
+const app::Words& words_in(const std::string& language) {
+  static std::map<std::string, app::Words> all;
+  const auto [place, is_new] = all.try_emplace(language);
+  if (is_new) place->second = app::words_of(design::language_of(language).texts);
+  return place->second;
+}
+
 /// Dear ImGui without a window or a graphics card.
 class Paper {
  public:
-  explicit Paper(Vec2 size) : size_(size), context_(ImGui::CreateContext()) {
+  explicit Paper(Vec2 size, double text_scale = 1.0, const std::set<char32_t>& letters = {})
+      : size_(size), context_(ImGui::CreateContext()) {
     ImGui::SetCurrentContext(context_);
     ImGui::GetIO().IniFilename = nullptr;
     ImGui::GetIO().DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
-    fonts_ = app::load_participant_fonts(app::design_unit(size));
-    ImGui::GetIO().Fonts->Build();
+    fonts_ = app::load_participant_fonts(text_scale * app::design_unit(size), letters);
   }
   ~Paper() { ImGui::DestroyContext(context_); }
   Paper(const Paper&) = delete;
   Paper& operator=(const Paper&) = delete;
 
-  [[nodiscard]] app::Canvas draw(app::Screen& screen) const {
+  [[nodiscard]] app::Canvas draw(app::Screen& screen, bool high_contrast = false) const {
     ImGui::SetCurrentContext(context_);
     ImGui::NewFrame();
-    app::Canvas canvas(*ImGui::GetBackgroundDrawList(), fonts_, size_, screen.attention());
+    app::Canvas canvas(*ImGui::GetBackgroundDrawList(), fonts_, size_, screen.attention(),
+                       high_contrast);
     screen.draw(canvas);
     ImGui::EndFrame();
     return canvas;
@@ -88,6 +106,7 @@ std::string faults_of(const app::Canvas& canvas) {
       }
     }
   }
+  if (!canvas.missing().empty()) faults += "a letter that no font has\n";
   const std::vector<app::Target>& targets = canvas.targets();
   for (std::size_t i = 0; i < targets.size(); ++i) {
     if (!lies_inside(targets[i].box, all)) faults += "a button is off the screen\n";
@@ -153,6 +172,10 @@ std::vector<session::Step> steps_of_a_session() {
           session::FeedbackStep{0, 1},
           session::FeedbackStep{1, 1},
           session::BreakStep{10, 25},
+          session::NoticeStep{session::NoticeStep::What::practice_over},
+          session::NoticeStep{session::NoticeStep::What::time_is_up, 3},
+          session::NoticeStep{session::NoticeStep::What::stopped, 3},
+          session::NoticeStep{session::NoticeStep::What::stopped, 3, false},
           session::PauseStep{},
           session::EndStep{}};
 }
@@ -169,33 +192,209 @@ void check_all_pages(const Paper& paper, app::Screen& screen) {
   }
 }
 
-TEST_CASE("everything on every screen can be read, in both languages and at all sizes") {
+/// The texts of a language's files, and of the questions in this file.
+std::vector<std::string> all_texts(const std::string& language) {
+  std::vector<std::string> texts = {"≤≥"};
+  for (const auto& [section, parts] : design::language_of(language).texts) {
+    for (const auto& [key, text] : parts) texts.push_back(text);
+  }
+  return texts;
+}
+
+/// A study with every page of instructions.
+design::Study full_study(const std::string& language) {
+  design::Study study;
+  study.protocol = &design::identification::comparison();
+  study.classes.resize(5);
+  study.trials.practice = 5;
+  study.session.language = language;
+  study.session.confidence_levels = 5;
+  return study;
+}
+
+/// The steps above, and the program's own instructions and questions.
+std::vector<session::Step> own_steps(const session::SessionTexts& texts) {
+  std::vector<session::Step> steps = steps_of_a_session();
+  steps.push_back(session::InstructionStep{texts.instructions});
+  steps.push_back(session::QuestionStep{&texts.handedness.value()});
+  steps.push_back(session::QuestionStep{&texts.closing.value()});
+  return steps;
+}
+
+TEST_CASE("everything on every screen can be read, in all languages and at all sizes") {
   const Vec2 size = GENERATE(Vec2{1280.0, 720.0}, Vec2{1920.0, 1080.0}, Vec2{3840.0, 2160.0},
                              Vec2{1280.0, 1024.0}, Vec2{3440.0, 1440.0});
-  const std::string language = GENERATE("en", "de");
+  const std::string language = GENERATE("en", "de", "es", "fr", "ja", "zh");
   const double side_mm = GENERATE(25.0, 51.2, 100.0);
   const bool knows = side_mm < 100.0;
-  CAPTURE(size.x, language, side_mm);
-  const Paper paper(size);
+  // The largest letters are tried with the pictures that leave them least room.
+  const double text_scale = knows ? 1.0 : design::kLargestTextScale;
+  CAPTURE(size.x, language, side_mm, text_scale);
+  const Paper paper(size, text_scale, app::letters_in(all_texts(language)));
+  const session::SessionTexts texts = app::session_texts(full_study(language));
+  const app::Words words = app::words_of(design::language_of(language).texts);
   Squares shelf(side_mm);
   const app::Glass glass = {size.x > 2000.0 ? 0.16 : 0.27, knows};
   for (const std::size_t count : {2U, 5U, 9U}) {
-    const app::ScreenContext context = {.words = &app::words_in(language),
+    const app::ScreenContext context = {.words = &words,
                                         .language = language,
                                         .mouse = count == 5U,
                                         .shelf = &shelf,
                                         .glass = &glass};
     const std::vector<std::string> labels(count, "corrugated cardboard");
-    for (const session::Step& step : steps_of_a_session()) {
+    for (const session::Step& step : count == 5U ? own_steps(texts) : steps_of_a_session()) {
       CAPTURE(step.index(), count);
       check_all_pages(paper, *app::screen_for(step, context, labels));
     }
   }
 }
 
+TEST_CASE("with high contrast, no screen has the design's pale colours") {
+  const Paper paper({1280.0, 720.0});
+  Squares shelf(51.2);
+  const app::Glass glass = {0.27, true};
+  const app::Words words = app::words_of(design::language_of("en").texts);
+  const app::ScreenContext context = {.words = &words, .shelf = &shelf, .glass = &glass};
+  const auto uses = [&](app::Screen& screen, bool high_contrast, std::uint32_t colour) {
+    static_cast<void>(paper.draw(screen, high_contrast));
+    const auto& vertices = ImGui::GetBackgroundDrawList()->VtxBuffer;
+    return std::any_of(vertices.begin(), vertices.end(),
+                       [&](const ImDrawVert& vertex) { return vertex.col == colour; });
+  };
+  for (const session::Step& step : steps_of_a_session()) {
+    CAPTURE(step.index());
+    const auto screen = app::screen_for(step, context, {"bark", "cloth"});
+    CHECK(uses(*screen, false, app::tone::kGround));
+    for (const std::uint32_t pale : {app::tone::kGround, app::tone::kQuiet, app::tone::kEdge}) {
+      CHECK_FALSE(uses(*screen, true, pale));
+    }
+  }
+}
+
+TEST_CASE("letters that are new to the fonts are reported, and are there when asked for") {
+  Squares shelf(51.2);
+  const app::Glass glass;
+  const app::Words words = app::words_of(design::language_of("ja").texts);
+  const app::ScreenContext context = {.words = &words, .shelf = &shelf, .glass = &glass};
+  const auto screen = app::screen_for(session::EndStep{}, context, {});
+  std::set<char32_t> missing;
+  {
+    const Paper paper({1280.0, 720.0});
+    missing = paper.draw(*screen).missing();
+  }
+  CHECK(missing.contains(U'終'));
+  CHECK_FALSE(missing.contains(U' '));
+  const Paper paper({1280.0, 720.0}, 1.0, missing);
+  CHECK(paper.draw(*screen).missing().empty());
+}
+
+TEST_CASE("a page shows its pictures beside the text, and bold words without their marks") {
+  const Paper paper({1280.0, 720.0});
+  Squares shelf(51.2);
+  const app::Glass glass;
+  const app::Words words = app::words_of(design::language_of("en").texts);
+  const app::ScreenContext context = {.words = &words, .shelf = &shelf, .glass = &glass};
+  const auto width_of_body = [&](const std::string& page) {
+    const auto screen = app::screen_for(session::InstructionStep{{page}}, context, {});
+    const app::Canvas canvas = paper.draw(*screen);
+    REQUIRE(canvas.texts().size() >= 2);
+    CHECK(canvas.texts()[1].text.find("![](") == std::string::npos);
+    return canvas.texts()[1].box.width;
+  };
+  const double plain = width_of_body("Title\n\nwords");
+  CHECK(width_of_body("Title\n\nwords\n\n![](drawing:hand)") == Approx(plain));
+  CHECK(width_of_body("Title\n\n![](some.png)\n\nwords") == Approx(plain));
+  // Bold letters are wider, and the asterisks take no room.
+  const double bold = width_of_body("Title\n\n**words**");
+  CHECK(bold > plain);
+  CHECK(bold < 1.5 * plain);
+}
+
+bool shows(const app::Canvas& canvas, const std::string& part) {
+  return std::ranges::any_of(canvas.texts(), [&](const app::PlacedText& placed) {
+    return placed.text.find(part) != std::string::npos;
+  });
+}
+
+TEST_CASE("pictures claim a scale only on a screen whose size is known") {
+  const Paper paper({1280.0, 720.0});
+  const double side_mm = GENERATE(25.0, 100.0);
+  Squares shelf(side_mm);
+  for (const bool is_known : {true, false}) {
+    CAPTURE(side_mm, is_known);
+    const app::Glass glass = {0.27, is_known};
+    app::AnswerScreen screen({.trial = 1, .of = 25},
+                             {.words = &words_in("en"), .shelf = &shelf, .glass = &glass},
+                             std::vector<std::string>(5, "x"));
+    const app::Canvas canvas = paper.draw(screen);
+    CHECK(shows(canvas, "10 mm of the surface"));
+    CHECK(shows(canvas, "in true size") == (is_known && side_mm < 50.0));
+    CHECK(shows(canvas, "% of true size") == (is_known && side_mm > 50.0));
+    CHECK(shows(canvas, "size on this screen is not known") == !is_known);
+  }
+}
+
+TEST_CASE("the mouse's hint is there in practice too, above the bars") {
+  const Vec2 size = GENERATE(Vec2{1280.0, 720.0}, Vec2{1920.0, 1080.0}, Vec2{3840.0, 2160.0});
+  const std::string language = GENERATE("en", "de");
+  const bool practice = GENERATE(true, false);
+  const Paper paper(size);
+  Squares shelf(50.0);
+  const app::Glass glass = {0.27, true};
+  const app::ScreenContext context = {.words = &words_in(language),
+                                      .language = language,
+                                      .mouse = true,
+                                      .shelf = &shelf,
+                                      .glass = &glass};
+  app::FeltNow felt;
+  felt.force_n = 2.3F;  // too hard, which is said beside the bars
+  device::PointerExchange pointer;
+  const std::atomic<bool> pressed{false};
+  // A plane that fills the window.
+  app::ExploringScreen screen(
+      {practice ? &felt : nullptr, &pointer, &pressed, nullptr, {1.0, 900, 900}}, context);
+  const app::Canvas canvas = paper.draw(screen);
+  CHECK(shows(canvas, context.words->exploring_mouse));
+  CHECK(faults_of(canvas) == "");
+  const app::PlaneOnScreen plane = app::place_plane(size, {900.0, 900.0}, 0.27);
+  for (const app::PlacedText& placed : canvas.texts()) {
+    CHECK(placed.box.y >= plane.corner.y + 900.0 / plane.mm_per_unit);
+  }
+}
+
+TEST_CASE("after a comfort stop the space bar does nothing, and Enter goes on where it may") {
+  const bool may_go_on = GENERATE(true, false);
+  const Paper paper({1280.0, 720.0});
+  Squares shelf(50.0);
+  const app::Glass glass;
+  const app::ScreenContext context = {.words = &words_in("en"), .shelf = &shelf, .glass = &glass};
+  const auto screen = app::screen_for(
+      session::NoticeStep{session::NoticeStep::What::stopped, 3, may_go_on}, context, {});
+  static_cast<void>(paper.draw(*screen));
+  CHECK_FALSE(screen->take(key(app::Key::space)));
+  CHECK(screen->take(key(app::Key::enter)).has_value() == may_go_on);
+}
+
+TEST_CASE("a frame that is as large as a bank card gives the scale of the screen") {
+  const Vec2 size = GENERATE(Vec2{1280.0, 720.0}, Vec2{1920.0, 1080.0}, Vec2{3840.0, 2160.0});
+  const Paper paper(size);
+  app::CardScreen screen(85.6 / 320.0);
+  CHECK(faults_of(paper.draw(screen)) == "");
+  for (const app::Key which :
+       {app::Key::right, app::Key::right, app::Key::up, app::Key::left, app::Key::down}) {
+    CHECK_FALSE(screen.take(key(which)));
+  }
+  CHECK(screen.mm_per_unit() == Approx(85.6 / 321.0));
+  app::InputEvent held = key(app::Key::up);
+  held.kind = app::InputEvent::Kind::repeat;
+  for (int i = 0; i < 500; ++i) CHECK_FALSE(screen.take(held));
+  CHECK(screen.mm_per_unit() == Approx(25.4 / 400.0).epsilon(1e-3));
+  CHECK(screen.take(key(app::Key::enter)));
+}
+
 struct Asked {
   explicit Asked(const session::AnswerStep& step = {.trial = 1, .of = 25}, int count = 5)
-      : screen(step, {.words = &app::words_in("en"), .shelf = &shelf, .glass = &glass},
+      : screen(step, {.words = &words, .shelf = &shelf, .glass = &glass},
                std::vector<std::string>(static_cast<std::size_t>(count), "x")) {
     static_cast<void>(paper.draw(screen));
   }
@@ -205,6 +404,7 @@ struct Asked {
     return reply;
   }
 
+  app::Words words = app::words_of(design::language_of("en").texts);
   Paper paper{{1280.0, 720.0}};
   Squares shelf{51.2};
   app::Glass glass{0.27, true};
@@ -311,8 +511,9 @@ TEST_CASE("a questionnaire can be answered with keys, and optional questions can
   const Paper paper({1280.0, 720.0});
   Squares shelf(51.2);
   const app::Glass glass;
+  const app::Words words = app::words_of(design::language_of("de").texts);
   const app::ScreenContext context = {
-      .words = &app::words_in("de"), .language = "de", .shelf = &shelf, .glass = &glass};
+      .words = &words, .language = "de", .shelf = &shelf, .glass = &glass};
   const auto screen = app::screen_for(session::QuestionStep{&questions()}, context, {});
   const auto press = [&](app::Key which, int digit = 0) {
     static_cast<void>(paper.draw(*screen));
@@ -344,6 +545,90 @@ TEST_CASE("a questionnaire can be answered with keys, and optional questions can
   const auto reply = press(app::Key::enter);
   REQUIRE(reply);
   CHECK(reply->answers == std::vector<std::string>{"4", "0", "23.5", "Rü"});
+}
+
+TEST_CASE("a number that the question does not accept does not go on, and its bounds are shown") {
+  const Paper paper({1280.0, 720.0});
+  Squares shelf(51.2);
+  const app::Glass glass;
+  const app::ScreenContext context = {
+      .words = &words_in("de"), .language = "de", .shelf = &shelf, .glass = &glass};
+  design::Question age{"age", design::QuestionKind::number, {{"de", "Alter?"}}, {}};
+  age.min = 18.0;
+  age.max = 99.5;
+  const design::Questionnaire asked = {"closing", {age}};
+  const auto screen = app::screen_for(session::QuestionStep{&asked}, context, {});
+  const auto has_text = [&](const std::string& text) {
+    const std::vector<app::PlacedText> texts = paper.draw(*screen).texts();
+    return std::ranges::any_of(texts, [&](const app::PlacedText& t) { return t.text == text; });
+  };
+  CHECK(has_text("18 – 99,5"));
+  const auto number = [&](const std::u32string& digits) {
+    for (int i = 0; i < 12; ++i) static_cast<void>(screen->take(key(app::Key::backspace)));
+    for (const char32_t digit : digits) {
+      app::InputEvent event;
+      event.kind = app::InputEvent::Kind::letter;
+      event.letter = digit;
+      CHECK_FALSE(screen->take(event));
+    }
+    CHECK(faults_of(paper.draw(*screen)) == "");
+    return screen->take(key(app::Key::enter));
+  };
+  for (const std::u32string no : {U"17", U"99,6", U"100", U"-20", U"2-", U"1.8.", U","}) {
+    CHECK_FALSE(number(no));
+  }
+  const auto reply = number(U"99,5");
+  REQUIRE(reply);
+  CHECK(reply->answers == std::vector<std::string>{"99.5"});
+}
+
+TEST_CASE("Next stays where it was when other buttons come and go") {
+  const auto next_of = [](const app::Canvas& canvas) {
+    const auto found = std::ranges::find(canvas.targets(), app::kNextTarget, &app::Target::id);
+    REQUIRE(found != canvas.targets().end());
+    return found->box;
+  };
+  Asked without;
+  Asked with({.trial = 1, .of = 25, .may_explore_again = true});
+  static_cast<void>(without.press(app::Key::digit, 1));
+  static_cast<void>(with.press(app::Key::digit, 1));
+  const app::Box next = next_of(without.paper.draw(without.screen));
+  CHECK(next.x + next.width / 2.0 == Approx(640.0).margin(1.0));
+  CHECK(next_of(with.paper.draw(with.screen)).x == next.x);
+  const Paper paper({1280.0, 720.0});
+  const app::ScreenContext context = {
+      .words = &words_in("en"), .shelf = &with.shelf, .glass = &with.glass};
+  const auto pages = app::screen_for(session::InstructionStep{{"one", "two"}}, context, {});
+  CHECK(next_of(paper.draw(*pages)).x == next.x);
+  static_cast<void>(pages->take(key(app::Key::enter)));
+  const app::Canvas second = paper.draw(*pages);
+  CHECK(second.targets().size() == 2);  // Back has come
+  CHECK(next_of(second).x == next.x);
+}
+
+TEST_CASE("many pictures are as large as any grid allows with a quarter of their side between") {
+  const int count = GENERATE(10, 16, 25, 30, 49, 64);
+  CAPTURE(count);
+  constexpr double kWidth = 1152.0;
+  constexpr double kHeight = 384.0;
+  constexpr double kBelow = 40.0;
+  const std::vector<Vec2> sizes(static_cast<std::size_t>(count), {378.0, 378.0});
+  const app::PictureGrid grid =
+      app::lay_out_pictures(sizes, {0.0, 0.0, kWidth, kHeight}, 32.0, kBelow);
+  const double side = grid.pictures.front().width;
+  double largest = 0.0;
+  for (int columns = 1; columns <= count; ++columns) {
+    const int rows = (count + columns - 1) / columns;
+    largest = std::max(largest, std::min(kWidth / (1.25 * columns - 0.25),
+                                         (kHeight - rows * kBelow) / (1.25 * rows - 0.25)));
+  }
+  CHECK(side >= largest - 1e-6);
+  for (std::size_t i = 0; i < grid.pictures.size(); ++i) {
+    app::Box one = grid.pictures[i];
+    one.height += kBelow;
+    CHECK(lies_inside(one, {0.0, 0.0, kWidth, kHeight}));
+    for (std::size_t j = 0; j < i; ++j) CHECK_FALSE(overlap(one, grid.pictures[j]));
+  }
 }
 
 TEST_CASE("pictures have their true size if there is room, and are never larger") {

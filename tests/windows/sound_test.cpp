@@ -110,7 +110,8 @@ TEST_CASE("noise begins and ends in ramps without a step") {
 }
 
 TEST_CASE("tones begin and end without a step, and stop by themselves") {
-  for (const app::Cue cue : {app::Cue::plane_on, app::Cue::plane_off, app::Cue::too_hard}) {
+  for (const app::Cue cue :
+       {app::Cue::plane_on, app::Cue::plane_off, app::Cue::too_hard, app::Cue::stopped}) {
     app::SoundMixer mixer(kRateHz, {});
     mixer.tone(cue);
     const std::vector<float> samples = rendered(mixer, 48000);

@@ -1,10 +1,12 @@
 #include "app/texts/study_texts.hpp"
 
-#include "core/errors.hpp"
-#include "core/strict_json.hpp"
+#include "app/participant/words.hpp"
+#include "protocols/design/deviation_codes.hpp"
+#include "protocols/design/languages.hpp"
 #include "protocols/identification/design/identification.hpp"
 #include "support/catch.hpp"
 
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,44 +53,27 @@ std::vector<design::Study> every_kind(const std::string& language) {
   return studies;
 }
 
-TEST_CASE("English and German ask the same questions with as many options") {
-  const auto& languages = app::built_in_languages();
-  REQUIRE(languages.size() == 2);
-  const app::LanguageTexts& english = languages[0];
-  const app::LanguageTexts& german = languages[1];
-  CHECK(english.language == "en");
-  CHECK(german.language == "de");
-  const auto same = [](const std::vector<app::QuestionText>& a,
-                       const std::vector<app::QuestionText>& b) {
-    REQUIRE(a.size() == b.size());
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      CHECK(a[i].id == b[i].id);
-      CHECK(a[i].options.size() == b[i].options.size());
-      CHECK(a[i].text != b[i].text);
-    }
-  };
-  same(english.handedness, german.handedness);
-  same({english.pen_hand}, {german.pen_hand});
-  same(english.closing, german.closing);
+TEST_CASE("the window uses every text of the screens, and no other") {
+  design::Texts texts = design::language_of("en").texts;
+  CHECK(app::words_of(texts).next == "Next");
+  for (const auto& [key, text] : design::language_of("en").texts.at("screens")) {
+    INFO(key);
+    design::Texts without = texts;
+    without.at("screens").erase(key);
+    CHECK_THROWS_AS(app::words_of(without), std::out_of_range);
+  }
 }
 
-TEST_CASE("a language file with a part missing, misspelt or empty is refused") {
-  const std::string good(app::english_texts_json());
-  const auto with = [&](const std::string& from, const std::string& to) {
-    std::string text = good;
-    const auto at = text.find(from);
-    REQUIRE(at != std::string::npos);
-    return text.replace(at, from.size(), to);
-  };
-  CHECK_NOTHROW(app::parse_language_texts(good, "en.json"));
-  CHECK_THROWS_AS(app::parse_language_texts(with("\"warm_up\"", "\"warmup\""), "x"), StudyError);
-  CHECK_THROWS_AS(app::parse_language_texts(with("\"language\": \"en\",", ""), "x"), StudyError);
-  CHECK_THROWS_AS(app::parse_language_texts(with("\"Right\"", "\"\""), "x"), StudyError);
-  CHECK_THROWS_AS(app::parse_language_texts(with("Welcome", "\xff"), "x"), StudyError);
+TEST_CASE("values take the places of the words in braces, wherever these are") {
+  CHECK(app::with_numbers("{of} ... {trial} of {of}", {{"trial", 7}, {"of", 25}}) ==
+        "25 ... 7 of 25");
+  CHECK(app::filled("It was: {label}", {{"label", "{label} {of}"}}) == "It was: {label} {of}");
 }
 
 TEST_CASE("instructions of every study hold its numbers and no word in braces") {
-  for (const std::string language : {"en", "de"}) {
+  for (const std::string_view code : design::language_codes()) {
+    const std::string language(code);
+    CAPTURE(language);
     for (const design::Study& study : every_kind(language)) {
       const session::SessionTexts texts = app::session_texts(study);
       CHECK(texts.instructions.size() >= 6);
@@ -99,7 +84,7 @@ TEST_CASE("instructions of every study hold its numbers and no word in braces") 
       CHECK(text.find("bark") == std::string::npos);
       // Speeds and forces of good strokes.
       CHECK(text.find("50") != std::string::npos);
-      CHECK(text.find(language == "de" ? "0,5" : "0.5") != std::string::npos);
+      CHECK(text.find(design::has_decimal_comma(code) ? "0,5" : "0.5") != std::string::npos);
     }
   }
 }
@@ -112,10 +97,21 @@ TEST_CASE("a study's own instructions replace the program's in their language on
   CHECK(app::session_texts(study).instructions == std::vector<std::string>{"Nur das, {limit}."});
 }
 
+TEST_CASE("a study replaces one page of the instructions by its own") {
+  design::Study study = two_textures();
+  const std::size_t pages = app::session_texts(study).instructions.size();
+  study.session.texts["en"]["instructions"]["welcome"] = "Hello.";
+  study.session.texts["de"]["instructions"]["comfort"] = "Halt.";
+  const std::vector<std::string> own = app::session_texts(study).instructions;
+  CHECK(own.size() == pages);
+  CHECK(own.front() == "Hello.");
+  CHECK(own.back() != "Halt.");
+}
+
 TEST_CASE("texts are in English if the program does not have the study's language") {
   design::Study study = two_textures();
   const session::SessionTexts english = app::session_texts(study);
-  study.session.language = "fr";
+  study.session.language = "xx";
   CHECK(app::session_texts(study).instructions == english.instructions);
 }
 
@@ -128,6 +124,12 @@ TEST_CASE("the handedness inventory has four items with five options, then asks 
   CHECK(inventory->questions[4].id == "pen-hand");
   CHECK(inventory->questions[0].text.at("de") == "Welche Hand benutzen Sie zum Schreiben?");
   CHECK(inventory->questions[0].options[4].at("en") == "Always left");
+  study.session.language = "de";
+  study.session.texts["de"]["handedness"]["spoon"] = "Und den Löffel?";
+  const auto german = app::session_texts(study).handedness;
+  CHECK(german->questions[0].text.at("de") == "Welche Hand benutzen Sie zum Schreiben?");
+  CHECK(german->questions[3].text.at("de") == "Und den Löffel?");
+  CHECK(german->questions[3].text.at("en") == "Which hand do you use for a spoon?");
   study.session.handedness = false;
   CHECK_FALSE(app::session_texts(study).handedness);
 }
@@ -169,6 +171,9 @@ TEST_CASE("the day sheet has what the study needs, each with a deviation code of
   CHECK_FALSE(has(blind, "no-headphones"));
   CHECK_FALSE(has(blind, "no-curtain"));
   CHECK(has(blind, "no-labels-learnt"));
+  for (const std::vector<session::DaySheetItem>* const items : {&sheet, &blind}) {
+    for (const session::DaySheetItem& item : *items) CHECK(design::is_deviation_code(item.code));
+  }
 }
 
 }  // namespace

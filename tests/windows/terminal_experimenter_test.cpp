@@ -1,7 +1,7 @@
 #include "app/experimenter/terminal_experimenter.hpp"
 
 #include "app/experimenter/status_words.hpp"
-#include "protocols/simulation/prompt_participant.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
 #include "support/catch.hpp"
 
 #include <stdexcept>
@@ -81,6 +81,19 @@ TEST_CASE("notes and deviations accept umlauts and backspace, and Escape discard
   CHECK(requests[1].text == "f\xc3\xbcr P07");
 }
 
+TEST_CASE("Tab completes the code of a deviation, and goes on to the next of the program's") {
+  TypedTerminal typed;
+  app::TerminalExperimenter experimenter(typed.terminal());
+  typed.keys = "dno-cu\t\nfell\ndno-ca\t\n\ndno-c\t\t\n\nd\t\n\ndmy own\t\n\n";
+  const auto requests = all_requests(experimenter);
+  REQUIRE(requests.size() == 5);
+  CHECK(requests[0].code == "no-curtain");
+  CHECK(requests[1].code == "no-calibration");
+  CHECK(requests[2].code == "no-certificate");
+  CHECK(requests[3].code == "answers-lost");
+  CHECK(requests[4].code == "my own");
+}
+
 TEST_CASE("a session is ended only after yes and a reason") {
   TypedTerminal typed;
   app::TerminalExperimenter experimenter(typed.terminal());
@@ -137,6 +150,47 @@ TEST_CASE("the status line is overwritten and never wraps") {
   CHECK(typed.written.size() == 1 + 79 + 3);
   CHECK(app::first_of("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xa4\xc3\xb6");
   CHECK(app::last_of("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xb6\xc3\xbc");
+}
+
+TEST_CASE("the participant's stop is told once and audibly, with what to do") {
+  TypedTerminal typed;
+  app::TerminalExperimenter experimenter(typed.terminal());
+  session::SessionStatus status = exploring();
+  experimenter.show(status);
+  typed.written.clear();
+  status.stage = "stopped";
+  status.participant_stopped = true;
+  status.needs_consent = true;
+  experimenter.show(status);
+  experimenter.show(status);
+  const std::string told = "The participant has stopped the force.";
+  const std::size_t at = typed.written.find(told);
+  REQUIRE(at != std::string::npos);
+  CHECK(typed.written.find(told, at + 1) == std::string::npos);
+  CHECK(typed.written.find('\a') != std::string::npos);
+  CHECK(typed.written.find("press g") != std::string::npos);
+  CHECK(typed.written.find("stopped by the participant") != std::string::npos);
+  status = exploring();
+  experimenter.show(status);
+  status.stage = "stopped";
+  status.participant_stopped = true;
+  experimenter.show(status);
+  CHECK(typed.written.find(told, at + 1) != std::string::npos);
+}
+
+TEST_CASE("lines of standard output do not run into the line that is overwritten") {
+  TypedTerminal typed;
+  app::TerminalExperimenter experimenter(typed.terminal());
+  experimenter.show(exploring());
+  typed.written.clear();
+  experimenter.acknowledged(3);
+  CHECK(typed.written == "\r\x1b[K");
+  experimenter.show(exploring());
+  typed.written.clear();
+  experimenter.end_line();
+  CHECK(typed.written == "\n");
+  experimenter.end_line();
+  CHECK(typed.written == "\n");
 }
 
 TEST_CASE("force comes on only by a key that is pressed when nothing is missing") {

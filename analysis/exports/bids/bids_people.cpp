@@ -1,21 +1,28 @@
 #include "analysis/exports/bids/bids_people.hpp"
 
+#include "analysis/answers.hpp"
+#include "analysis/collection.hpp"
 #include "analysis/demographics.hpp"
 #include "analysis/exports/study_tables.hpp"
-#include "analysis/session_rules.hpp"
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 
 namespace touchtrial::analysis {
 namespace {
 
+/// What a participant told, and the consent form that was signed last.
+struct BidsPerson : Demographics {
+  std::optional<std::string> consent_version{};
+};
+
 /// A column of participants.tsv that exists only if at least one participant has a value.
 struct OptionalColumn {
   const char* name;
-  DataCell (*value)(const Demographics&);
+  DataCell (*value)(const BidsPerson&);
 };
 
 DataCell text_or_nothing(const std::optional<std::string>& text) {
@@ -23,27 +30,28 @@ DataCell text_or_nothing(const std::optional<std::string>& text) {
   return *text;
 }
 
-constexpr std::array<OptionalColumn, 4> kOptionalColumns{{
-    {"age_band", [](const Demographics& of) { return text_or_nothing(of.age_band); }},
-    {"sex", [](const Demographics& of) { return text_or_nothing(of.sex); }},
+constexpr std::array<OptionalColumn, 5> kOptionalColumns{{
+    {"age_band", [](const BidsPerson& of) { return text_or_nothing(of.age_band); }},
+    {"sex", [](const BidsPerson& of) { return text_or_nothing(of.sex); }},
     {"handedness",
-     [](const Demographics& of) -> DataCell {
+     [](const BidsPerson& of) -> DataCell {
        if (!of.handedness_score) return std::monostate{};
        return handedness_of(*of.handedness_score);
      }},
     {"handedness_score",
-     [](const Demographics& of) -> DataCell {
+     [](const BidsPerson& of) -> DataCell {
        if (!of.handedness_score) return std::monostate{};
        return *of.handedness_score;
      }},
+    {"consent_version", [](const BidsPerson& of) { return text_or_nothing(of.consent_version); }},
 }};
 
 /// Adds the column unless all its values are missing.
 /// \param people  one entry for each row of the table
 void add_if_known(DataTable& table, const OptionalColumn& column,
-                  const std::vector<Demographics>& people) {
+                  const std::vector<BidsPerson>& people) {
   std::vector<DataCell> values;
-  for (const Demographics& one : people) values.push_back(column.value(one));
+  for (const BidsPerson& one : people) values.push_back(column.value(one));
   if (std::all_of(values.begin(), values.end(), [](const DataCell& cell) {
         return std::holds_alternative<std::monostate>(cell);
       })) {
@@ -55,9 +63,9 @@ void add_if_known(DataTable& table, const OptionalColumn& column,
 
 /// The columns that describe a session, in the order of session_cells.
 const std::vector<std::string>& session_columns() {
-  static const std::vector<std::string> kColumns{"session",         "enrolment", "session_state",
-                                                 "excluded",        "pilot",     "simulated",
-                                                 "counted_session", "device",    "replaced_by"};
+  static const std::vector<std::string> kColumns{
+      "session",         "enrolment", "session_state", "excluded",      "pilot", "simulated",
+      "counted_session", "device",    "replaced_by",   "interruptions", "pauses"};
   return kColumns;
 }
 
@@ -65,13 +73,15 @@ std::vector<DataCell> session_cells(const BidsSession& session) {
   const store::SessionRow& row = session.row;
   return {std::int64_t{row.session},
           std::int64_t{row.enrolment},
-          std::string(text_of(row.state)),
+          std::string(name_of(row.state)),
           flag(row.excluded),
           flag(row.pilot),
           flag(row.simulated),
           flag(session.counted),
           row.device,
-          row.replaced_by};
+          row.replaced_by,
+          std::int64_t{session.interruptions},
+          std::int64_t{session.pauses}};
 }
 
 /// The last session of each participant.
@@ -91,9 +101,9 @@ std::vector<const BidsSession*> standing_sessions(const std::vector<BidsSession>
 }
 
 /// The last answer that a participant gave to each question, over all sessions.
-Demographics said_by(const std::string& subject, const std::vector<BidsSession>& sessions,
-                     const std::map<int, Demographics>& by_session) {
-  Demographics said;
+BidsPerson said_by(const std::string& subject, const std::vector<BidsSession>& sessions,
+                   const std::map<int, Demographics>& by_session) {
+  BidsPerson said;
   for (const BidsSession& session : sessions) {
     const auto found = by_session.find(session.row.session);
     if (session.subject != subject || found == by_session.end()) continue;
@@ -102,6 +112,26 @@ Demographics said_by(const std::string& subject, const std::vector<BidsSession>&
     if (found->second.handedness_score) said.handedness_score = found->second.handedness_score;
   }
   return said;
+}
+
+/// A name of small letters, digits and underscores, as BIDS wants of columns.
+/// \param taken  names that it must not equal
+std::string snake_case(const std::string& name, const std::vector<std::string>& taken) {
+  std::string snake;
+  for (const char c : name) {
+    const bool is_capital = c >= 'A' && c <= 'Z';
+    const bool is_plain = is_capital || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (is_plain) {
+      snake += is_capital ? static_cast<char>(c - 'A' + 'a') : c;
+    } else if (!snake.empty() && snake.back() != '_') {
+      snake += '_';
+    }
+  }
+  while (!snake.empty() && snake.back() == '_') snake.pop_back();
+  if (snake.empty() || (snake[0] >= '0' && snake[0] <= '9')) snake = "q_" + snake;
+  std::string free = snake;
+  for (int n = 2; std::ranges::count(taken, free) > 0; ++n) free = snake + "_" + std::to_string(n);
+  return free;
 }
 
 void label_sessions(std::vector<BidsSession>& sessions) {
@@ -129,29 +159,81 @@ std::string BidsSession::stem() const {
 std::vector<BidsSession> bids_sessions(const store::StudyStore& store) {
   const store::StudyState state = store.state();
   std::vector<BidsSession> sessions;
-  for (const store::SessionRow& row : store.sessions()) {
+  const Collection collection = load_collection(store);
+  std::vector<store::SessionRow> rows = store.sessions();
+  std::erase_if(rows, [&](const store::SessionRow& row) {
+    return row.erased || (state.unblinded && !state.reports(row.session));
+  });
+  const std::set<int> counted = counted_sessions(rows, store.commitment());
+  for (const SessionRecord& record : collection.sessions) {
+    const store::SessionRow& row = record.row;
     if (row.erased || (state.unblinded && !state.reports(row.session))) continue;
-    sessions.push_back({row, session_counts(row, store.commitment()),
+    sessions.push_back({row, counted.contains(row.session), record.interruptions, record.pauses,
                         "sub-" + participant_label(row.participant), ""});
   }
   label_sessions(sessions);
   return sessions;
 }
 
-DataTable bids_participants(const DatasetSource& source, const std::vector<BidsSession>& sessions) {
+DataTable bids_participants(const DatasetSource& source, const std::vector<BidsSession>& sessions,
+                            const std::vector<store::PersonalRecord>& consents) {
   std::map<int, Demographics> by_session;
-  if (source.key != nullptr) by_session = demographics_of(source.store, *source.key);
+  if (source.outcomes != nullptr) {
+    by_session = demographics_of(source.outcomes->answers, source.outcomes->design);
+  }
   DataTable table{{"participant_id", "participant"}, {}};
   table.columns.insert(table.columns.end(), session_columns().begin(), session_columns().end());
-  std::vector<Demographics> people;
+  std::vector<BidsPerson> people;
   for (const BidsSession* session : standing_sessions(sessions)) {
     std::vector<DataCell>& row = table.rows.emplace_back();
     row = {session->subject, session->row.participant};
     for (DataCell& cell : session_cells(*session)) row.push_back(std::move(cell));
     people.push_back(said_by(session->subject, sessions, by_session));
+    for (const store::PersonalRecord& one : consents) {
+      if (one.participant != session->row.participant) continue;
+      people.back().consent_version = one.consent_version;
+    }
   }
   for (const OptionalColumn& column : kOptionalColumns) add_if_known(table, column, people);
   return table;
+}
+
+std::vector<BidsQuestionnaire> bids_questionnaires(const DatasetSource& study,
+                                                   const std::vector<BidsSession>& sessions,
+                                                   Typed typed) {
+  const Outcomes& outcomes = *study.outcomes;
+  std::map<std::string, std::map<int, std::map<std::string, DataCell>>> answers;
+  std::map<std::string, std::vector<QuestionAnswer>> questions;  // one of each
+  for (const QuestionAnswer& one : outcomes.answers) {
+    if (typed == Typed::left_out && may_name_somebody(one)) continue;
+    answers[one.questionnaire][one.session][one.question] =
+        one.number ? DataCell(*one.number) : DataCell(one.words);
+    std::vector<QuestionAnswer>& known = questions[one.questionnaire];
+    if (std::ranges::find(known, one.question, &QuestionAnswer::question) == known.end()) {
+      known.push_back(one);
+    }
+  }
+  std::vector<BidsQuestionnaire> all;
+  for (auto& [name, of] : questions) {
+    std::ranges::sort(of, {}, &QuestionAnswer::question);
+    BidsQuestionnaire& one = all.emplace_back();
+    one.name = snake_case(name, {});
+    one.table.columns = {"participant_id"};
+    if (!sessions.front().label.empty()) one.table.columns.emplace_back("session_id");
+    for (const QuestionAnswer& question : of) {
+      one.table.columns.push_back(snake_case(question.question, one.table.columns));
+      one.questions.push_back(question_of(outcomes.asked, question));
+    }
+    for (const BidsSession& session : sessions) {
+      const auto said = answers[name].find(session.row.session);
+      if (said == answers[name].end()) continue;
+      std::vector<DataCell>& row = one.table.rows.emplace_back();
+      row = {session.subject};
+      if (!session.label.empty()) row.emplace_back(session.label);
+      for (const QuestionAnswer& question : of) row.push_back(said->second[question.question]);
+    }
+  }
+  return all;
 }
 
 DataTable bids_sessions_of(const std::string& subject, const std::vector<BidsSession>& sessions) {

@@ -14,6 +14,8 @@ namespace touchtrial::analysis {
 struct BidsSession {
   store::SessionRow row;
   bool counted = false;
+  int interruptions = 0;
+  int pauses = 0;
   std::string subject;  ///< for example "sub-P01"
   std::string label;    ///< for example "ses-1"; empty if nobody has more than one session
   /// The folder of its files, for example "sub-P01/ses-1/beh".
@@ -26,11 +28,26 @@ struct BidsSession {
 /// show.
 [[nodiscard]] std::vector<BidsSession> bids_sessions(const store::StudyStore& store);
 
+/// One participant's or session's answers to one questionnaire, as phenotype/<name>.tsv.
+struct BidsQuestionnaire {
+  std::string name;  ///< of letters, digits and underscores
+  DataTable table;   ///< participant_id, session_id if there are several, one column a question
+  /// The questions of the columns after these; null: nobody knows the wording.
+  std::vector<const design::Question*> questions;
+};
+
+/// The questionnaires that somebody answered.
+/// \param study  unblinded
+/// \param typed  left_out: without answers in words, and without ages
+[[nodiscard]] std::vector<BidsQuestionnaire> bids_questionnaires(
+    const DatasetSource& study, const std::vector<BidsSession>& sessions, Typed typed);
+
 /// participants.tsv: one row for each participant, with the data of the participant's last session.
 /// Age (in bands), sex and handedness come from sealed questionnaires after unblinding; a column is
-/// missing if nobody has a value. The file of personal data is never read.
+/// missing if nobody has a value. Of the personal data it has the last version of the consent form.
 [[nodiscard]] DataTable bids_participants(const DatasetSource& source,
-                                          const std::vector<BidsSession>& sessions);
+                                          const std::vector<BidsSession>& sessions,
+                                          const std::vector<store::PersonalRecord>& consents);
 
 /// sub-*_sessions.tsv of one subject.
 [[nodiscard]] DataTable bids_sessions_of(const std::string& subject,

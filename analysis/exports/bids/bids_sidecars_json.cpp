@@ -2,6 +2,7 @@
 
 #include "analysis/exports/bids/bids_traces.hpp"
 #include "analysis/json_figures.hpp"
+#include "protocols/design/languages.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -48,7 +49,10 @@ std::string task_description(const DatasetSource& study) {
 std::string instructions(const design::Study& study) {
   const auto own = study.session.instructions.find(study.session.language);
   if (own == study.session.instructions.end()) {
-    return "Touchtrial's own, in the language \"" + study.session.language + "\"";
+    const std::string draft = design::draft_notice(study.session.language);
+    return "Touchtrial's own, in the language \"" + study.session.language + "\"" +
+           (study.session.texts.contains(study.session.language) ? ", some replaced" : "") +
+           (draft.empty() ? "" : "; " + draft);
   }
   return fmt::format("{}", fmt::join(own->second, "\n\n"));
 }
@@ -97,6 +101,29 @@ std::string task_json(const DatasetSource& study, const DatasetOptions& options,
   put_if_given(object, "InstitutionName", options.institution);
   put_stamp(object, commitment.simulated);
   put_columns(object, columns);
+  return json_text(object);
+}
+
+std::string questionnaire_json(const BidsQuestionnaire& questionnaire, const std::string& language,
+                               bool simulated) {
+  const std::string what =
+      questionnaire.name == "handedness"
+          ? "Edinburgh Handedness Inventory, short form (Veale 2014), and the "
+            "hand that held the pen"
+          : "Questions of the study, questionnaire \"" + questionnaire.name + "\"";
+  Json object{{"MeasurementToolMetadata", {{"Description", what}}}};
+  put_stamp(object, simulated);
+  const std::vector<std::string>& columns = questionnaire.table.columns;
+  const std::size_t before = columns.size() - questionnaire.questions.size();
+  for (std::size_t i = 0; i < questionnaire.questions.size(); ++i) {
+    const design::Question* const question = questionnaire.questions[i];
+    Json described{{"Description", "Answer to the question " + columns[before + i]}};
+    if (question != nullptr) described["Description"] = in_language(question->text, language);
+    for (std::size_t k = 0; question != nullptr && k < question->options.size(); ++k) {
+      described["Levels"][std::to_string(k)] = in_language(question->options[k], language);
+    }
+    object[columns[before + i]] = described;
+  }
   return json_text(object);
 }
 

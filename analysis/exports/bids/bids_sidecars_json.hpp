@@ -2,6 +2,7 @@
 /// Source: BIDS specification 1.10; docs/exports.md.
 #pragma once
 
+#include "analysis/exports/bids/bids_people.hpp"
 #include "analysis/exports/dataset.hpp"
 
 #include <string>
@@ -23,6 +24,11 @@ inline constexpr const char* kBidsVersion = "1.10.0";
 /// task-*_beh.json: describes the task and the columns of every *_beh.tsv.
 [[nodiscard]] std::string task_json(const DatasetSource& study, const DatasetOptions& options,
                                     const std::vector<std::string>& columns);
+
+/// phenotype/<name>.json: the questions and their options.
+/// \param language  of the wording
+[[nodiscard]] std::string questionnaire_json(const BidsQuestionnaire& questionnaire,
+                                             const std::string& language, bool simulated);
 
 /// Describes one recording. Its StartTime counts from the opening of the session.
 [[nodiscard]] std::string trace_sidecar_json(const store::TrialRow& row, bool simulated);

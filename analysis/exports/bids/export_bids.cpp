@@ -5,8 +5,6 @@
 #include "analysis/exports/bids/bids_traces.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/trial_tables.hpp"
-#include "analysis/quality.hpp"
-#include "analysis/results.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/store/study_store.hpp"
@@ -17,6 +15,7 @@
 #include <mutex>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -36,6 +35,12 @@ std::string bids_readme(const DatasetSource& study, const DatasetOptions& option
     text +=
         "*_recording-trial<number>_stim.tsv.gz hold the stylus' position and the force sent, from "
         "the moment the plane could be felt; StartTime counts from the session's opening.\n";
+  }
+  if (study.outcomes != nullptr) {
+    text +=
+        "*_events.tsv list what happened besides trials, such as interruptions and pauses; "
+        "phenotype/ has answers to questions";
+    text += options.typed == Typed::shown ? ".\n" : ", without those in words.\n";
   }
   if (options.stimuli) text += "stimuli/ holds the images that the textures were taken from.\n";
   if (!options.database.empty()) {
@@ -155,10 +160,10 @@ void require_unblinded(const DatasetSource& study, const DatasetOptions& options
       "--traces and --with-stimuli");
 }
 
-void add_people(Files& files, const DatasetSource& study,
+void add_people(Files& files, const DatasetSource& study, const DatasetOptions& options,
                 const std::vector<BidsSession>& sessions) {
   const bool simulated = study.store.commitment().simulated;
-  const DataTable people = bids_participants(study, sessions);
+  const DataTable people = bids_participants(study, sessions, options.consents);
   files.push_back(text_file("participants.tsv", tsv_text(people)));
   files.push_back(text_file("participants.json", columns_json(people.columns, simulated)));
   std::set<std::string> done;
@@ -183,15 +188,45 @@ void add_trials(Files& files, const DatasetSource& study, const DatasetOptions& 
   }
 }
 
-void add_report(Files& files, const DatasetSource& study) {
+/// Answers to questions below phenotype/, and what happened in a session besides its trials.
+void add_what_was_said(Files& files, const DatasetSource& study, const DatasetOptions& options,
+                       const std::vector<BidsSession>& sessions, const std::string& task) {
+  if (study.outcomes == nullptr || sessions.empty()) return;
+  const bool simulated = study.store.commitment().simulated;
+  const std::string& language = study.outcomes->design.session.language;
+  for (const BidsQuestionnaire& one : bids_questionnaires(study, sessions, options.typed)) {
+    files.push_back(text_file("phenotype/" + one.name + ".tsv", tsv_text(one.table)));
+    files.push_back(
+        text_file("phenotype/" + one.name + ".json", questionnaire_json(one, language, simulated)));
+  }
+  std::vector<std::string> columns{"onset", "duration",     "incident",    "trial",
+                                   "code",  "safety_fault", "device_fault"};
+  if (options.typed == Typed::shown) columns.emplace_back("text");
+  bool is_described = false;
+  for (const BidsSession& session : sessions) {
+    DataTable table{columns, {}};
+    for (const Incident& one : study.outcomes->incidents) {
+      if (one.session != session.row.session || !one.at) continue;
+      table.rows.push_back({*one.at, std::monostate{}, std::string(store::name_of(one.kind)),
+                            one.trial ? DataCell(std::int64_t{*one.trial}) : DataCell(), one.code,
+                            one.safety_fault, one.device_fault});
+      if (options.typed == Typed::shown) table.rows.back().emplace_back(one.text);
+    }
+    if (table.rows.empty()) continue;
+    files.push_back(
+        text_file(session.folder() + "/" + session.stem() + "_task-" + task + "_events.tsv",
+                  tsv_text(table)));
+    if (std::exchange(is_described, true)) continue;
+    files.push_back(text_file("task-" + task + "_events.json", columns_json(columns, simulated)));
+  }
+}
+
+void add_report(Files& files, const DatasetSource& study, Typed typed) {
   const std::string folder = "derivatives/touchtrial/";
   files.push_back(
       text_file(folder + "dataset_description.json", derivative_description_json(study)));
-  files.push_back(
-      study.outcomes != nullptr
-          ? text_file(folder + "results.json",
-                      analysis_of(study.outcomes->design).results(*study.outcomes, {})->json())
-          : text_file(folder + "quality.json", quality_json(make_quality(study.store))));
+  files.push_back(text_file(folder + (study.outcomes != nullptr ? "results.json" : "quality.json"),
+                            report_in_dataset(study, typed)));
 }
 
 /// Reports how many files are written. One thread reports at a time.
@@ -234,11 +269,12 @@ std::vector<std::filesystem::path> export_bids(const DatasetSource& study,
   const std::vector<BidsSession> sessions = bids_sessions(study.store);
   Files files{text_file("dataset_description.json", dataset_description_json(study, options)),
               text_file("README", bids_readme(study, options))};
-  add_people(files, study, sessions);
+  add_people(files, study, options, sessions);
   add_trials(files, study, options, sessions, task);
+  add_what_was_said(files, study, options, sessions, task);
   if (options.stimuli) append(files, stimulus_files(study.key->study));
   if (options.traces) append(files, trace_files(study, sessions, task));
-  add_report(files, study);
+  add_report(files, study, options.typed);
   if (!options.database.empty()) {
     files.push_back({"sourcedata/" + options.database.filename().string(),
                      [from = options.database](const std::filesystem::path& path) {

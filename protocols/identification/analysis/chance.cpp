@@ -1,11 +1,13 @@
 #include "protocols/identification/analysis/chance.hpp"
 
 #include "analysis/statistics/common.hpp"
+#include "protocols/identification/analysis/counted_trials.hpp"
 #include "protocols/identification/analysis/order_draws.hpp"
 
 #include <algorithm>
 #include <array>
 #include <map>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,25 +20,27 @@ constexpr int kMostBlockDeals = 1'000'000;  ///< takes at most one second
 
 /// A block's counted trials, each with its place among the scored presentations of the method.
 struct PlacedBlock {
-  int session = 0;
+  int person = 0;  ///< see People
   AnsweredBlock answers;
   std::vector<int> places;
 };
 
-/// The blocks with trials of one method, ordered by session and block. Voided trials have no place,
-/// because their block was restarted.
+/// The blocks with trials of one method, ordered by participant, session and block. Voided trials
+/// have no place, because their block was restarted.
 std::vector<PlacedBlock> blocks_of(const Outcomes& outcomes, int method) {
-  std::map<std::pair<int, int>, PlacedBlock> blocks;
-  std::map<std::pair<int, int>, int> next_place;
+  const People people(outcomes);
+  std::map<std::tuple<int, int, int>, PlacedBlock> blocks;
+  std::map<std::tuple<int, int, int>, int> next_place;
   for (const TrialOutcome& trial : outcomes.trials) {
     const bool has_place = trial.scored && trial.stimulus.method == method &&
                            trial.row.state != store::TrialState::voided;
     if (!has_place) continue;
-    const std::pair id(trial.row.session, trial.row.block);
+    const int person = people.of(trial.row.session);
+    const std::tuple id(person, trial.row.session, trial.row.block);
     const int place = next_place[id]++;
     if (!trial.counted) continue;
     PlacedBlock& block = blocks[id];
-    block.session = trial.row.session;
+    block.person = person;
     block.answers.presented.push_back(trial.stimulus.class_index);
     block.answers.answered.push_back(trial.response);
     block.places.push_back(place);
@@ -124,7 +128,7 @@ std::optional<Prevalence> own_prevalence(const Outcomes& outcomes, int method,
   double level = 0.0;
   for (std::size_t first = 0; first < placed.size();) {
     std::size_t last = first + 1;
-    while (last < placed.size() && placed[last].session == placed[first].session) ++last;
+    while (last < placed.size() && placed[last].person == placed[first].person) ++last;
     if (const auto test = tests.of(first, last)) {
       ++passed.n;
       if (test->p <= kSignificanceLevel) ++passed.correct;

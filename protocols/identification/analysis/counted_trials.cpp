@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <tuple>
+#include <utility>
 
 namespace touchtrial::analysis::identification {
 
@@ -22,6 +23,15 @@ CountedTrials counted_by_method(const Outcomes& outcomes) {
     counted.trials[trial.stimulus.method][place.at(trial.participant)].push_back(&trial);
   }
   return counted;
+}
+
+People::People(const Outcomes& outcomes) {
+  if (outcomes.design.visits.count == 1) return;
+  std::map<std::pair<std::string, int>, int> first;  // by participant and enrolment number
+  for (const SessionOutcome& one : outcomes.sessions) {
+    const std::pair person(one.row.participant, one.row.enrolment);
+    first_[one.row.session] = first.try_emplace(person, one.row.session).first->second;
+  }
 }
 
 ConfusionMatrix confusion_of(const Outcomes& outcomes, int method) {

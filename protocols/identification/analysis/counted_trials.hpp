@@ -5,6 +5,7 @@
 #include "analysis/outcomes.hpp"
 #include "analysis/statistics/confusion.hpp"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,21 @@ struct CountedTrials {
 
 /// \param outcomes  must outlive the result
 [[nodiscard]] CountedTrials counted_by_method(const Outcomes& outcomes);
+
+/// Whose sessions are whose. The first session of a participant stands for the participant; in a
+/// study with one visit, every session stands for itself.
+class People {
+ public:
+  explicit People(const Outcomes& outcomes);
+
+  [[nodiscard]] int of(int session) const {
+    const auto found = first_.find(session);
+    return found == first_.end() ? session : found->second;
+  }
+
+ private:
+  std::map<int, int> first_;  ///< of participants with several sessions
+};
 
 /// All participants' trials with one method.
 [[nodiscard]] ConfusionMatrix confusion_of(const Outcomes& outcomes, int method);

@@ -40,6 +40,7 @@ class IdentificationResults final : public Results {
   IdentificationResults(StudyReport report, std::vector<ExplorationPath> paths, bool paper_values)
       : report_(std::move(report)), paths_(std::move(paths)), paper_values_(paper_values) {}
 
+  const StudyHead& head() const override { return report_; }
   std::string json() const override { return report_json(report_); }
   std::vector<Figure> figures(const std::string& stamp) const override {
     return report_figures(report_, {.paper_values = paper_values_,

@@ -1,18 +1,82 @@
 #include "protocols/identification/analysis/mixed_model.hpp"
 
+#include "analysis/exports/data_table.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/trial_tables.hpp"
+#include "analysis/json_figures.hpp"
+#include "core/errors.hpp"
 #include "core/text.hpp"
-#include "protocols/identification/analysis/hierarchical_choice.hpp"
+#include "protocols/identification/analysis/counted_trials.hpp"
 
 #include <algorithm>
 #include <map>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace touchtrial::analysis::identification {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// "1 bark, 2 cloth", on one line.
+std::string numbered(const std::vector<std::string>& labels) {
+  int number = 0;
+  return listed(labels, ", ", [&number](const std::string& label) {
+    return fmt::format("{} {}", ++number, one_line(label));
+  });
+}
+
+ConfusionMatrix answers_of(int classes, const OwnTrials& trials) {
+  ConfusionMatrix answers(classes);
+  for (const TrialOutcome* trial : trials) answers.add(choice_of(*trial));
+  return answers;
+}
+
+}  // namespace
+
+std::string choice_model_script(const Outcomes& outcomes) {
+  return fmt::format(
+             "// Hierarchical choice model of the study {}{}. Data: choice_model.json. How to run "
+             "it: "
+             "mixed_model.md.\n// Classes: {}.\n// Methods: {}.\n\n",
+             one_line(outcomes.study), outcomes.simulated ? " (SIMULATED)" : "",
+             numbered(outcomes.classes), numbered(outcomes.methods)) +
+         std::string(choice_model_program());
+}
 
 namespace {
+
+/// The Stan program's data: one block of K rows for each method and participant with an answer, by
+/// method, participants in the order of sessions; trials that count and have a response.
+std::string choice_model_data(const Outcomes& outcomes) {
+  const CountedTrials counted = counted_by_method(outcomes);
+  const auto classes = static_cast<int>(outcomes.classes.size());
+  Json counts = Json::array();
+  Json felt = Json::array();
+  for (std::size_t method = 0; method < counted.trials.size(); ++method) {
+    for (const OwnTrials& trials : counted.trials[method]) {
+      const ConfusionMatrix answers = answers_of(classes, trials);
+      if (answers.answered() == 0) continue;
+      for (int i = 0; i < classes; ++i) {
+        Json row = Json::array();
+        for (int j = 0; j < classes; ++j) row.push_back(answers.count(i, j));
+        counts.push_back(std::move(row));
+      }
+      Json of_method = Json::array();
+      for (std::size_t m = 0; m < counted.trials.size(); ++m) {
+        of_method.push_back(m == method ? 1 : 0);
+      }
+      felt.push_back(std::move(of_method));
+    }
+  }
+  const std::size_t rows = felt.size();
+  return json_text(Json{{"K", classes},
+                        {"J", rows},
+                        {"M", counted.trials.size()},
+                        {"counts", std::move(counts)},
+                        {"felt", std::move(felt)}});
+}
 
 DataCell class_or_nothing(const Outcomes& outcomes, const std::optional<int>& index) {
   if (!index) return std::monostate{};
@@ -131,8 +195,9 @@ std::string notes(const Outcomes& outcomes) {
       mixed_model_formula(outcomes), what_of_images(outcomes), kStanCommand);
 }
 
-}  // namespace
-
+/// One row for each counted trial, in the order of presentation, with the class and the answer of
+/// the presentation before it, which may be a lead-in. These two cells are empty at the start of a
+/// block and after a catch trial.
 DataTable mixed_model_table(const Outcomes& outcomes) {
   DataTable table{{"participant", "session", "method", "class", "image", "block", "trial", "place",
                    "correct", "response", "previous_class", "previous_response", "confidence",
@@ -149,6 +214,8 @@ DataTable mixed_model_table(const Outcomes& outcomes) {
   }
   return table;
 }
+
+}  // namespace
 
 std::string mixed_model_formula(const Outcomes& outcomes) {
   const bool several = outcomes.methods.size() > 1;

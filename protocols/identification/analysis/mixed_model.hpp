@@ -1,8 +1,7 @@
-/// \file Exports a long table for a mixed model in R, and the script that fits the model. Format:
-/// docs/exports.md.
+/// \file Exports a long table for a mixed model in R with the script that fits it, and a Stan program
+/// of the hierarchical choice model with its data. Format: docs/exports.md.
 #pragma once
 
-#include "analysis/exports/data_table.hpp"
 #include "analysis/outcomes.hpp"
 
 #include <filesystem>
@@ -12,10 +11,11 @@
 
 namespace touchtrial::analysis::identification {
 
-/// One row for each counted trial, in the order of presentation, with the class and the answer of
-/// the presentation before it, which may be a lead-in. These two cells are empty at the start of a
-/// block and after a catch trial.
-[[nodiscard]] DataTable mixed_model_table(const Outcomes& outcomes);
+/// The part of the program that is the same for every study: choice_model_program.stan, built in.
+[[nodiscard]] std::string_view choice_model_program() noexcept;
+
+/// The text of choice_model.stan: the program, and what the study's numbers stand for.
+[[nodiscard]] std::string choice_model_script(const Outcomes& outcomes);
 
 /// The model that the script fits first, as an lme4 formula. Participants differ in everything that
 /// is compared; images are fixed effects if they are fewer than ten, and random ones otherwise.

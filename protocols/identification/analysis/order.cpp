@@ -60,17 +60,20 @@ FeltTrial felt_trial(const TrialOutcome& trial, const TrialOutcome* before) {
   return felt;
 }
 
-using SessionBlocks = std::map<int, OrderedBlock>;
+/// By session and block.
+using OwnBlocks = std::map<std::pair<int, int>, OrderedBlock>;
 
-/// The blocks of every session that have a moving trial, by session and block.
-std::map<int, SessionBlocks> ordered_blocks(const Outcomes& outcomes, int method) {
+/// The blocks of every participant that have a moving trial.
+std::map<int, OwnBlocks> ordered_blocks(const Outcomes& outcomes, int method) {
   const std::map<const TrialOutcome*, int> places = scheduled_places(outcomes, method);
-  std::map<int, SessionBlocks> sessions;
+  const People whose(outcomes);
+  std::map<int, OwnBlocks> people;
   const TrialOutcome* before = nullptr;
   int place = 0;
   for (const TrialOutcome* trial : as_felt(outcomes)) {
     if (before == nullptr || before->row.session != trial->row.session) place = 0;
-    OrderedBlock& block = sessions[trial->row.session][trial->row.block];
+    OrderedBlock& block =
+        people[whose.of(trial->row.session)][{trial->row.session, trial->row.block}];
     FeltTrial& felt = block.felt.emplace_back(felt_trial(*trial, before));
     before = trial;
     if (!trial->scored || trial->stimulus.method != method) continue;
@@ -80,10 +83,10 @@ std::map<int, SessionBlocks> ordered_blocks(const Outcomes& outcomes, int method
     felt.place = place;
     block.places.push_back(places.at(trial));
   }
-  for (auto& [session, blocks] : sessions) {
+  for (auto& [person, blocks] : people) {
     std::erase_if(blocks, [](const auto& one) { return one.second.places.empty(); });
   }
-  return sessions;
+  return people;
 }
 
 }  // namespace
@@ -92,7 +95,7 @@ std::optional<OrderEffects> order_of(const Outcomes& outcomes, int method) {
   std::vector<std::vector<FeltBlock>> participants;
   std::vector<std::vector<int>> places;  // of each block
   std::size_t trials = 0;
-  for (auto& [session, blocks] : ordered_blocks(outcomes, method)) {
+  for (auto& [person, blocks] : ordered_blocks(outcomes, method)) {
     if (blocks.empty()) continue;
     std::vector<FeltBlock>& own = participants.emplace_back();
     for (auto& [number, block] : blocks) {

@@ -75,9 +75,10 @@ std::vector<Selection> selections(const Outcomes& outcomes) {
                                 std::inserter(put_back, put_back.end()));
   std::set<int> registered = put_back;
   for (const auto& [session, rule] : rules_met(outcomes)) registered.erase(session);
-  const std::string seen = "no exclusion that was made after outcomes were seen";
   const bool is_registered = outcomes.design.registration.analysis.has_value();
-  return {{"registered", (is_registered ? "as registered; " : "") + seen, std::move(registered)},
+  std::string words = is_registered ? "as registered" : "every session that counts";
+  if (put_back != taken) words += "; no exclusion that was made after outcomes were seen";
+  return {{"registered", std::move(words), std::move(registered)},
           {"taken", "all exclusions as made", taken},
           {"put_back", "exclusions made after outcomes were seen put back", std::move(put_back)},
           {"all", "all excluded sessions put back", joined(taken, excluded)},
@@ -87,7 +88,7 @@ std::vector<Selection> selections(const Outcomes& outcomes) {
 
 struct SelectedPeople {
   std::vector<CrossoverPerson> people;
-  std::vector<int> sessions;  ///< of each of them
+  std::vector<int> sessions;  ///< of each of them, the first
   int trials = 0;
 };
 
@@ -97,23 +98,48 @@ struct OwnShare {
   int first_block = std::numeric_limits<int>::max();
 };
 
-/// The selected trials of each session with each method.
+/// The people who have all visits that decide.
+std::set<int> people_with_all_visits(const Outcomes& outcomes, const Selection& selection,
+                                     const People& people) {
+  int deciding = 0;
+  for (int visit = 1; visit <= outcomes.design.visits.count; ++visit) {
+    deciding += outcomes.design.decides(visit) ? 1 : 0;
+  }
+  std::map<int, std::set<int>> visits;
+  for (const SessionOutcome& one : outcomes.sessions) {
+    if (!selection.sessions.contains(one.row.session)) continue;
+    if (outcomes.design.decides(one.row.visit)) {
+      visits[people.of(one.row.session)].insert(one.row.visit);
+    }
+  }
+  std::set<int> whole;
+  for (const auto& [person, own] : visits) {
+    if (static_cast<int>(own.size()) == deciding) whole.insert(person);
+  }
+  return whole;
+}
+
+/// The selected trials of each participant with each method.
 std::map<int, std::pair<OwnShare, OwnShare>> shares_of(const PrimaryQuestion& question,
                                                        const Outcomes& outcomes,
                                                        const Selection& selection) {
-  std::map<int, std::pair<OwnShare, OwnShare>> sessions;
+  const People people(outcomes);
+  const std::set<int> whole = people_with_all_visits(outcomes, selection, people);
+  std::map<int, std::pair<OwnShare, OwnShare>> shares;
   for (const TrialOutcome& trial : outcomes.trials) {
-    if (!selection.has(trial)) continue;
+    if (!selection.has(trial) || !outcomes.design.decides(trial.visit)) continue;
     const bool first = trial.stimulus.method == question.first;
     const bool second = is_difference(question) && trial.stimulus.method == question.second;
     if (!first && !second) continue;
-    auto& [of_first, of_second] = sessions[trial.row.session];
+    const int person = people.of(trial.row.session);
+    if (!whole.contains(person)) continue;
+    auto& [of_first, of_second] = shares[person];
     OwnShare& own = first ? of_first : of_second;
     ++own.right.n;
     if (trial.correct()) ++own.right.correct;
     own.first_block = std::min(own.first_block, trial.row.block);
   }
-  return sessions;
+  return shares;
 }
 
 std::map<int, int> order_blocks_of(const Outcomes& outcomes) {
@@ -183,16 +209,29 @@ std::optional<StratifiedMean> over_stations(const PrimaryQuestion& question,
   return stratified_mean(strata, range_of(question), question.interval_level());
 }
 
+/// ", over all visits"; empty in a study with one.
+std::string visit_words(const design::Study& study) {
+  if (study.visits.count == 1) return "";
+  if (study.decides(1) && study.decides(study.visits.count)) return ", over all visits";
+  return study.decides(1) ? ", at the first visit" : ", at the last visit";
+}
+
 std::string question_words(const PrimaryQuestion& question, const Outcomes& outcomes) {
   const std::string& first = outcomes.methods[question.first];
+  const std::string visits = visit_words(outcomes.design);
   if (!is_difference(question)) {
-    return fmt::format("mean over participants of the accuracy with {}, against chance ({:.1f}%)",
-                       first, 100.0 / static_cast<double>(outcomes.classes.size()));
+    return fmt::format("mean over participants of the accuracy with {}, against chance ({:.1f}%){}",
+                       first, 100.0 / static_cast<double>(outcomes.classes.size()), visits);
   }
   const std::string against =
-      question.margin ? fmt::format(", against {:.3g} points", -100.0 * *question.margin) : "";
-  return fmt::format("mean over participants of the accuracy with {} less that with {}{}", first,
-                     outcomes.methods[question.second], against);
+      question.margin ? fmt::format(", against −{:.3g} points", 100.0 * *question.margin) : "";
+  return fmt::format("mean over participants of the accuracy with {} less that with {}{}{}", first,
+                     outcomes.methods[question.second], against, visits);
+}
+
+/// The estimand under the null hypothesis.
+double null_of(const PrimaryQuestion& question, int classes) {
+  return is_difference(question) ? -question.margin.value_or(0.0) : 1.0 / classes;
 }
 
 }  // namespace
@@ -207,10 +246,6 @@ std::optional<PrimaryQuestion> primary_question(const design::Study& study, int 
     question.sides = Sides::two;
   }
   return question;
-}
-
-double null_of(const PrimaryQuestion& question, int classes) {
-  return is_difference(question) ? -question.margin.value_or(0.0) : 1.0 / classes;
 }
 
 std::string test_words(const PrimaryQuestion& question) {

@@ -38,9 +38,6 @@ struct PrimaryQuestion {
 [[nodiscard]] std::optional<PrimaryQuestion> primary_question(const design::Study& study,
                                                               int methods);
 
-/// The estimand under the null hypothesis.
-[[nodiscard]] double null_of(const PrimaryQuestion& question, int classes);
-
 /// "one-sample t test over participants, one-sided"
 [[nodiscard]] std::string test_words(const PrimaryQuestion& question);
 

@@ -2,6 +2,7 @@
 /// docs/data-dictionary.md, "Report".
 #pragma once
 
+#include "analysis/outcomes.hpp"
 #include "analysis/statistics/chance_test.hpp"
 #include "analysis/statistics/choice_model.hpp"
 #include "analysis/statistics/confusion.hpp"
@@ -14,7 +15,6 @@
 #include "analysis/statistics/proportion.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "analysis/study_head.hpp"
-#include "protocols/identification/analysis/confidence.hpp"
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 #include "protocols/identification/analysis/subsets.hpp"
 
@@ -23,6 +23,23 @@
 #include <vector>
 
 namespace touchtrial::analysis::identification {
+
+/// Answers that were rated alike.
+struct RatedAccuracy {
+  int rating = 1;
+  Proportion accuracy;  ///< all participants' answers pooled
+  MeanEstimate mean;    ///< of the own accuracies of those who gave this rating
+};
+
+struct ConfidenceReport {
+  std::vector<RatedAccuracy> ratings;  ///< from 1 (a guess) to the study's highest
+  MeanEstimate area;                   ///< of participants' own type-2 areas
+  int without_area = 0;                ///< participants whose answers are all right, or all wrong
+};
+
+/// One method's counted trials with a response and a rating.
+/// \return nothing if the study does not ask for confidence
+[[nodiscard]] std::optional<ConfidenceReport> confidence_of(const Outcomes& outcomes, int method);
 
 /// Accuracy with a class.
 struct ClassAccuracy {

@@ -15,6 +15,11 @@ Json groups_json(const Breakdown& breakdown) {
     Json entry{{"group", one.group}};
     put_proportion(entry, one.accuracy);
     entry["wilson"] = interval_json(known(one.wilson, one.accuracy));
+    if (one.mean) {
+      entry["participants"] = one.mean->participants;
+      entry["mean"] = figure_json(one.mean->mean);
+      entry["interval"] = interval_json(one.mean->known_interval());
+    }
     groups.push_back(std::move(entry));
   }
   return groups;
@@ -54,8 +59,6 @@ nlohmann::ordered_json robustness_array(const std::vector<SubsetAccuracy>& subse
 }
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json proportion_json(const Proportion& proportion) {
   Json object;
@@ -140,8 +143,6 @@ nlohmann::ordered_json together_object(const MethodsTogether& together) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json comparison_json(const MethodComparison& comparison) {
   return {{"difference", figure_json(comparison.difference)},
           {"interval", interval_json(comparison.known_interval())},
@@ -168,12 +169,8 @@ Json quantiles_json() {
 
 }  // namespace
 
-nlohmann::ordered_json report_object(const StudyReport& report) {
-  Json object{{"study", report.study}, {"protocol", report.protocol}};
-  put_stamp(object, report.simulated);
-  put_state(object, report.state, report.pilot);
-  object["participants"] = report.participants;
-  object["trials"] = report.trials;
+std::string report_json(const StudyReport& report) {
+  Json object = head_object(report);
   object["classes"] = report.classes;
   object["methods"] = Json::array();
   for (const MethodReport& method : report.methods) {
@@ -191,11 +188,7 @@ nlohmann::ordered_json report_object(const StudyReport& report) {
   object["references"] = references_object();
   put_registered(object, report);
   put_people(object, report);
-  return object;
-}
-
-std::string report_json(const StudyReport& report) {
-  return json_text(report_object(report));
+  return json_text(object);
 }
 
 }  // namespace touchtrial::analysis::identification

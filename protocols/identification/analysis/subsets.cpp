@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -44,19 +45,21 @@ Group group_of_exemplar(const Outcomes& outcomes, const TrialOutcome& trial) {
           outcomes.classes[class_index] + ": " + outcomes.exemplars[class_index][exemplar]};
 }
 
-/// The methods of each session in the order in which they were first presented.
-std::map<int, std::vector<int>> orders_of_methods(const Outcomes& outcomes) {
-  std::map<int, std::vector<std::pair<int, int>>> first_trials;  // trial and method
+/// The methods of each participant in the order in which they were first presented.
+std::map<int, std::vector<int>> orders_of_methods(const Outcomes& outcomes, const People& people) {
+  // Session, trial and method.
+  std::map<int, std::vector<std::tuple<int, int, int>>> first_trials;
   for (const TrialOutcome& trial : outcomes.trials) {
     if (trial.kind != design::PresentationKind::catch_trial) {
-      first_trials[trial.row.session].emplace_back(trial.row.trial, trial.stimulus.method);
+      first_trials[people.of(trial.row.session)].emplace_back(trial.row.session, trial.row.trial,
+                                                              trial.stimulus.method);
     }
   }
   std::map<int, std::vector<int>> orders;
-  for (auto& [session, presented] : first_trials) {
+  for (auto& [person, presented] : first_trials) {
     std::ranges::sort(presented);
-    std::vector<int>& order = orders[session];
-    for (const auto& [trial, method] : presented) {
+    std::vector<int>& order = orders[person];
+    for (const auto& [session, trial, method] : presented) {
       if (std::ranges::find(order, method) == order.end()) order.push_back(method);
     }
   }
@@ -90,6 +93,27 @@ Breakdown broken_down(BreakdownKind kind, const std::vector<PlacedTrial>& trials
   return breakdown;
 }
 
+/// The same with the mean over participants.
+template <typename GroupOf>
+Breakdown by_people(BreakdownKind kind, const std::vector<PlacedTrial>& trials, GroupOf group_of) {
+  Breakdown breakdown = broken_down(kind, trials, group_of);
+  std::map<Group, std::map<std::string, Proportion>> groups;
+  for (const PlacedTrial& placed : trials) {
+    Proportion& own = groups[group_of(placed)][placed.trial->participant];
+    ++own.n;
+    if (placed.trial->correct()) ++own.correct;
+  }
+  auto group = breakdown.groups.begin();
+  for (const auto& [name, people] : groups) {
+    std::vector<double> shares;
+    for (const auto& [participant, own] : people) {
+      shares.push_back(own.share().value_or(0.0));
+    }
+    (group++)->mean = participant_mean(shares);
+  }
+  return breakdown;
+}
+
 /// Tells whether any class has several images; only then does accuracy have a breakdown by image.
 bool has_several_exemplars(const Outcomes& outcomes) {
   return std::ranges::any_of(outcomes.exemplars,
@@ -104,6 +128,10 @@ std::string name_of(BreakdownKind kind) {
       return "exemplar";
     case BreakdownKind::trial:
       return "trial";
+    case BreakdownKind::visit:
+      return "visit";
+    case BreakdownKind::group:
+      return "group";
     case BreakdownKind::order_group:
       break;
   }
@@ -124,10 +152,23 @@ std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method) {
   add(BreakdownKind::trial,
       [](const PlacedTrial& placed) { return Group(placed.place, std::to_string(placed.place)); });
   if (outcomes.methods.size() > 1 && outcomes.design.trials.blocks == design::Blocks::by_method) {
-    const std::map<int, std::vector<int>> orders = orders_of_methods(outcomes);
+    const People people(outcomes);
+    const std::map<int, std::vector<int>> orders = orders_of_methods(outcomes, people);
     add(BreakdownKind::order_group, [&](const PlacedTrial& placed) {
-      return group_of_order(outcomes, orders.at(placed.trial->row.session));
+      return group_of_order(outcomes, orders.at(people.of(placed.trial->row.session)));
     });
+  }
+  if (outcomes.design.visits.count > 1) {
+    all.push_back(by_people(BreakdownKind::visit, trials, [](const PlacedTrial& placed) {
+      return Group(placed.trial->visit, std::to_string(placed.trial->visit));
+    }));
+  }
+  const std::vector<std::string>& groups = outcomes.design.groups.labels;
+  if (!groups.empty()) {
+    all.push_back(by_people(BreakdownKind::group, trials, [&](const PlacedTrial& placed) {
+      const int group = placed.trial->group.value_or(-1);
+      return Group(group, group < 0 ? "none" : groups[static_cast<std::size_t>(group)]);
+    }));
   }
   return all;
 }

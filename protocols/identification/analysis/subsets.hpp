@@ -6,6 +6,7 @@
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/proportion.hpp"
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,15 +14,19 @@
 namespace touchtrial::analysis::identification {
 
 enum class BreakdownKind {
-  exemplar,    ///< groups are named "class: image"
-  trial,       ///< the place among a participant's scored trials of the method, from 1
-  order_group  ///< row of the Williams design of method blocks
+  exemplar,     ///< groups are named "class: image"
+  trial,        ///< the place among a participant's scored trials of the method, from 1
+  order_group,  ///< row of the Williams design of method blocks
+  visit,        ///< of participants who come several times
+  group         ///< that participants were dealt into
 };
 
 struct GroupAccuracy {
   std::string group;
   Proportion accuracy;
   Interval wilson;
+  /// Of participants' own accuracies, with Student's interval; of visits and groups alone.
+  std::optional<MeanEstimate> mean{};
 };
 
 struct Breakdown {
@@ -29,7 +34,7 @@ struct Breakdown {
   std::vector<GroupAccuracy> groups;  ///< in the order of the study; none is empty
 };
 
-/// "exemplar", "trial", "order_group"
+/// "exemplar", "trial", "order_group", "visit", "group"
 [[nodiscard]] std::string name_of(BreakdownKind kind);
 
 /// The breakdowns of one method's counted trials that have at least two groups.

@@ -128,6 +128,14 @@ void number(std::vector<Presentation>& presentations, int first) {
   for (Presentation& shown : presentations) shown.trial = first++;
 }
 
+/// Leaves a visit's own blocks, if the study divides its methods between visits. They keep their
+/// numbers, which are those of one long session.
+void keep_visit(const Study& study, int visit, std::vector<Presentation>& shown) {
+  if (visit == 0 || study.visits.methods != VisitMethods::divided) return;
+  const int blocks = study.presented_methods() / study.visits.count;
+  std::erase_if(shown, [&](const Presentation& one) { return one.block / blocks + 1 != visit; });
+}
+
 std::vector<int> picture_layout(const Study& study, const ScheduleDraw& draw) {
   std::vector<int> layout(study.classes.size());
   std::iota(layout.begin(), layout.end(), 0);
@@ -158,6 +166,7 @@ Schedule scheduled(const Study& study, const ScheduleDraw& draw) {
   RandomStream random(draw.secret, "schedule: catch");
   schedule.presentations =
       with_catch_trials(schedule.presentations, study.trials.catch_trials, random);
+  keep_visit(study, draw.visit, schedule.presentations);
   number(schedule.presentations, 1);
   schedule.layout = picture_layout(study, draw);
   return schedule;
@@ -199,7 +208,10 @@ std::string rule_of_schedule(const Study& study) {
          "; blocks=" + std::string(name_of(trials.blocks)) +
          "; lead_in=" + std::to_string(trials.lead_in) +
          (trials.max_run > 0 ? "; max_run=" + std::to_string(trials.max_run) : "") +
-         (trials.catch_trials > 0 ? "; catch=" + std::to_string(trials.catch_trials) : "");
+         (trials.catch_trials > 0 ? "; catch=" + std::to_string(trials.catch_trials) : "") +
+         (study.visits.count > 1 ? "; visits=" + std::to_string(study.visits.count) : "") +
+         (study.groups.labels.empty() ? ""
+                                      : "; groups=" + std::to_string(study.groups.labels.size()));
 }
 
 }  // namespace touchtrial::design::identification

@@ -8,7 +8,6 @@
 #include "analysis/statistics/chance_test.hpp"
 #include "analysis/statistics/choice_model.hpp"
 #include "analysis/statistics/cluster_bootstrap.hpp"
-#include "analysis/statistics/confidence.hpp"
 #include "analysis/statistics/confusion.hpp"
 #include "analysis/statistics/crossover.hpp"
 #include "analysis/statistics/d_prime.hpp"

@@ -79,7 +79,10 @@ Lines check_tsv(const fs::path& path, Faults& faults) {
     if (!names.insert(name).second) fault("has two columns " + name);
     if (!std::regex_match(name, kSnakeCase)) fault("has a column " + name);
   }
-  if (names.contains("onset") && names.contains("duration")) fault("has onset and duration");
+  const bool is_events = path.filename().string().ends_with("_events.tsv");
+  if ((names.contains("onset") && names.contains("duration")) != is_events) {
+    fault("must have onset and duration if it lists events, and else not both");
+  }
   for (const auto& row : lines) {
     if (row.size() != lines[0].size()) fault("has a row of another length");
     for (const std::string& value : row) {
@@ -156,16 +159,56 @@ void check_recording(const fs::path& path, Faults& faults) {
 /// Labels in folders and names must agree.
 bool name_is_allowed(const std::string& name) {
   static const std::regex kRoot(
-      "dataset_description\\.json|README|participants\\.(tsv|json)|task-[a-zA-Z0-9]+_beh\\.json");
+      "dataset_description\\.json|README|participants\\.(tsv|json)|task-[a-zA-Z0-9]+_(beh|events)"
+      "\\."
+      "json|phenotype/[a-z][a-z0-9_]*\\.(tsv|json)");
   static const std::regex kSessions("(sub-[0-9a-zA-Z]+)/\\1_sessions\\.(tsv|json)");
   static const std::regex kPlain(
-      "(sub-[0-9a-zA-Z]+)/beh/\\1_task-[a-zA-Z0-9]+(_beh\\.tsv|_recording-[a-zA-Z0-9]+_stim\\."
+      "(sub-[0-9a-zA-Z]+)/beh/"
+      "\\1_task-[a-zA-Z0-9]+(_(beh|events)\\.tsv|_recording-[a-zA-Z0-9]+_stim\\."
       "(tsv\\.gz|json))");
   static const std::regex kOfSession(
-      "(sub-[0-9a-zA-Z]+)/(ses-[0-9a-zA-Z]+)/beh/\\1_\\2_task-[a-zA-Z0-9]+(_beh\\.tsv|_recording-"
+      "(sub-[0-9a-zA-Z]+)/(ses-[0-9a-zA-Z]+)/beh/"
+      "\\1_\\2_task-[a-zA-Z0-9]+(_(beh|events)\\.tsv|_recording-"
       "[a-zA-Z0-9]+_stim\\.(tsv\\.gz|json))");
   return std::regex_match(name, kRoot) || std::regex_match(name, kSessions) ||
          std::regex_match(name, kPlain) || std::regex_match(name, kOfSession);
+}
+
+/// Rows of events begin with a time and a duration, in order.
+void check_events(const fs::path& dataset, const fs::path& path, Faults& faults) {
+  static const std::regex kTask(".*_(task-[a-zA-Z0-9]+)_events\\.tsv");
+  const std::string name = path.filename().string();
+  const std::string task = std::regex_replace(name, kTask, "$1");
+  const Lines table = check_tsv(path, faults);
+  check_columns(path, table, parsed(dataset / (task + "_events.json"), faults), faults);
+  if (table[0].size() < 2 || table[0][0] != "onset" || table[0][1] != "duration") {
+    faults.push_back(name + ": does not begin with onset and duration");
+    return;
+  }
+  double before = 0.0;
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    const double onset = number_in<double>(table[i][0]).value_or(-1.0);
+    if (onset < before) faults.push_back(name + ": onset " + table[i][0]);
+    before = onset;
+  }
+}
+
+/// The answers to a questionnaire, by participants and sessions of the dataset.
+void check_phenotype(const fs::path& dataset, const fs::path& path, Faults& faults) {
+  const std::string name = path.string();
+  const json sidecar = parsed(name.substr(0, name.size() - 4) + ".json", faults);
+  if (!sidecar.contains("MeasurementToolMetadata")) faults.push_back(name + ": not described");
+  const Lines table = check_tsv(path, faults);
+  check_columns(path, table, sidecar, faults);
+  std::set<std::string> listed;
+  const bool has_sessions = table[0].size() > 1 && table[0][1] == "session_id";
+  if (table[0][0] != "participant_id") faults.push_back(name + ": participant_id is not first");
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    const fs::path place = fs::path(table[i][0]) / (has_sessions ? table[i][1] : "");
+    if (!fs::exists(dataset / place)) faults.push_back(name + ": nobody is " + place.string());
+    if (!listed.insert(place.string()).second) faults.push_back(name + ": twice " + place.string());
+  }
 }
 
 void check_people(const fs::path& dataset, Faults& faults) {
@@ -203,6 +246,10 @@ std::vector<std::string> bids_faults(const fs::path& dataset) {
     if (!entry.is_regular_file() || unchecked) continue;
     if (!name_is_allowed(name)) faults.push_back(name + ": is no name of BIDS");
     if (name.ends_with("_beh.tsv")) check_trials(dataset, entry.path(), faults);
+    if (name.ends_with("_events.tsv")) check_events(dataset, entry.path(), faults);
+    if (name.starts_with("phenotype/") && name.ends_with(".tsv")) {
+      check_phenotype(dataset, entry.path(), faults);
+    }
     if (name.ends_with("_stim.tsv.gz")) check_recording(entry.path(), faults);
     if (name.ends_with("_sessions.tsv")) {
       const std::string sidecar = entry.path().string();

@@ -45,6 +45,9 @@ analysis::SessionRecord record_of(const CsvRow& row) {
   record.station = station_of(row);
   record.practice = practice_of(row);
   record.exclusion_reason = row.at("exclusion_reason");
+  constexpr std::string_view kLate = "after outcomes were seen: ";
+  record.after_outcomes = record.exclusion_reason.starts_with(kLate);
+  if (record.after_outcomes) record.exclusion_reason.erase(0, kLate.size());
   record.replacement_reason = row.at("replacement_reason");
   record.stop_reason = row.at("stop_reason");
   record.withdrawal_reason = row.at("withdrawal_reason");
@@ -52,6 +55,12 @@ analysis::SessionRecord record_of(const CsvRow& row) {
     record.largest_force_n = number_of<double>(row.at("largest_force_n"));
   }
   record.resumed = number_of<int>(row.at("resumed"));
+  record.interruptions = number_of<int>(row.at("interruptions"));
+  record.pauses = number_of<int>(row.at("pauses"));
+  record.notes = number_of<int>(row.at("notes"));
+  if (row.contains("handedness_score")) {
+    record.handedness_score = maybe<double>(row.at("handedness_score"));
+  }
   return record;
 }
 
@@ -91,9 +100,12 @@ analysis::ServoTrial servo_trial_of(const CsvRow& row) {
       number_of<std::int64_t>(row.at("overruns"))};
 }
 
-/// The facts that decide which sessions count.
+/// The facts that decide which sessions count, of a study with one visit.
 store::StudyCommitment commitment_of(const std::filesystem::path& study) {
   store::StudyCommitment commitment;
+  commitment.configuration =
+      R"({"trials": {"explore_limit_s": 1, "on_timeout": "fade", "order": "permuted",
+          "repeats": 1}, "methods": [{}]})";
   for (const CsvRow& row : rows_of(study)) {
     if (row.at("key") == "simulated") commitment.simulated = is_set(row.at("value"));
     if (row.at("key") == "pilot") commitment.pilot = is_set(row.at("value"));

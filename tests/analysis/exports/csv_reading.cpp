@@ -1,5 +1,6 @@
 #include "analysis/exports/csv_reading.hpp"
 
+#include "analysis/demographics.hpp"
 #include "analysis/exports/collection_reading.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
@@ -173,6 +174,29 @@ void read_trials(analysis::Outcomes& outcomes, const std::filesystem::path& file
   }
 }
 
+void read_answers(analysis::Outcomes& outcomes, const std::filesystem::path& file) {
+  outcomes.asked = analysis::own_questions(outcomes.design);
+  for (const CsvRow& row : rows_of(file)) {
+    analysis::QuestionAnswer answer{row.at("participant"), number_of<int>(row.at("session")),
+                                    row.at("questionnaire"), row.at("question")};
+    answer.number = maybe<double>(row.at("answer"));
+    if (!answer.number) answer.words = row.at("words");
+    outcomes.answers.push_back(std::move(answer));
+  }
+}
+
+/// Of participants with one session each.
+void read_demographics(analysis::Outcomes& outcomes) {
+  const auto said = analysis::demographics_of(outcomes.answers, outcomes.design);
+  std::vector<analysis::Demographics> people;
+  for (const analysis::SessionOutcome& one : outcomes.sessions) {
+    if (!one.counted) continue;
+    const auto own = said.find(one.row.session);
+    people.push_back(own == said.end() ? analysis::Demographics{} : own->second);
+  }
+  outcomes.demographics = analysis::in_bands(people);
+}
+
 }  // namespace
 
 std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
@@ -219,6 +243,8 @@ analysis::Outcomes outcomes_from_csv(const std::filesystem::path& folder) {
   outcomes.collection = collection_from_csv(folder, outcomes.state);
   read_trials(outcomes, folder / "trials.csv");
   read_trials(outcomes, folder / "unscored_trials.csv");
+  read_answers(outcomes, folder / "answers.csv");
+  read_demographics(outcomes);
   std::sort(outcomes.trials.begin(), outcomes.trials.end(),
             [](const analysis::TrialOutcome& a, const analysis::TrialOutcome& b) {
               return std::pair(a.row.session, a.row.trial) < std::pair(b.row.session, b.row.trial);

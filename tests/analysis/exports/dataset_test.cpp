@@ -165,6 +165,59 @@ TEST_CASE("Participants with several sessions have folders for them") {
   CHECK(is_there(out / "sub-P01/sub-P01_sessions.tsv"));
 }
 
+TEST_CASE("Datasets have what people said, and what they typed only if that is wanted") {
+  FakeStudy study(design::identification::classification(),
+                  {.simulated = false, .session = R"({"closing_questions": [
+                    {"id": "How-hard", "kind": "number", "text": {"en": "How hard was it?"}},
+                    {"id": "which", "kind": "choice", "text": {"en": "Which was best?"},
+                     "options": [{"en": "rough"}, {"en": "smooth"}]}]})"});
+  study.add(talkative("P01", 1, R"({"How-hard":7,"age":34,"remarks":"it is Anna's","which":1})"));
+  study.add(talkative("P02", 2, R"({"which":0})"));
+  study.add({.participant = "P03", .enrolment = 3, .answers = FakeStudy::always_right()});
+  study.close_and_unblind();
+  const OpenStudy open(study);
+  analysis::DatasetOptions options;
+  options.consents = {{.participant = "P01", .consent_version = "2"}};
+  const fs::path bids = study.folder() / "bids";
+  const fs::path psych = study.folder() / "psych";
+  analysis::export_bids(open.source, options, bids);
+  analysis::export_psych_ds(open.source, options, psych);
+  CHECK(bids_faults(bids) == kNoFaults);
+  CHECK(psych_ds_faults(psych) == kNoFaults);
+  CHECK(text_of_file(bids / "phenotype/closing.tsv") ==
+        "participant_id\thow_hard\twhich\nsub-P01\t7\t1\nsub-P02\tn/a\t0\n");
+  const auto sidecar = nlohmann::json::parse(text_of_file(bids / "phenotype/closing.json"));
+  CHECK(sidecar["how_hard"]["Description"] == "How hard was it?");
+  CHECK(sidecar["which"]["Levels"]["1"] == "smooth");
+  CHECK(is_there(bids / "phenotype/handedness.tsv"));
+  const std::string events = text_of_file(bids / "sub-P01/beh/sub-P01_task-single_events.tsv");
+  CHECK(
+      events.starts_with("onset\tduration\tincident\ttrial\tcode\tsafety_fault\tdevice_fault\n"
+                         "0.02\tn/a\tpaused\tn/a"));
+  CHECK(contains(events, "1.5\tn/a\tinterrupted\t1\tcomfort stop"));
+  CHECK_FALSE(is_there(bids / "sub-P03/beh/sub-P03_task-single_events.tsv"));
+  const std::string people = text_of_file(bids / "participants.tsv");
+  CHECK(contains(people, "interruptions\tpauses"));
+  CHECK(contains(people, "consent_version"));
+  for (const fs::path& folder : {bids, psych}) {
+    for (const auto& [name, text] : contents(folder)) {
+      INFO(name);
+      for (const char* words : {"Anna", "phone", "wears"}) {
+        CHECK_FALSE(contains(text, words));
+      }
+    }
+  }
+  options.typed = analysis::Typed::shown;
+  analysis::export_bids(open.source, options, bids);
+  analysis::export_psych_ds(open.source, options, psych);
+  CHECK(bids_faults(bids) == kNoFaults);
+  CHECK(psych_ds_faults(psych) == kNoFaults);
+  CHECK(contains(text_of_file(bids / "phenotype/closing.tsv"), "it is Anna's"));
+  CHECK(
+      contains(text_of_file(bids / "sub-P01/beh/sub-P01_task-single_events.tsv"), "a phone rang"));
+  CHECK(contains(text_of_file(psych / "data/study-single_description-answers_data.csv"), "Anna"));
+}
+
 TEST_CASE("Before unblinding datasets have no word of what was presented or answered") {
   FakeStudy study(design::identification::comparison(), {.label = "petrified wood"});
   fill(study);

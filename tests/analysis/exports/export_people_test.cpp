@@ -160,7 +160,7 @@ TEST_CASE("Exports of what people said of themselves are their reader's alone") 
   person.participant = "P01";
   person.contact = "somebody@example.org";
   const auto folder = study.folder() / "one";
-  const auto files = analysis::export_participant({study.store()}, "P01", person, folder);
+  const auto files = analysis::export_participant({study.store()}, "P01", {person}, folder);
   for (const auto& file : files) CHECK(is_private(file) == (file.filename() == "P01_personal.csv"));
   const auto export_with = [&](const design::StudyKey* key) {
     return analysis::export_safety(study.store(), key, study.folder() / "safety");
@@ -171,7 +171,7 @@ TEST_CASE("Exports of what people said of themselves are their reader's alone") 
 
 TEST_CASE("A participant's export has that participant alone, and outcomes only where given") {
   FakeStudy study(design::identification::classification(), {.simulated = false});
-  study.add({.participant = "P-1", .enrolment = 1, .answers = FakeStudy::always_right()});
+  study.add(talkative("P-1", 1, R"({"strategy":"by the grain"})"));
   study.add({.participant = "P2", .enrolment = 2, .answers = FakeStudy::confusing(0, 1)});
   study.store().note(1, milliseconds(20), "", "wrote a letter");
   store::PersonalRecord person;
@@ -179,14 +179,25 @@ TEST_CASE("A participant's export has that participant alone, and outcomes only 
   person.consent_version = "3";
   person.contact = "somebody@example.org";
   const auto folder = study.folder() / "one";
-  const auto clear = analysis::export_participant({study.store()}, "P-1", person, folder);
-  REQUIRE(clear.size() == 6);
+  store::PersonalRecord again = person;
+  again.consent_version = "4";
+  again.contact = "";
+  const auto clear = analysis::export_participant({study.store()}, "P-1", {person, again}, folder);
+  REQUIRE(clear.size() == 7);
+  CHECK(clear[5].filename() == "PZd1_incidents.csv");
+  const std::vector<CsvRow> consents = rows_of(clear[6]);
+  REQUIRE(consents.size() == 2);
+  CHECK(consents[0].at("consent_version") == "3");
+  CHECK(consents[1].at("consent_version") == "4");
   CHECK(clear[0].filename() == "PZd1_sessions.csv");
   CHECK(rows_of(clear[0]).size() == 1);
   CHECK(rows_of(clear[1]).size() == 1);
   CHECK(rows_of(clear[2]).size() == 12);
   CHECK(says(all_text(clear), "somebody@example.org"));
-  CHECK_FALSE(says(all_text(clear), "P2"));
+  for (const char* const words : {"P2", "grain", "phone", "ring"}) {
+    CHECK_FALSE(says(all_text(clear), words));
+  }
+  CHECK(rows_of(clear[5]).size() == 7);
   CHECK_FALSE(says(all_text(clear), "response"));
 
   study.store().look_at("P-1", milliseconds(30), "asked for the data");
@@ -195,7 +206,11 @@ TEST_CASE("A participant's export has that participant alone, and outcomes only 
       analysis::export_participant({study.store(), &outcomes, &study.key()}, "P-1", {}, folder);
   CHECK(rows_of(whole[2]).size() == 12);
   CHECK(rows_of(whole[2])[0].at("correct") == "1");
-  CHECK(says(all_text(whole), "wrote a letter"));
+  for (const char* const words :
+       {"wrote a letter", "by the grain", "a phone rang", "wears a ring"}) {
+    CHECK(says(all_text(whole), words));
+  }
+  CHECK(rows_of(folder / "PZd1_answers.csv").size() == 6);
   CHECK_FALSE(says(all_text(whole), "P2"));
   CHECK_FALSE(std::filesystem::exists(folder / "PZd1_personal.csv"));  // of the export before
 

@@ -30,6 +30,12 @@ constexpr const char* kHeader =
     "first_position,valid_in_clear,contact_ok,path_ok,force_ok,speed_ok,within_limits,limited_"
     "ticks,samples,sampling_hz,overruns";
 
+/// The study's own closing questions.
+constexpr const char* kQuestions = R"({"closing_questions": [
+  {"id": "hard", "kind": "number", "text": {"en": "How hard was it?"}},
+  {"id": "which", "kind": "choice", "text": {"en": "Which was best?"},
+   "options": [{"en": "rough"}, {"en": "smooth"}]}]})";
+
 }  // namespace
 
 TEST_CASE("Exported trials count up to the report") {
@@ -41,7 +47,7 @@ TEST_CASE("Exported trials count up to the report") {
       analysis::identification::make_report(outcomes);
   const std::filesystem::path out = study.folder() / "new" / "out";
   const auto files = analysis::export_csv(study.store(), outcomes, out);
-  REQUIRE(files.size() == 11);
+  REQUIRE(files.size() == 13);
 
   std::map<std::string, std::map<std::string, std::map<std::string, int>>> counts;
   int correct = 0;
@@ -124,7 +130,7 @@ TEST_CASE("Before unblinding an export has no word of what was presented or answ
   fill(study);
   const std::filesystem::path out = study.folder() / "out";
   const auto files = analysis::export_csv(study.store(), std::nullopt, out);
-  CHECK(files.size() == 6);
+  CHECK(files.size() == 7);
   CHECK_FALSE(std::filesystem::exists(out / "confusion_adaptive.csv"));
   const std::string json = text_of_file(analysis::export_json(study.store(), std::nullopt, out));
   const std::string csv = text_of_file(out / "trials.csv");
@@ -174,7 +180,7 @@ TEST_CASE("participants.csv tells whose sessions count and that they are simulat
   CHECK(contents["stamp"] == "SIMULATED");
   CHECK(contents["blinded"] == true);
   CHECK(contents["files"] == nlohmann::json({"trials.csv", "participants.csv", "deviations.csv",
-                                             "servo.csv", "study.csv"}));
+                                             "servo.csv", "incidents.csv", "study.csv"}));
 }
 
 TEST_CASE("The JSON export holds the report and the same trials") {
@@ -198,6 +204,88 @@ TEST_CASE("The JSON export holds the report and the same trials") {
     CHECK(trial["response"].is_null() == rows[i].at("response").empty());
   }
   CHECK(json["trials"][0]["reaction_time_s"] == 4.25);
+}
+
+TEST_CASE("What participants said and what happened to them comes out with outcomes alone") {
+  FakeStudy study(design::identification::classification(),
+                  {.simulated = false, .session = kQuestions});
+  study.add(talkative("P01", 1, R"({"hard":7.0,"remarks":"=none","which":1})"));
+  study.add(talkative("P02", 2, R"({"remarks":"it is Anna's"})"));
+  study.store().note(1, std::chrono::milliseconds(20), "too-hot", "30 degrees");
+  study.store().withdraw(2, std::chrono::milliseconds(30), "asked to");
+  const std::vector<store::PersonalRecord> consents{
+      {.participant = "P01", .consent_version = "1", .contact = "somebody@example.org"},
+      {.participant = "P01", .consent_version = "2"},
+      {.participant = "P02", .consent_version = "2"},
+      {.participant = "P09", .consent_version = "2"}};
+  const std::filesystem::path out = study.folder() / "out";
+  const auto all_text = [&] {
+    std::string text;
+    for (const auto& file : analysis::export_csv(study.store(), std::nullopt, out, consents)) {
+      text += text_of_file(file);
+    }
+    return text + text_of_file(analysis::export_json(study.store(), std::nullopt, out, consents));
+  };
+  const std::string blind = all_text();
+  for (const char* words : {"phone", "wears", "Anna", "=none", "30 degrees", "somebody", "P09"}) {
+    INFO(words);
+    CHECK_FALSE(contains(blind, words));
+  }
+  std::vector<CsvRow> incidents = rows_of(out / "incidents.csv");
+  REQUIRE(incidents.size() == 7);
+  const std::vector<std::string> kinds{"paused",           "resumed",     "noted",
+                                       "interrupted",      "interrupted", "interrupted",
+                                       "participant-noted"};
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    CHECK(incidents[i].at("participant") == "P01");
+    CHECK(incidents[i].at("incident") == kinds[i]);
+    CHECK(incidents[i].at("at_s").empty());
+    CHECK(incidents[i].at("text").empty());
+  }
+  CHECK(incidents[3].at("trial") == "1");
+  CHECK(incidents[3].at("code") == "comfort stop");
+  CHECK(incidents[6].at("code") == "too-hot");
+  const std::vector<CsvRow> signed_forms = rows_of(out / "consents.csv");
+  REQUIRE(signed_forms.size() == 2);  // of people with a session whose data are there
+  CHECK(signed_forms[1].at("consent") == "2");
+  CHECK(signed_forms[1].at("consent_version") == "2");
+  const CsvRow person = rows_of(out / "participants.csv").front();
+  CHECK(person.at("interruptions") == "3");
+  CHECK(person.at("pauses") == "1");
+  CHECK_FALSE(person.contains("handedness_score"));
+
+  study.close_and_unblind();
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  analysis::export_csv(study.store(), outcomes, out, consents);
+  incidents = rows_of(out / "incidents.csv");
+  REQUIRE(incidents.size() == 7);
+  CHECK(incidents[0].at("text") == "a phone rang");
+  CHECK(incidents[0].at("at_s") == "0.02");
+  CHECK(incidents[6].at("text") == "30 degrees");
+  const std::vector<CsvRow> answers = rows_of(out / "answers.csv");
+  REQUIRE(answers.size() == 5 + 3);
+  CHECK(answers[0].at("questionnaire") == "handedness");
+  CHECK(answers[1].at("question") == "spoon");
+  CHECK(answers[1].at("answer") == "1");
+  CHECK(answers[5].at("question") == "hard");
+  CHECK(answers[5].at("question_kind") == "number");
+  CHECK(answers[5].at("wording") == "How hard was it?");
+  CHECK(answers[5].at("answer") == "7");
+  CHECK(answers[6].at("words") == "'=none");  // no formula
+  CHECK(answers[7].at("question_kind") == "choice");
+  CHECK(answers[7].at("answer") == "1");
+  CHECK(answers[7].at("words") == "smooth");
+  CHECK(rows_of(out / "participants.csv").front().at("handedness_score") == "87.5");
+  const auto json = nlohmann::json::parse(
+      text_of_file(analysis::export_json(study.store(), outcomes, out, consents)));
+  CHECK(json["answers"].size() == 8);
+  CHECK(json["answers"][6]["words"] == "=none");
+  CHECK(json["incidents"][0]["text"] == "a phone rang");
+  CHECK(json["consents"].size() == 2);
+  const auto beside =
+      analysis::export_said(study.store(), outcomes, study.folder() / "r", consents);
+  REQUIRE(beside.size() == 3);
+  CHECK(rows_of(beside[0]) == answers);
 }
 
 TEST_CASE("Exporting twice gives the same bytes and leaves other files alone") {

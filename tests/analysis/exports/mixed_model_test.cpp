@@ -3,7 +3,6 @@
 #include "analysis/exports/csv_reading.hpp"
 #include "analysis/fake_study.hpp"
 #include "analysis/text_matching.hpp"
-#include "protocols/identification/analysis/hierarchical_choice.hpp"
 #include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
 

@@ -44,6 +44,7 @@ void check_round_trip(FakeStudy& study) {
   for (std::size_t i = 0; i < outcomes.sessions.size(); ++i) {
     CHECK(read_back.sessions[i].row == outcomes.sessions[i].row);
   }
+  CHECK(read_back.answers == outcomes.answers);
   check_same_station(read_back.collection, outcomes.collection);
   CHECK(analysis::identification::report_json(analysis::identification::make_report(read_back)) ==
         analysis::identification::report_json(analysis::identification::make_report(outcomes)));
@@ -135,6 +136,26 @@ TEST_CASE("How a study was collected is the same from its CSV files, in words an
   CHECK(people[2].at("exclusion_reason") == "did not follow, at all");
   CHECK(people[5].at("replacement_reason") == "the device failed");
   CHECK(people[6].at("practice_passed") == "0");
+}
+
+TEST_CASE("What participants said reports the same from its CSV files") {
+  FakeStudy study(design::identification::classification(), {.session = R"({"closing_questions": [
+    {"id": "hard", "kind": "number", "text": {"en": "How hard was it?"}},
+    {"id": "which", "kind": "choice", "text": {"en": "Which was best?"},
+     "options": [{"en": "rough"}, {"en": "smooth"}]}]})"});
+  study.add(talkative("P01", 1, R"({"hard":7,"remarks":"two \"quotes\",\nand a line","which":1})"));
+  study.add(talkative("P02", 2, R"({"hard":2.5,"which":0})"));
+  study.add(talkative("P03", 3, R"({"hard":4,"which":1})"));
+  study.close_and_unblind();
+  check_round_trip(study);
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  const auto said = analysis::summaries_of(outcomes);
+  REQUIRE(said.size() == 3);
+  CHECK(said[0].question == "hard");
+  CHECK(said[0].numbers.median == 4.0);
+  CHECK(said[1].options.at(0).people == 1);
+  CHECK(said[1].options.at(1).people == 2);
+  CHECK(said[2].texts.size() == 1);
 }
 
 TEST_CASE("An interim look reports the same from its CSV files") {

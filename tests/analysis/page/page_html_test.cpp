@@ -64,6 +64,18 @@ TEST_CASE("page: no label, reason or name becomes mark-up") {
   CHECK_THAT(page, holds_text("&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt; &amp; "));
 }
 
+TEST_CASE("page: no line ends within a p") {
+  Document document;
+  document.sections = {{"s",
+                        "S",
+                        {Cited{"Test: p < 0.001, n = 20; a=b."},
+                         Table{"t", "T", {{"x"}, {"p"}}, {{"row", "< 0.001"}}}}}};
+  const std::string page = page_html(document);
+  CHECK(faults_of_page(page) == std::vector<std::string>());
+  CHECK_THAT(page, holds_text("p\u00a0&lt;\u00a00.001, n\u00a0=\u00a020; a=b."));
+  CHECK_THAT(page, holds_text("<td>&lt;\u00a00.001</td>"));
+}
+
 TEST_CASE("page: an empty report is still a page") {
   StudyReport report;
   report.classes = {"bark", "cloth"};

@@ -1,6 +1,5 @@
 // Reference: SciPy 1.10 (stats.mannwhitneyu, divided by the number of pairs).
-#include "analysis/statistics/confidence.hpp"
-
+#include "analysis/statistics/d_prime.hpp"
 #include "support/catch.hpp"
 
 #include <vector>

@@ -5,6 +5,7 @@
 #include "analysis/statistics/paired_tests.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -81,6 +82,36 @@ TEST_CASE("a two-sided test at looks is two one-sided ones at half the level") {
   const auto one = nominal_levels(0.025, Sides::one, AlphaSpending::obrien_fleming, shares);
   for (std::size_t i = 0; i < shares.size(); ++i) {
     CHECK(two[i] == Approx(2.0 * one[i]).epsilon(1e-4).margin(1e-9));
+  }
+}
+
+TEST_CASE("levels hold for looks far too early, one participant apart, and at tiny alphas") {
+  using enum AlphaSpending;
+  // References: the crossing probabilities by Gauss-Legendre quadrature over the first look.
+  const auto last = [](double alpha, AlphaSpending spending, std::vector<double> shares) {
+    return nominal_levels(alpha, Sides::one, spending, shares).back();
+  };
+  CHECK(last(0.05, obrien_fleming, {0.9999, 1.0}) == Approx(0.0480676148895).epsilon(1e-5));
+  CHECK(last(0.05, obrien_fleming, {0.99999, 1.0}) == Approx(0.0492493030083).epsilon(1e-5));
+  CHECK(last(0.05, pocock, {0.99999, 1.0}) == Approx(0.0491171637433).epsilon(1e-5));
+  CHECK(last(0.05, pocock, {0.00002, 1.0}) == Approx(0.0499983715606).epsilon(1e-5));
+  CHECK(last(1e-6, pocock, {0.5, 1.0}) == Approx(3.9756109732778823e-07).epsilon(1e-4));
+  const auto early =
+      nominal_levels(0.05, Sides::one, obrien_fleming, std::vector{0.00002, 0.05, 1.0});
+  CHECK(early[0] == 0.0);
+  CHECK(early[1] == Approx(1.8640333261e-18).epsilon(1e-4));
+  CHECK(early[2] == Approx(0.05).epsilon(1e-7));
+}
+
+TEST_CASE("twenty looks in a row have levels that ascend under O'Brien and Fleming's spending") {
+  for (const double planned : {21.0, 100'000.0}) {
+    std::vector<double> shares;
+    for (int look = 1; look <= 20; ++look) shares.push_back((planned - 21.0 + look) / planned);
+    shares.push_back(1.0);
+    const auto levels = nominal_levels(0.05, Sides::two, AlphaSpending::obrien_fleming, shares);
+    CHECK(levels.back() < 0.05);
+    CHECK(levels.back() > 0.025);
+    if (planned < 100.0) CHECK(std::ranges::is_sorted(levels));
   }
 }
 

@@ -332,24 +332,5 @@ TEST_CASE("falcon stream finds in random damage what a search at every place fin
   }
 }
 
-TEST_CASE("ftdi status bytes are removed, and bytes that do not fit are left out") {
-  Bytes payload(200);
-  for (std::size_t i = 0; i < payload.size(); ++i) payload[i] = static_cast<std::uint8_t>(i);
-  const Bytes transfer = transfer_of(payload);
-  REQUIRE(transfer.size() == 208);
-  for (const std::size_t room : {0U, 1U, 61U, 62U, 63U, 199U, 200U, 300U}) {
-    Bytes out(room, 0xEE);
-    const std::size_t expected = std::min<std::size_t>(room, 200);
-    REQUIRE(ftdi_payload(transfer, out) == expected);
-    REQUIRE(std::equal(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(expected),
-                       payload.begin()));
-  }
-  Bytes out(8);
-  CHECK(ftdi_payload({}, out) == 0);
-  CHECK(ftdi_payload(Bytes{1}, out) == 0);
-  CHECK(ftdi_payload(Bytes{1, 2}, out) == 0);
-  CHECK(ftdi_payload(Bytes{1, 2, 3}, out) == 1);
-}
-
 }  // namespace
 }  // namespace touchtrial::device::falcon

@@ -1,5 +1,4 @@
-#include "device/falcon/velocity_estimate.hpp"
-
+#include "device/falcon/falcon_exchange.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>

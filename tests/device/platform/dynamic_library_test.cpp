@@ -39,7 +39,11 @@ TEST_CASE("an empty name is refused, and does not mean the program itself") {
 TEST_CASE("functions are found by name, and a missing one is named") {
   const device::DynamicLibrary library(TOUCHTRIAL_FAKE_HD, device::Unload::when_closed, "do this");
   CHECK(library.function<void()>("fake_hd_exports") != nullptr);
-  CHECK(library.function_if_any<void()>("hdNoSuchThing") == nullptr);
+  void (*found)() = nullptr;
+  library.find("fake_hd_exports", found);
+  CHECK(found != nullptr);
+  library.find_if_any("hdNoSuchThing", found);
+  CHECK(found == nullptr);
   CHECK_THROWS_WITH(library.function<void()>("hdNoSuchThing"),
                     holds_text("has no function hdNoSuchThing; do this"));
 }

@@ -1,7 +1,6 @@
-#include "device/replay/motion.hpp"
-
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "device/replay/replay_device.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 

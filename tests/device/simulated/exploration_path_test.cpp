@@ -1,5 +1,4 @@
-#include "device/simulated/exploration_path.hpp"
-
+#include "device/simulated/simulated_hand.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>

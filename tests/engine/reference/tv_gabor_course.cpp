@@ -1,7 +1,6 @@
 #include "engine/reference/tv_gabor_course.hpp"
 
 #include "engine/fourier/real_fft.hpp"
-#include "engine/tv_gabor/certificate.hpp"
 #include "engine/tv_gabor/problem.hpp"
 #include "engine/tv_gabor/row_kernels.hpp"
 #include "engine/tv_gabor/solver.hpp"

@@ -1,9 +1,8 @@
-#include "engine/tv_gabor/certificate.hpp"
-
 #include "core/random.hpp"
 #include "engine/example_images.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/tv_gabor_reference.hpp"
+#include "engine/tv_gabor/solver.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>

@@ -141,6 +141,7 @@ class PresenceResults final : public analysis::Results {
       of.correct += said_texture ? 1 : 0;
     }
   }
+  const analysis::StudyHead& head() const override { return head_; }
   std::string json() const override {
     return framed_json(head_, R"({"hits": )" + std::to_string(hits_.correct) +
                                   R"(, "false_alarms": )" + std::to_string(false_alarms_.correct) +

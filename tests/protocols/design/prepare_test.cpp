@@ -355,6 +355,24 @@ TEST_CASE("settings that are probably mistakes cause a warning") {
   CHECK(report.warnings.size() == 5);
 }
 
+TEST_CASE(
+    "a validity rule that no trial can meet causes a warning, and can be set to one that can") {
+  Laboratory laboratory;
+  laboratory.document["trials"]["explore_limit_s"] = 1.5;
+  const design::PrepareReport report = laboratory.prepare();
+  CHECK(
+      warns(report, "/trials/validity/exploring_s: 5 s, and a presentation can be explored for "));
+  CHECK(warns(report, "/trials/validity/contact_s: 5 s"));
+  CHECK(warns(report, "/trials/validity/path_mm: 300 mm, more than the fastest stroke"));
+  CHECK(report.warnings.size() == 3);
+  laboratory.document["trials"]["validity"] = {
+      {"exploring_s", 1.5}, {"contact_s", 1}, {"path_mm", 100}};
+  CHECK(laboratory.prepare().warnings.empty());
+  laboratory.document["trials"]["validity"]["least_median_n"] = 3;
+  CHECK(warns(laboratory.prepare(),
+              "/trials/validity/least_median_n: 3 N, and the force may be 2 N"));
+}
+
 TEST_CASE("gains that leave nothing to feel cause a warning, unless they were requested") {
   Laboratory laboratory;
   for (std::uint64_t c = 0; c < 3; ++c) engine::write_png(laboratory.image(c), GreyImage(1, 7, 50));

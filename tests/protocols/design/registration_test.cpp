@@ -1,9 +1,13 @@
 #include "core/errors.hpp"
+#include "protocols/design/deviation_codes.hpp"
 #include "protocols/design/study_examples.hpp"
 #include "protocols/design/study_key.hpp"
+#include "protocols/design/study_sections.hpp"
 #include "support/catch.hpp"
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -117,11 +121,60 @@ TEST_CASE("a registered difference names two methods that are presented") {
   CHECK_THAT(with({"edge", "gaussian"}), holds_text("/registration/methods/1: \"gaussian\""));
 }
 
+TEST_CASE("a rule about deviations names codes that can occur") {
+  const auto with = [](const json& rules, const json& day_sheet = json::array()) {
+    json study = study_of(5);
+    study["session"] = {{"day_sheet", day_sheet}};
+    return refusal_of({{"estimand", "mean-accuracy"}, {"exclusion_rules", rules}}, study);
+  };
+  for (const std::string_view code : design::kDeviationCodes) {
+    CHECK(with({{"deviations", {code}}}).empty());
+  }
+  const std::string refusal = with({{"deviations", {"no-curtain", "no-curtan"}}});
+  CHECK_THAT(refusal, holds_text("/registration/exclusion_rules/deviations/1: is no code that the "
+                                 "program records, which are answers-lost, comfort-stop, "));
+  CHECK_THAT(refusal, holds_text("visit-late and no-day-sheet-1, ..; a code that "
+                                 "experimenters enter belongs in \"own_deviations\""));
+  CHECK(with({{"own_deviations", {"no-curtan"}}}).empty());
+  const json two = {"Door shut", "Phone off"};
+  CHECK(with({{"deviations", {"no-day-sheet-2"}}}, two).empty());
+  CHECK_THAT(with({{"deviations", {"no-day-sheet-3"}}}, two),
+             holds_text("/registration/exclusion_rules/deviations/0: is about item 3 of "
+                        "\"day_sheet\", which has 2"));
+  for (const char* code : {"no-day-sheet-", "no-day-sheet-0", "no-day-sheet-02"}) {
+    CHECK_THAT(with({{"deviations", {code}}}, two), holds_text("is no code"));
+  }
+}
+
+TEST_CASE("codes of the program and of the study are read as they were written") {
+  json study = study_of(5);
+  study["registration"] = {
+      {"estimand", "mean-accuracy"},
+      {"exclusion_rules", {{"deviations", {"no-consent"}}, {"own_deviations", {"asleep"}}}}};
+  const design::Registration registration = parsed(study).registration;
+  CHECK(registration.analysis->exclusion_rules->deviations ==
+        std::vector<std::string>{"no-consent", "asleep"});
+  study["registration"] = design::to_json(registration);
+  CHECK(parsed(study).registration == registration);
+  CHECK(study["registration"]["exclusion_rules"]["own_deviations"] == json{"asleep"});
+}
+
+TEST_CASE("alpha is neither nothing nor more than a half") {
+  for (const double alpha : {0.0, 1e-320, 9e-7, 0.51}) {
+    CHECK_THAT(refusal_of({{"estimand", "mean-accuracy"}, {"alpha", alpha}}),
+               holds_text("/registration/alpha"));
+  }
+  CHECK(refusal_of({{"estimand", "mean-accuracy"}, {"alpha", 1e-6}}).empty());
+}
+
 TEST_CASE("registered looks come before the planned end, in order") {
   const auto with = [](const json& looks) {
     return refusal_of({{"estimand", "mean-accuracy"}, {"participants", 20}, {"looks", looks}});
   };
   CHECK(with({8, 14}).empty());
+  CHECK_THAT(refusal_of({{"estimand", "mean-accuracy"}, {"looks", {8}}}),
+             holds_text("/registration/looks: is given without \"participants\""));
+  CHECK_THAT(with({1, 8}), holds_text("/registration/looks/0"));
   CHECK_THAT(with({8, 20}), holds_text("look at 20 participants, but 20 are planned"));
   CHECK_THAT(with({8, 8}), holds_text("/registration/looks/1: is not more than the look before"));
 }

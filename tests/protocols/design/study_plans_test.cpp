@@ -72,6 +72,8 @@ TEST_CASE("nobody practises with what is in the study, nor with one texture unde
   json document = planned_study();
   document["practice"]["classes"][1]["label"] = "c2";
   CHECK(refused(document, "/practice/classes/1/label: \"c2\" is a class of the study"));
+  document["practice"]["classes"][1]["label"] = "C2";
+  CHECK(refused(document, "/practice/classes/1/label: \"C2\" is a class of the study"));
   document = planned_study();
   document["practice"]["classes"][0]["images"] = {"x/../c1_0.png"};
   CHECK(refused(document, "/practice/classes/0/images/0: \"x/../c1_0.png\" is an image of the"));
@@ -129,6 +131,21 @@ TEST_CASE("texts that a screen or a table could not hold are refused") {
   CHECK(refused(with("/session/closing_questions/0/id", "a b"), "must have 1 to 64"));
   CHECK(refused(with("/session/closing_questions/0/text/en", ""), "is empty"));
   CHECK(refused(with("/registration/exclusions", std::string(4001, 'x')), "at most 4000"));
+}
+
+TEST_CASE("bounds belong to questions for a number, and leave one between them") {
+  json document = planned_study();
+  json& question = document["session"]["closing_questions"][0];
+  question["min"] = 18;
+  CHECK(refused(document, "/session/closing_questions/0/min: belongs to a question"));
+  question["kind"] = "number";
+  question.erase("options");
+  question["max"] = 99.5;
+  const design::Question read = parsed(document).session.closing_questions[0];
+  CHECK(read.min == 18.0);
+  CHECK(read.max == 99.5);
+  question["max"] = 17;
+  CHECK(refused(document, "/session/closing_questions/0/max: is 17, less than min, 18"));
 }
 
 TEST_CASE("options belong to choices, and questions have ids of their own") {

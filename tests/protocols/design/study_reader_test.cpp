@@ -275,6 +275,25 @@ TEST_CASE("a method listed twice is refused") {
         "give one of the two another label");
 }
 
+TEST_CASE("labels of methods that some file systems could not tell apart are refused") {
+  json document = comparison_of(2);
+  document["methods"][1] = {{"name", "adaptive"}, {"label", "Adaptive"}};
+  contains(refusal(document), "/methods/1: \"Adaptive\" and \"adaptive\" differ by capitals");
+}
+
+TEST_CASE("a study sets its validity rule and the touch before an answer") {
+  json document = minimal_study();
+  document["trials"]["validity"] = {{"exploring_s", 2}, {"path_mm", 100}};
+  document["trials"]["answer_after"] = {{"contact_s", 0}, {"path_mm", 0}};
+  const design::TrialOptions trials = parsed(document).trials;
+  CHECK(trials.validity.least_exploring_s == 2.0);
+  CHECK(trials.validity.least_contact_s == 5.0);
+  CHECK(trials.validity.least_path_mm == 100.0);
+  CHECK(trials.answer_after == design::LeastTouch{0.0, 0.0});
+  document["trials"] = design::to_json(trials);
+  CHECK(parsed(document).trials == trials);
+}
+
 TEST_CASE("labels that tables could not tell apart or print are refused") {
   json document = minimal_study();
   const auto with_label = [&](const std::string& label) {
@@ -282,6 +301,7 @@ TEST_CASE("labels that tables could not tell apart or print are refused") {
     return refusal(document);
   };
   contains(with_label("rough"), "/classes/1/label: \"rough\" is the label of another class");
+  contains(with_label("Rough"), "/classes/1/label: \"Rough\" and \"rough\" differ by capitals");
   contains(with_label(""), "/classes/1/label: is empty");
   contains(with_label("a\nb"), "has a control character");
   contains(with_label("a\xc2\x85z"), "has a control character");
@@ -383,7 +403,7 @@ TEST_CASE("malformed JSON is refused with line and column") {
   contains(refusal_of_text("{\n  \"study\": tru\n}"), "study.json: line 2, column 15: ");
   contains(refusal_of_text(""), "study.json: line 1, column 1: ");
   contains(refusal_of_text("{\"a\": 1,}"), "study.json: line 1, column 9: ");
-  contains(refusal_of_text("{} // no"), "line 1, column 4: ");
+  contains(refusal_of_text("{} no"), "line 1, column 5: ");
   contains(refusal_of_text("{\"a\": \"\xff\"}"), "ill-formed UTF-8");
   contains(refusal_of_text("[]"), "study.json: /: must be an object, not a list");
 }

@@ -2,6 +2,7 @@
 /// looks up the reader's keys and values in the schema.
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "protocols/design/languages.hpp"
 #include "protocols/design/study.hpp"
 #include "protocols/design/study_examples.hpp"
 #include "support/catch.hpp"
@@ -51,7 +52,12 @@ const json kSurface = {{"model", "surface"}, {"gains", {{"height_mm", 0.01}}}, {
 
 /// The sections that are about people, with every key.
 json full_plans() {
-  const json text = {{"en", "Which?"}, {"de", "Welche?"}};
+  json text;
+  json pages;
+  for (const std::string_view code : design::language_codes()) {
+    text[std::string(code)] = "Which?";
+    pages[std::string(code)] = {"Feel."};
+  }
   const json question = {{"id", "cue"},
                          {"kind", "choice"},
                          {"text", text},
@@ -65,7 +71,10 @@ json full_plans() {
             {"rounds", 1}}},
           {"session",
            {{"language", "en"},
-            {"instructions", {{"en", {"Feel."}}, {"de", {"Fühlen."}}}},
+            {"instructions", pages},
+            {"texts", {{"en", {{"screens", {{"next", "On"}}}}}}},
+            {"text_scale", 1},
+            {"high_contrast", false},
             {"sight", "curtain"},
             {"masking", {{"wanted", true}, {"level_dbfs", -30}}},
             {"handedness", true},
@@ -75,6 +84,8 @@ json full_plans() {
             {"ethics_number", "2026-17"},
             {"closing_questions", {question}},
             {"closing", true}}},
+          {"visits", {{"count", 2}, {"least_days", 0}, {"most_days", 3650}, {"methods", "all"}}},
+          {"groups", {{"labels", {"one", "two"}}, {"open", false}}},
           {"registration",
            {{"hypothesis", "They can."},
             {"participants", 20},
@@ -89,7 +100,11 @@ json full_plans() {
             {"smallest_effect", 0.07},
             {"looks", json::array()},
             {"spending", "obrien-fleming"},
-            {"exclusion_rules", {{"deviations", json::array()}, {"invalid_trials", 0.25}}}}}};
+            {"visits", "all"},
+            {"exclusion_rules",
+             {{"deviations", json::array()},
+              {"own_deviations", json::array()},
+              {"invalid_trials", 0.25}}}}}};
 }
 
 /// A study with every possible key, in which any single value can be changed.
@@ -112,6 +127,10 @@ json full_study(const json& method, const json& model = kPaper) {
       {"on_timeout", "fade"}, {"practice", 0},         {"break_every", 0},
       {"catch", 0},           {"lead_in", 0},          {"blocks", "by-method"},
       {"max_run", 0},         {"resume_within_h", 24}, {"on_interruption", "repeat"}};
+  study["trials"]["validity"] = {{"exploring_s", 5},      {"contact_s", 5},
+                                 {"path_mm", 300},        {"least_median_n", 0.2},
+                                 {"largest_median_n", 2}, {"saturated_share", 0.01}};
+  study["trials"]["answer_after"] = {{"contact_s", 0.5}, {"path_mm", 25}};
   study.update(full_plans());
   study["blinding"] = "double";
   study["seed"] = 1;
@@ -246,7 +265,8 @@ double step_of(const json& property) {
 TEST_CASE("the schema describes every section of the study file") {
   std::set<std::string> places;
   for (const Property& property : all_properties()) places.insert(property.place.to_string());
-  CHECK(places.size() == 11 + 2 + 18 + 15 + 12 + (3 + 2) + (11 + 2 + 2 + 5 + 4) + (14 + 2));
+  CHECK(places.size() == 13 + 2 + 18 + 15 + (12 + 2 + 6 + 2) + (3 + 2) +
+                             (14 + 6 + 1 + 2 + 5 + 2 * 6) + 4 + 2 + (15 + 3));
   for (const char* place :
        {"/seed", "/rendering/gains/normal_n", "/rendering/gains/height_mm", "/trials/catch",
         "/methods/0/components/0/direction", "/classes/0/images", "/practice/classes/0/label",
@@ -391,6 +411,8 @@ TEST_CASE("the schema's defaults are the reader's") {
   json document = minimal_study();
   document["practice"]["classes"] = full_plans()["practice"]["classes"];  // required
   document["registration"]["estimand"] = "mean-accuracy";  // required beside the other fields
+  document["visits"]["count"] = 2;                         // required, as the next
+  document["groups"]["labels"] = {"one", "two"};
   const design::Study bare = parsed(document);
   int defaults = 0;
   for (const Property& property : all_properties()) {
@@ -406,10 +428,13 @@ TEST_CASE("the schema's defaults are the reader's") {
     CHECK(written.trials == bare.trials);
     CHECK(written.practice == bare.practice);
     CHECK(written.session == bare.session);
+    CHECK(written.visits == bare.visits);
+    CHECK(written.groups == bare.groups);
     CHECK(written.registration == bare.registration);
     CHECK(written.seed == bare.seed);
   }
-  CHECK(defaults == (23 + 3 + 2 + 11 + 9) * (static_cast<int>(kMethods.size()) + 1));
+  CHECK(defaults ==
+        (23 + 8 + 3 + 2 + 13 + 2 + 1 + 10) * (static_cast<int>(kMethods.size()) + 1));
 }
 
 TEST_CASE("the schema's defaults of the methods' keys are the reader's") {

@@ -3,9 +3,10 @@
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "protocols/session/commitment.hpp"
+#include "protocols/session/resting_stylus.hpp"
 #include "protocols/session/session_runner.hpp"
 #include "protocols/session/tiny_study.hpp"
-#include "protocols/simulation/prompt_participant.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
 #include "protocols/store/noting_sink.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/as_recorded.hpp"
@@ -28,25 +29,6 @@ using Kind = Fault::Kind;
 
 constexpr int kTrials = 25;
 
-/// A stylus that rests on the plane for 40 ticks.
-class BriefStylus final : public device::HapticDevice {
- public:
-  [[nodiscard]] device::DeviceInfo info() const override { return {"brief", "", 3.3, true}; }
-  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
-    sample.position_mm = {10.0, 10.0, -1.0};
-    sample.sequence = static_cast<std::uint64_t>(tick_) + 1;
-    return ++tick_ <= 40 ? device::DeviceStatus::ok : device::DeviceStatus::stopped;
-  }
-  [[nodiscard]] device::DeviceStatus write(Vec3) noexcept override {
-    return device::DeviceStatus::ok;
-  }
-  void halt() noexcept override {}
-  void rearm() noexcept override {}
-
- private:
-  int tick_ = 0;
-};
-
 /// Names one picture after the other.
 class Restless final : public simulation::PromptParticipant {
  public:
@@ -54,7 +36,7 @@ class Restless final : public simulation::PromptParticipant {
 
   void see_pictures(const std::vector<std::string>&) override {}
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry&) override {
-    stylus_ = BriefStylus();
+    stylus_ = RestingStylus(40);
     return stylus_;
   }
   void feel(const device::ServoSample&) noexcept override {}
@@ -64,7 +46,7 @@ class Restless final : public simulation::PromptParticipant {
 
  private:
   int next_;
-  BriefStylus stylus_;
+  RestingStylus stylus_{40};
 };
 
 /// The study, and a database of it without sessions; made once.

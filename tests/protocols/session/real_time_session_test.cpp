@@ -9,7 +9,7 @@
 #include "protocols/session/still_time.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
-#include "protocols/simulation/prompt_participant.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/as_recorded.hpp"

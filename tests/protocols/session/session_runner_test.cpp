@@ -1,40 +1,23 @@
 #include "protocols/session/session_runner.hpp"
 
+#include "protocols/session/resting_stylus.hpp"
 #include "protocols/session/tiny_study.hpp"
-#include "protocols/simulation/prompt_participant.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <sys/resource.h>
 
 namespace touchtrial {
 namespace {
-
-/// A stylus that rests on the plane for 100 ticks, or is unplugged after 50.
-class RestingStylus final : public device::HapticDevice {
- public:
-  explicit RestingStylus(bool is_lost) : is_lost_(is_lost) {}
-
-  [[nodiscard]] device::DeviceInfo info() const override { return {"resting", "", 3.3, true}; }
-  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
-    sample.position_mm = {10.0, 10.0, -1.0};
-    sample.sequence = static_cast<std::uint64_t>(tick_) + 1;
-    if (is_lost_ && tick_ == 50) return device::DeviceStatus::fault;
-    return ++tick_ <= 100 ? device::DeviceStatus::ok : device::DeviceStatus::stopped;
-  }
-  [[nodiscard]] device::DeviceStatus write(Vec3) noexcept override {
-    return device::DeviceStatus::ok;
-  }
-  void halt() noexcept override {}
-  void rearm() noexcept override {}
-
- private:
-  bool is_lost_;
-  int tick_ = 0;
-};
 
 /// A participant who always names the first picture. The device is lost in the first `losses`
 /// presentations.
@@ -44,7 +27,7 @@ class Unlucky final : public simulation::PromptParticipant {
 
   void see_pictures(const std::vector<std::string>& labels) override { pictures = labels; }
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry&) override {
-    stylus_ = RestingStylus(losses_-- > 0);
+    stylus_ = RestingStylus(100, losses_-- > 0 ? 50 : -1);
     return stylus_;
   }
   void feel(const device::ServoSample&) noexcept override { ++ticks; }
@@ -57,7 +40,7 @@ class Unlucky final : public simulation::PromptParticipant {
 
  private:
   int losses_;
-  RestingStylus stylus_{false};
+  RestingStylus stylus_{100};
 };
 
 struct Ran {
@@ -72,8 +55,8 @@ struct Ran {
 /// Opens a session of 5 trials and runs it.
 /// \param run  called with the session, the study's key and the stimuli
 template <typename Run>
-Ran ran_session(const Run& run) {
-  const TinyStudy study({.trials = R"({"repeats": 1})"});
+Ran ran_session(const Run& run, const std::string& trials = R"({"repeats": 1})") {
+  const TinyStudy study({.trials = trials});
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
   Ran ran;
   session::Session session(
@@ -191,6 +174,200 @@ Ran run_with(session::Explorer& explorer, session::SessionClock& clock,
     return session::run_session(session, {key, source, person, clock, explorer, devices,
                                           device::kServoRateHz, experimenter});
   });
+}
+
+/// A step, and what the experimenter was shown last when it came.
+struct Moment {
+  session::Step step;
+  session::SessionStatus status;
+};
+
+/// Both people of a session, who write down what they see. The participant goes on at once.
+class Diary final : public session::Experimenter, public session::Participant {
+ public:
+  void show(const session::SessionStatus& status) override { status_ = status; }
+  void see_pictures(const std::vector<std::string>& labels) override {
+    person_.see_pictures(labels);
+  }
+  [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) override {
+    moments.push_back({step, status_});
+    return person_.attend(step);
+  }
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
+    return person_.begin_exploring(plane);
+  }
+  void feel(const device::ServoSample& sample) noexcept override { person_.feel(sample); }
+
+  /// The moments of one kind of step.
+  template <typename Step>
+  [[nodiscard]] std::vector<std::pair<Step, session::SessionStatus>> all() const {
+    std::vector<std::pair<Step, session::SessionStatus>> found;
+    for (const Moment& moment : moments) {
+      if (const auto* const step = std::get_if<Step>(&moment.step)) {
+        found.emplace_back(*step, moment.status);
+      }
+    }
+    return found;
+  }
+
+  std::vector<Moment> moments;
+
+ private:
+  session::SessionStatus status_;
+  Unlucky person_{0};
+};
+
+/// Ends the exploration with this number, from 1, in another way; 0: all of them.
+class EndingExplorer final : public session::Explorer {
+ public:
+  EndingExplorer(device::ServoEnd end, int which) : end_(end), which_(which) {}
+
+  [[nodiscard]] session::Exploration explore(const engine::RenderingModel& model,
+                                             const PlaneGeometry& plane,
+                                             session::Participant& participant,
+                                             const device::ServoOptions& options,
+                                             store::Trace& trace) override {
+    session::Exploration done = usual_.explore(model, plane, participant, options, trace);
+    ++count_;
+    if (which_ == 0 || which_ == count_) done.servo.end = end_;
+    return done;
+  }
+
+ private:
+  device::ServoEnd end_;
+  int which_;
+  int count_ = 0;
+  session::VirtualExplorer usual_;
+};
+
+/// A device that needs consent after an interruption, which comes when it is asked for a third
+/// time.
+class Reluctant final : public session::DeviceSupply {
+ public:
+  [[nodiscard]] session::SupplyState make_ready() override {
+    if (wanted_ > 0) --wanted_;
+    return wanted_ > 0 ? session::SupplyState::not_yet : session::SupplyState::ready;
+  }
+  void interrupted() override { wanted_ = 3; }
+
+ private:
+  int wanted_ = 0;
+};
+
+Ran run_diary(Diary& diary, session::Explorer& explorer, session::DeviceSupply& devices,
+              const std::string& trials = R"({"repeats": 1})", int practice = 0) {
+  session::VirtualSessionClock clock;
+  return ran_session(
+      [&](session::Session& session, const design::StudyKey& of_study,
+          const session::StimulusSource& source) {
+        design::StudyKey key = of_study;
+        key.study.trials.practice = practice;
+        key.study.practice.criterion = practice;
+        key.study.practice.rounds = 1;
+        const session::PracticeTextures textures{
+            source.plane(), [&](int) {
+              return session::PracticeRound{
+                  {"sand", "cork"}, {&source.flat(), &source.flat()}, {0, 0}};
+            }};
+        return session::run_session(session, {.key = key,
+                                              .source = source,
+                                              .participant = diary,
+                                              .clock = clock,
+                                              .explorer = explorer,
+                                              .devices = devices,
+                                              .experimenter = diary,
+                                              .practice = practice > 0 ? &textures : nullptr});
+      },
+      trials);
+}
+
+TEST_CASE("after a comfort stop a page tells the participant, and the experimenter who stopped") {
+  const bool needs_consent = GENERATE(false, true);
+  Diary diary;
+  EndingExplorer explorer(device::ServoEnd::comfort_stop, 2);
+  session::AlwaysReady ready;
+  Reluctant reluctant;
+  const Ran ran = run_diary(diary, explorer,
+                            needs_consent ? static_cast<session::DeviceSupply&>(reluctant) : ready);
+  CHECK(ran.count(store::EventKind::interrupted) == 1);
+  CHECK(ran.count(store::EventKind::answered) == 5);
+  const auto notices = diary.all<session::NoticeStep>();
+  REQUIRE(!notices.empty());
+  for (const auto& [notice, status] : notices) {
+    CHECK(notice.what == session::NoticeStep::What::stopped);
+    CHECK(notice.may_go_on == !needs_consent);
+    CHECK(status.stage == "stopped");
+    CHECK(status.participant_stopped);
+    CHECK(status.needs_consent == needs_consent);
+  }
+  for (const auto& [step, status] : diary.all<session::ReadyStep>()) {
+    CHECK_FALSE(status.participant_stopped);
+  }
+}
+
+TEST_CASE("a lost device is no comfort stop, and the participant is asked to wait") {
+  Diary diary;
+  EndingExplorer explorer(device::ServoEnd::fault, 2);
+  Reluctant devices;
+  static_cast<void>(run_diary(diary, explorer, devices));
+  CHECK(diary.all<session::NoticeStep>().empty());
+  REQUIRE(!diary.all<session::PauseStep>().empty());
+  CHECK(diary.all<session::PauseStep>().front().second.stage == "waiting for the device");
+}
+
+TEST_CASE("the experimenter's status counts trials as the participant's window does") {
+  Diary diary;
+  EndingExplorer explorer(device::ServoEnd::comfort_stop, 4);
+  session::AlwaysReady devices;
+  static_cast<void>(run_diary(diary, explorer, devices, R"({"repeats": 1})", 2));
+  const auto ready = diary.all<session::ReadyStep>();
+  CHECK(ready.size() == 2 + 6);
+  for (const auto& [step, status] : ready) {
+    CHECK(status.stage == "ready");
+    CHECK(status.trial == step.trial);
+    CHECK(status.of == step.of);
+    CHECK(status.practice == step.practice);
+  }
+  for (const auto& [step, status] : diary.all<session::AnswerStep>()) {
+    CHECK(status.stage == "answering");
+    CHECK(status.trial == step.trial);
+    CHECK(status.of == step.of);
+    CHECK(status.practice == step.practice);
+  }
+  for (const auto& [step, status] : diary.all<session::FeedbackStep>()) {
+    CHECK(status.stage == "feedback");
+  }
+}
+
+TEST_CASE("the participant is told that practice is over, and in it that the time is up") {
+  Diary diary;
+  EndingExplorer explorer(device::ServoEnd::time_limit, 1);
+  session::AlwaysReady devices;
+  static_cast<void>(run_diary(diary, explorer, devices, R"({"repeats": 1})", 2));
+  const auto notices = diary.all<session::NoticeStep>();
+  REQUIRE(notices.size() == 1);
+  CHECK(notices.front().first.what == session::NoticeStep::What::practice_over);
+  CHECK(notices.front().second.stage == "practice is over");
+  const auto answers = diary.all<session::AnswerStep>();
+  REQUIRE(answers.size() == 2 + 5);
+  CHECK(answers[0].first.time_is_up);
+  CHECK_FALSE(answers[1].first.time_is_up);
+}
+
+TEST_CASE("a trial that ends without an answer tells the participant so") {
+  Diary diary;
+  EndingExplorer explorer(device::ServoEnd::time_limit, 0);
+  session::AlwaysReady devices;
+  static_cast<void>(
+      run_diary(diary, explorer, devices, R"({"repeats": 1, "on_timeout": "no-response"})"));
+  CHECK(diary.all<session::AnswerStep>().empty());
+  const auto notices = diary.all<session::NoticeStep>();
+  REQUIRE(notices.size() == 5);
+  for (const auto& [notice, status] : notices) {
+    CHECK(notice.what == session::NoticeStep::What::time_is_up);
+    CHECK(notice.may_go_on);
+    CHECK(status.stage == "time is up");
+  }
 }
 
 TEST_CASE("in real time every field is in memory before it is felt") {

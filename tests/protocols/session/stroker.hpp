@@ -2,7 +2,7 @@
 #pragma once
 
 #include "protocols/simulation/felt_exploration.hpp"
-#include "protocols/simulation/prompt_participant.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
 
 #include <optional>
 #include <string>

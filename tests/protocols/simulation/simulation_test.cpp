@@ -297,6 +297,14 @@ TEST_CASE("short explorations are simulated and marked as invalid trials") {
   for (const store::TrialRow& row : store.trials()) CHECK_FALSE(row.valid);
 }
 
+TEST_CASE("trials are judged by the validity rule that the study sets") {
+  TinyStudy study({.trials = R"({"repeats": 1, "validity": {"exploring_s": 0, "contact_s": 0,
+                                 "path_mm": 0, "least_median_n": 0, "largest_median_n": 100,
+                                 "saturated_share": 1}})"});
+  const store::StudyStore store = simulated(study, quick_subject(), {.participants = 1});
+  for (const store::TrialRow& row : store.trials()) CHECK(row.valid);
+}
+
 TEST_CASE("progress counts sessions") {
   TinyStudy study({.trials = R"({"repeats": 1})"});
   simulation::SubjectModel subject = quick_subject();

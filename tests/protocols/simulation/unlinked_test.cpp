@@ -8,7 +8,7 @@
 #include "protocols/simulation/confusion_of.hpp"
 #include "protocols/simulation/felt_exploration.hpp"
 #include "protocols/simulation/permutations.hpp"
-#include "protocols/simulation/prompt_participant.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"

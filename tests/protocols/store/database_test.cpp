@@ -177,7 +177,7 @@ TEST_CASE("a database of a newer or an unknown older schema is refused untouched
     return refusal_untouched(study.path, access);
   };
   for (const Access access : {Access::read_only, Access::read_write}) {
-    CHECK(contains(refusal_as(6, access), "newer Touchtrial (schema 6, this one knows 5)"));
+    CHECK(contains(refusal_as(7, access), "newer Touchtrial (schema 7, this one knows 6)"));
     for (const int version : {1, 4}) {
       CHECK(contains(refusal_as(version, access),
                      "older Touchtrial (schema " + std::to_string(version) +
@@ -263,4 +263,23 @@ TEST_CASE("a migration that fails leaves the database as it was") {
   CHECK_FALSE(SQLite::Database(study.path.string()).tableExists("half"));
   CHECK(pragma(study.path, "user_version") == std::to_string(kSchemaVersion));
   CHECK_FALSE(StudyStore::open(study.path, Access::read_only).first_fault());
+}
+
+TEST_CASE("a database of version 5, where nobody came twice, is brought forward whole") {
+  StoredFixture study(2);
+  study.store.reset();
+  SQLite::Database(study.path.string(), SQLite::OPEN_READWRITE)
+      .exec(
+          "DROP INDEX sessions_participant; DROP INDEX sessions_enrolment;"
+          "ALTER TABLE sessions DROP COLUMN visit;"
+          "CREATE UNIQUE INDEX sessions_participant ON sessions(participant) "
+          "WHERE replaced_by IS NULL;"
+          "CREATE UNIQUE INDEX sessions_enrolment ON sessions(enrolment) WHERE replaced_by IS NULL;"
+          "PRAGMA user_version = 5");
+  CHECK(contains(refusal_of([&] { return StudyStore::open(study.path, Access::read_only); }),
+                 "is of an older schema"));
+  const StudyStore store = StudyStore::open(study.path, Access::read_write);
+  CHECK_FALSE(store.first_fault());
+  REQUIRE(store.sessions().size() == 2);
+  for (const SessionRow& row : store.sessions()) CHECK(row.visit == 1);
 }

@@ -1,4 +1,5 @@
 #include "core/files.hpp"
+#include "protocols/store/damage.hpp"
 #include "protocols/store/file_chain.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/person_texts.hpp"
@@ -418,4 +419,77 @@ TEST_CASE("a file's chain that brings erased data back, or erases them twice, is
   REQUIRE(contains(add(Kept::data), "keeps data that were erased"));
   REQUIRE(contains(add(Kept::safety_record), "is erased twice"));
   REQUIRE(add(Kept::nothing).empty());
+}
+
+TEST_CASE("a second visit follows a complete one of the same participant and number") {
+  StoredFixture study;
+  StudyStore& store = *study.store;
+  const auto visit_of = [](int session, const std::string& participant, int enrolment, int visit) {
+    SessionOpening how = opening_of(session, participant, enrolment);
+    how.visit = visit;
+    return how;
+  };
+  const auto add = [&](int session, const std::string& participant, int enrolment, int visit) {
+    store.add_session(session_of(session, 2, stroking(20, 0.05),
+                                 visit_of(session, participant, enrolment, visit)),
+                      wrapped_key_of(session), kUtc);
+  };
+  REQUIRE(contains(refusal_of([&] { add(1, "P1", 1, 2); }), "has no visit before visit 2"));
+  add(1, "P1", 1, 1);
+  REQUIRE(contains(refusal_of([&] { add(2, "P1", 1, 1); }), "already has session 1"));
+  REQUIRE(contains(refusal_of([&] { add(2, "P1", 1, 3); }), "does not follow session 1"));
+  REQUIRE(contains(refusal_of([&] { add(2, "P1", 2, 2); }), "does not follow session 1"));
+  REQUIRE(contains(refusal_of([&] { add(2, "P2", 1, 2); }), "belongs to participant P1"));
+  add(2, "P1", 1, 2);
+  REQUIRE(store.sessions().at(1).visit == 2);
+  REQUIRE(store.session_of("P1").value().session == 2);
+  REQUIRE(store.sessions_of("P1").size() == 2);
+  store.add_session(stopped_session(3, visit_of(3, "P1", 1, 3)), wrapped_key_of(3), kUtc);
+  REQUIRE(contains(refusal_of([&] { add(4, "P1", 1, 4); }), "does not follow session 3"));
+  // The visit is begun again under the same number.
+  store.replace(3, "P1", kUtc, "restarted");
+  add(4, "P1", 1, 3);
+  REQUIRE(store.next_enrolment() == 2);
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("who replaces a participant takes the place at all visits") {
+  StoredFixture study;
+  StudyStore& store = *study.store;
+  add_complete(store, 1, "P1", 1);
+  SessionOpening again = opening_of(2, "P1", 1);
+  again.visit = 2;
+  store.add_session(stopped_session(2, again), wrapped_key_of(2), kUtc);
+  store.replace(2, "P9", kUtc, "moved away");
+  for (const SessionRow& row : store.sessions()) REQUIRE(row.replaced_by == "P9");
+  REQUIRE(store.enrolment_for("P9") == 1);
+  REQUIRE_FALSE(store.session_of("P1"));
+  add_complete(store, 3, "P9", 1);
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("on a file's chain a visit follows a complete one") {
+  StoredFixture study;
+  add_complete(*study.store, 1, "P1", 1);
+  const std::vector<Event> chain = study.store->events(0);
+  FileChain file;
+  for (const Event& event : chain) file.add(event);
+  const auto opened = [&](const std::string& participant, int enrolment, int visit) {
+    Event event = chain.back();
+    event.sequence += 1;
+    event.kind = EventKind::session_opened;
+    event.body = to_json(SessionOpenedBody{.session = 2,
+                                           .participant = participant,
+                                           .enrolment = enrolment,
+                                           .visit = visit,
+                                           .first = {},
+                                           .key = {}});
+    FileChain longer = file;
+    longer.add(event);
+  };
+  REQUIRE_NOTHROW(opened("P1", 1, 2));
+  REQUIRE_THROWS_AS(opened("P1", 1, 3), EventFault);
+  REQUIRE_THROWS_AS(opened("P1", 2, 2), EventFault);
+  REQUIRE_THROWS_AS(opened("P2", 1, 2), EventFault);
+  REQUIRE_THROWS_AS(opened("P1", 1, 1), EventFault);
 }

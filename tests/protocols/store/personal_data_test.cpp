@@ -36,26 +36,60 @@ std::string content_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("personal data are kept, changed, and removed without a trace in their file") {
+TEST_CASE("every consent is kept, and removed without a trace in the file") {
   const TempFolder folder;
   const auto path = personal_data_path(folder.path() / "study.db");
+  PersonalRecord again = somebody();
+  again.consent_version = "3";
+  again.consented_utc = "2026-12-01T09:00:00Z";
+  again.age.reset();
+  again.gender.clear();
+  again.contact.clear();
+  PersonalRecord other = somebody();
+  other.participant = "P06";
   {
     PersonalData data(path);
     data.put(somebody());
     REQUIRE(data.find("P07") == somebody());
-    PersonalRecord changed = somebody();
-    changed.age.reset();
-    data.put(changed);
+    data.put(again);
+    data.put(other);
+    // The second one says nothing of age, gender and contact, and erases nothing.
+    PersonalRecord last = somebody();
+    last.consent_version = "3";
+    last.consented_utc = "2026-12-01T09:00:00Z";
+    REQUIRE(data.find("P07") == last);
+    REQUIRE(data.all() == std::vector<PersonalRecord>{other, somebody(), again});
+    other.contact = "six@example.org";
+    data.put(other);
+    REQUIRE(data.find("P06")->contact == "six@example.org");
   }
   REQUIRE(contains(content_of(path), "seven@example.org"));
   {
     PersonalData data(path);
-    REQUIRE_FALSE(data.find("P07").value().age);
     REQUIRE(data.remove("P07"));
     REQUIRE_FALSE(data.remove("P07"));
     REQUIRE_FALSE(data.find("P07"));
+    REQUIRE(data.all().size() == 2);
+    REQUIRE(data.remove("P06"));
   }
   REQUIRE_FALSE(contains(content_of(path), "seven@example.org"));
+  REQUIRE_FALSE(contains(content_of(path), "six@example.org"));
+}
+
+TEST_CASE("a file with one consent for each person is brought forward as it is") {
+  const TempFolder folder;
+  const auto path = personal_data_path(folder.path() / "study.db");
+  SQLite::Database(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+      .exec(
+          "CREATE TABLE people(participant TEXT PRIMARY KEY, consent_version TEXT NOT NULL, "
+          "consented_utc TEXT NOT NULL, age INTEGER, gender TEXT NOT NULL, contact TEXT NOT NULL) "
+          "STRICT; INSERT INTO people VALUES('P07', '2', '2026-11-22T09:00:00Z', 31, 'f', "
+          "'seven@example.org'); PRAGMA application_id = 1414812240; PRAGMA user_version = 1");
+  REQUIRE(::chmod(path.c_str(), 0600) == 0);
+  PersonalData data(path);
+  REQUIRE(data.all() == std::vector<PersonalRecord>{somebody()});
+  data.put(somebody());
+  REQUIRE(data.all().size() == 2);
 }
 
 TEST_CASE("only their owner can read personal data whatever the umask, else they are refused") {

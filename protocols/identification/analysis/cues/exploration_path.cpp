@@ -71,6 +71,20 @@ PathTexture texture_of(const design::StudyKey& key, const design::StimulusIndex&
   }
 }
 
+/// The plane as far as the hand came on it, where nothing tells its size.
+PlaneGeometry explored_plane(std::span<const PathPoint> points, double pitch_mm) {
+  Vec2 furthest{};
+  for (const PathPoint& point : points) {
+    furthest.x = std::max(furthest.x, point.position_mm.x);
+    furthest.y = std::max(furthest.y, point.position_mm.y);
+  }
+  PlaneGeometry plane;
+  plane.pitch_mm = pitch_mm;
+  plane.width_px = static_cast<int>(furthest.x / pitch_mm) + 1;
+  plane.height_px = static_cast<int>(furthest.y / pitch_mm) + 1;
+  return plane;
+}
+
 double tangential_rms_n(std::span<const store::TraceSample> samples) {
   double squares = 0.0;
   for (const store::TraceSample& sample : samples) {
@@ -143,6 +157,8 @@ ExplorationPath exploration_path(const store::StudyStore& store, const design::S
   path.duration_s = static_cast<double>(trace.samples.size()) / trace.rate_hz;
   path.points = thinned_path(trace);
   path.texture = texture_of(key, felt.stimulus, pack_of(store, key, pack));
+  PlaneGeometry& plane = path.texture.geometry;
+  if (plane.width_px == 0) plane = explored_plane(path.points, key.study.rendering.pitch_mm);
   return path;
 }
 

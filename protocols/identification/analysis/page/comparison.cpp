@@ -32,6 +32,19 @@ std::string t_range(const MethodComparison& comparison) {
                                                               : kNoFigure;
 }
 
+/// Tells whether all participants' differences are equal. The interval then has no width, which
+/// does not mean that the difference is certain.
+bool has_no_width(const MethodComparison& paired) {
+  return paired.participants > 1 && paired.difference &&
+         paired.interval.high - paired.interval.low < 1e-9;
+}
+
+Cited note_on_width() {
+  return {
+      "* Every participant has the same difference, so that the interval has no width: it does not "
+      "show how certain the number is."};
+}
+
 std::string sentence_of(const StudyReport& report, const MethodPair& pair) {
   const MethodComparison& overall = pair.overall;
   const std::string& first = report.methods[pair.first].method;
@@ -76,7 +89,7 @@ Table pair_table(const StudyReport& report) {
     std::vector<Cell> row{pair_name(report, pair),
                           std::to_string(overall.participants),
                           Cell(points_figure(overall.difference), true),
-                          t_range(overall),
+                          t_range(overall) + (has_no_width(overall) ? kNoWidth : ""),
                           share_range(overall.bootstrap),
                           p_figure(overall.p)};
     if (holm) row.emplace_back(p_figure(pair.p_holm));
@@ -93,6 +106,10 @@ Table pair_table(const StudyReport& report) {
       {"Odds ratio: common to participants, each a stratum; interval by the same bootstrap.",
        {Source::mantel_haenszel}},
       {"dB: 10 log10 of the ratio of the two means; 20 log10 would be twice that."}};
+  const auto decides = [&](const MethodPair& pair) { return pair.overall.p == report.primary->p; };
+  if (report.primary && std::ranges::none_of(report.pairs, decides)) {
+    table.notes.push_back({"The deciding test is another one; it stands under \"Result\"."});
+  }
   const auto of_trials = [](const MethodPair& pair) {
     return pair.odds_ratio && !pair.odds_ratio->bootstrap;
   };
@@ -103,6 +120,8 @@ Table pair_table(const StudyReport& report) {
          "bootstrap.",
          {Source::robins_breslow_greenland}});
   }
+  const auto has_none = [](const MethodPair& pair) { return has_no_width(pair.overall); };
+  if (std::ranges::any_of(report.pairs, has_none)) table.notes.push_back(note_on_width());
   if (holm) {
     table.notes.push_back({"Holm: adjusted over all pairs of methods.", {Source::holm}});
   }
@@ -111,13 +130,6 @@ Table pair_table(const StudyReport& report) {
         {"McNemar's mid-p test: each participant felt one pair.", {Source::fagerland}});
   }
   return table;
-}
-
-/// Tells whether all participants' differences are equal. The interval then has no width, which
-/// does not mean that the difference is certain.
-bool has_no_width(const MethodComparison& paired) {
-  return paired.participants > 1 && paired.difference &&
-         paired.interval.high - paired.interval.low < 1e-9;
 }
 
 std::vector<Cell> class_row(const std::string& label, const ClassComparison& one, bool mcnemar) {
@@ -166,9 +178,7 @@ Table class_table(const StudyReport& report, const MethodPair& pair, std::size_t
        {Source::student, Source::phipson_smyth}}};
   if (std::any_of(pair.classes.begin(), pair.classes.end(),
                   [](const ClassComparison& one) { return has_no_width(one.paired); })) {
-    table.notes.push_back(
-        {"* Every participant has the same difference, so that the interval has no width: it does "
-         "not show how certain the number is."});
+    table.notes.push_back(note_on_width());
   }
   return table;
 }

@@ -11,7 +11,8 @@ namespace touchtrial::analysis::identification {
 namespace {
 
 std::string mean_range(const MeanEstimate& mean) {
-  return mean.participants > 1 ? share_range(mean.interval) : kNoFigure;
+  const bool has_width = mean.participants > 1 && mean.interval.low < mean.interval.high;
+  return has_width ? share_range(mean.interval) : kNoFigure;
 }
 
 std::string prefix_of(const StudyReport& report, const MethodCues& method) {
@@ -45,7 +46,8 @@ Table cue_table(const StudyReport& report, const MethodCues& method, std::size_t
   for (const ObserverFigures& one : method.observers) table.rows.push_back(observer_row(one));
   table.notes = {
       {fmt::format("{} of {}; observers judge each trial by the other trials, and do not know the "
-                   "answers. Accuracy: mean over participants with Student's t interval.",
+                   "answers. Accuracy: mean over participants with Student's t interval; – if all "
+                   "have the same.",
                    counted(method.trials, "trial"),
                    counted(static_cast<std::int64_t>(method.participants.size()), "participant")),
        {Source::student}},

@@ -135,12 +135,13 @@ std::string method_prefix(const StudyReport& report, std::size_t method) {
 Document study_document(const StudyReport& report, const Provenance& provenance,
                         const Pictures& pictures) {
   const bool missing = std::ranges::any_of(pictures, &std::string::empty, &Picture::svg);
-  Document document = framed_document(
-      report, {"result", "Result", {}},
-      {accuracy_section(report), confusions_section(report), comparison_section(report),
-       order_section(report), confidence_section(report), times_section(report),
-       cues_section(report), robustness_section(report), methods_section(report)},
-      provenance, missing);
+  Document document =
+      framed_document(report, {"result", "Result", {}},
+                      {accuracy_section(report), confusions_section(report),
+                       comparison_section(report), visits_section(report), order_section(report),
+                       confidence_section(report), times_section(report), cues_section(report),
+                       robustness_section(report), methods_section(report)},
+                      provenance, missing);
   if (report.methods.size() < 2) capitalise_captions(document);
   add_further(place_pictures(pictures, document.sections), document);
   return document;

@@ -51,6 +51,12 @@ std::string prevalence_phrase(const MethodReport& method) {
       share_figure(found.estimate), share_range(found.interval));
 }
 
+/// What a reader of the interval might miss.
+const char* remark_on(const Interval& interval) {
+  if (interval == Interval{0.0, 1.0}) return ", which is every possible value";
+  return interval.low < interval.high ? "" : ", which has no width because they do not differ";
+}
+
 /// The sentence for readers to quote.
 std::string headline_of(const StudyReport& report, const MethodReport& method) {
   if (!method.mean.mean) return method.method + ": no participant's trials count yet.";
@@ -67,10 +73,10 @@ std::string headline_of(const StudyReport& report, const MethodReport& method) {
       method.bootstrap ? ", bootstrap interval " + share_range(method.bootstrap) : "";
   return fmt::format(
              "{}: participants were right in {} of their trials on average "
-             "({}, {}; 95% t interval {}{}{}). Chance is {}.",
+             "({}, {}; 95% t interval {}{}{}{}). Chance is {}.",
              method.method, share_figure(method.mean.mean), who, counted(method.overall.n, "trial"),
-             share_range(method.mean.interval), bootstrap, spread_phrase(method),
-             share_figure(chance_share(report))) +
+             share_range(method.mean.interval), remark_on(method.mean.interval), bootstrap,
+             spread_phrase(method), share_figure(chance_share(report))) +
          chance_phrase(method) + prevalence_phrase(method);
 }
 
@@ -98,7 +104,10 @@ Table headline_table(const StudyReport& report) {
                {"SD between (points)"}}};
   for (const MethodReport& method : report.methods) table.rows.push_back(headline_row(method));
   table.notes = {
-      {"Mean of participants' own proportions, with Student's t interval.", {Source::student}},
+      {"Mean of participants' own proportions, with Student's t interval, cut where possible "
+       "values "
+       "end.",
+       {Source::student}},
       {"Bootstrap: expanded percentiles of the same mean over draws of whole participants.",
        {Source::davison_hinkley, Source::hesterberg}},
       {"SD between: the standard deviation of participants' own probabilities of a right answer, "
@@ -185,8 +194,41 @@ KindWords words_of(BreakdownKind kind) {
       break;
     case BreakdownKind::order_group:
       return {"order-group", "by order group: in which order methods came", "order group"};
+    case BreakdownKind::visit:
+      return {"visit", "by visit", "visit"};
+    case BreakdownKind::group:
+      return {"group", "by group", "group"};
   }
   return {"", "", ""};
+}
+
+bool is_about_people(BreakdownKind kind) {
+  return kind == BreakdownKind::visit || kind == BreakdownKind::group;
+}
+
+/// Over participants: what visits and groups differ in is about people.
+Table people_table(const StudyReport& report, std::size_t index, const Breakdown& breakdown) {
+  const KindWords words = words_of(breakdown.kind);
+  Table table{std::string("accuracy-by-") + words.id + "-" + method_slug(report, index),
+              method_prefix(report, index) + "right answers " + words.caption,
+              {{words.column, Align::left},
+               {"participants"},
+               {"n"},
+               {"right"},
+               {"mean (%)"},
+               {"t 95% (%)"}}};
+  for (const GroupAccuracy& group : breakdown.groups) {
+    const MeanEstimate mean = group.mean.value_or(MeanEstimate{});
+    const auto interval = mean.known_interval();
+    table.rows.push_back({group.group, std::to_string(mean.participants),
+                          std::to_string(group.accuracy.n), std::to_string(group.accuracy.correct),
+                          share_figure(mean.mean), interval ? share_range(*interval) : kNoFigure});
+  }
+  table.notes = {
+      {"Mean of participants' own accuracies with Student's t interval: to look at. The registered "
+       "test decides, over the visits that were registered and all groups.",
+       {Source::student}}};
+  return table;
 }
 
 Table breakdown_table(const StudyReport& report, std::size_t index, const Breakdown& breakdown) {
@@ -255,8 +297,22 @@ Section order_section(const StudyReport& report) {
     if (method.order) section.blocks.emplace_back(order_table(report, i, *method.order));
     for (const Breakdown& one : method.breakdowns) {
       // A figure shows accuracy by trial; the table above tests it.
-      if (one.kind == BreakdownKind::trial) continue;
+      if (one.kind == BreakdownKind::trial || is_about_people(one.kind)) continue;
       section.blocks.emplace_back(breakdown_table(report, i, one));
+    }
+  }
+  return section;
+}
+
+Section visits_section(const StudyReport& report) {
+  Section section{"visits-and-groups", "Visits and groups", {}};
+  for (std::size_t i = 0; i < report.methods.size(); ++i) {
+    bool first = true;
+    for (const Breakdown& one : report.methods[i].breakdowns) {
+      if (!is_about_people(one.kind)) continue;
+      if (first) add_method_heading(report, i, section);
+      first = false;
+      section.blocks.emplace_back(people_table(report, i, one));
     }
   }
   return section;

@@ -21,6 +21,9 @@ void add_headline(const StudyReport& report, Section& section);
 /// \return a section without blocks if there is one method
 [[nodiscard]] Section comparison_section(const StudyReport& report);
 [[nodiscard]] Section order_section(const StudyReport& report);
+/// Accuracies by visit and by group.
+/// \return a section without blocks if the study has one visit and no groups
+[[nodiscard]] Section visits_section(const StudyReport& report);
 /// How sure participants were.
 /// \return a section without blocks if they were not asked
 [[nodiscard]] Section confidence_section(const StudyReport& report);

@@ -27,8 +27,10 @@ class FalconHost {
   std::vector<std::uint8_t> payload() {
     std::vector<std::uint8_t> transfer;
     static_cast<void>(falcon_.bulk_in(512, transfer));
-    std::vector<std::uint8_t> bytes(transfer.size());
-    bytes.resize(ftdi_payload(transfer, bytes));
+    std::vector<std::uint8_t> bytes;
+    for (std::size_t at = 0; at < transfer.size(); ++at) {
+      if (at % kUsbPacketSize >= kFtdiStatusSize) bytes.push_back(transfer[at]);
+    }
     return bytes;
   }
 

@@ -42,7 +42,8 @@ struct FlatWallServo {
     const Pose pose = forward_kinematics(theta1_of_counts(reply->counts), last_m);
     REQUIRE(pose.status == PoseStatus::ok);
     last_m = pose.native_m;
-    const Vec3 plane_mm = device::to_plane_position_mm(to_device_mm(pose.native_m), placement);
+    const Vec3 plane_mm = device::to_plane_direction(
+        to_device_mm(pose.native_m) - placement.origin_mm, placement.orientation);
     const Vec3 force_n = device::to_device_direction(wall_force_n(plane_mm), placement.orientation);
     motors = motor_values(torques_nm(pose.jacobian, force_n).value());
     return plane_mm;

@@ -133,7 +133,7 @@ TEST_CASE("a file without a session only makes the tables") {
   StoredFixture study;
   CHECK(there.push(*study.store).station == 0);
   CHECK(there.first("SELECT count(*) FROM stations") == "0");
-  CHECK(there.first("SELECT version FROM touchtrial_schema") == "5");
+  CHECK(there.first("SELECT version FROM touchtrial_schema") == "6");
 }
 
 TEST_CASE("a dry run says what would be pushed and changes nothing") {

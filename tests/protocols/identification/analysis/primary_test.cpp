@@ -23,7 +23,7 @@ using std::chrono::seconds;
 
 constexpr const char* kRegistered =
     R"({"hypothesis": "They can.", "participants": 20, "estimand": "mean-accuracy",
-        "smallest_effect": 0.5, "exclusion_rules": {"deviations": ["asleep"]}})";
+        "smallest_effect": 0.5, "exclusion_rules": {"own_deviations": ["asleep"]}})";
 
 /// The first `right` of the 12 trials are right, the others wrong.
 FakeAnswers right_in(int right) {
@@ -44,6 +44,12 @@ void add_people(FakeStudy& study, int first, const std::vector<int>& right) {
 
 StudyReport report_of(FakeStudy& study) {
   return analysis::identification::make_report(analysis::load_outcomes(study.store(), study.key()));
+}
+
+/// What a look at the registered question alone is made of.
+StudyReport answer_of(FakeStudy& study) {
+  return analysis::identification::make_report(
+      analysis::load_for_question(study.store(), study.key()));
 }
 
 nlohmann::json json_of(const StudyReport& report) {
@@ -117,6 +123,8 @@ TEST_CASE("report --json holds what was registered, the answer, looks and depart
   CHECK(json["primary"]["verdict"] == "undecided");
   CHECK(json["primary"]["choices"].size() == 6);
   CHECK(json["primary"]["excluded_after_outcomes"] == 3);
+  CHECK(json["collection"]["sessions"][3]["exclusion_reason"] ==
+        "after outcomes were seen: guessed");
   CHECK(json["primary"]["p_note"] == "p is not adjusted for 2 unregistered looks at outcomes.");
   REQUIRE(json["looks"].size() == 3);
   CHECK(json["looks"][0]["at"] == "2026-01-31T12:00:00Z");
@@ -157,7 +165,7 @@ TEST_CASE("a study file without the fields registers nothing") {
 TEST_CASE("exclusions are held against the registered rules") {
   FakeStudy study(design::identification::classification(),
                   {.registration = R"({"participants": 5, "estimand": "mean-accuracy",
-                                       "exclusion_rules": {"deviations": ["asleep"]}})"});
+                                       "exclusion_rules": {"own_deviations": ["asleep"]}})"});
   add_people(study, 1, {8, 7, 6, 9, 5});
   study.store().note(1, seconds(5), "asleep", "snored");
   study.store().note(2, seconds(5), "asleep", "snored too");
@@ -200,6 +208,74 @@ TEST_CASE("an effect may be excluded, reached or open") {
   CHECK_THAT(result.because, holds_text("opposite"));
 }
 
+TEST_CASE("an interval without width, or cut where possible values end, is said to be so") {
+  analysis::PrimaryResult result;
+  result.null = 0.2;
+  result.smallest_effect = 0.4;
+  const analysis::StudyCourse course{
+      .planned = 2, .completed = 2, .analysed = 2, .closed = true, .has_registration = true};
+  const auto because = [&](double estimate, analysis::Interval interval, double p) {
+    result.choices = {{"registered", "", 2, 50, estimate, interval}};
+    result.p = p;
+    judge(result, course);
+    return result.because;
+  };
+  CHECK_THAT(because(0.7, {0.0, 1.0}, 0.2),
+             holds_text("holds every possible value: it says nothing"));
+  CHECK_THAT(because(0.9, {0.1, 1.0}, 0.03), !holds_text("two-sided"));
+  result.bound = 0.48;
+  CHECK_THAT(because(0.9, {0.1, 1.0}, 0.03),
+             holds_text("The two-sided interval reaches chance; the lower limit of the one-sided "
+                        "test, 48.0%, does not."));
+  CHECK_THAT(because(0.9, {0.7, 1.0}, 0.01), holds_text("cut where possible values end"));
+  CHECK_THAT(because(0.6, {0.5, 0.7}, 0.01), !holds_text("possible values"));
+  CHECK_THAT(because(1.0, {1.0, 1.0}, 0.25), holds_text("no width is no certainty"));
+  CHECK_THAT(result.because, !holds_text("worth having"));
+  CHECK(result.verdict == Verdict::undecided);
+}
+
+TEST_CASE("more participants than planned are said, and decide nothing after a look") {
+  analysis::PrimaryResult result;
+  result.null = 0.2;
+  result.choices = {{"registered", "", 25, 500, 0.6, analysis::Interval{0.5, 0.7}}};
+  result.p = 0.001;
+  analysis::StudyCourse course{
+      .planned = 20, .completed = 25, .analysed = 25, .closed = true, .has_registration = true};
+  judge(result, course);
+  CHECK(result.verdict == Verdict::supported);
+  CHECK_THAT(result.because, holds_text("25 participants completed, 5 more than planned"));
+  course.registered_looks = {10};
+  judge(result, course);
+  CHECK(result.verdict == Verdict::undecided);
+  CHECK_THAT(result.because, holds_text("5 participants more than the 20 planned were collected"));
+  result.p = 0.3;
+  judge(result, course);
+  CHECK(result.verdict == Verdict::not_supported);
+}
+
+TEST_CASE("the first row speaks of late exclusions if there were any") {
+  FakeStudy study(design::identification::classification(), {.registration = kRegistered});
+  CHECK(choice_of(looked_at(study), "registered").words ==
+        "as registered; no exclusion that was made after outcomes were seen");
+  FakeStudy plain(design::identification::classification(), {.registration = kRegistered});
+  add_people(plain, 1, {8, 7, 9});
+  plain.store().exclude(3, seconds(6), "ill");
+  plain.close_and_unblind();
+  CHECK(choice_of(report_of(plain), "registered").words == "as registered");
+}
+
+TEST_CASE("a look far too early has a level, and an interval of it") {
+  FakeStudy study(
+      design::identification::classification(),
+      {.registration = R"({"participants": 100, "estimand": "mean-accuracy", "looks": [2]})"});
+  add_people(study, 1, {11, 12});
+  study.store().look_at_question(seconds(10), "as registered");
+  const StudyReport report = answer_of(study);
+  CHECK(report.primary->level == 1e-9);
+  CHECK(report.primary->verdict == Verdict::undecided);
+  CHECK(contains(on_one_line(terminal_text(report)), "99.9999999% t interval [0.0, 100.0]"));
+}
+
 TEST_CASE("p within its level decides nothing after an unregistered look or before the end") {
   analysis::PrimaryResult result;
   result.null = 0.2;
@@ -230,8 +306,8 @@ TEST_CASE("a registered look has Lan and DeMets's level, and so has the end afte
       design::identification::classification(),
       {.registration = R"({"participants": 8, "estimand": "mean-accuracy", "looks": [4]})"});
   add_people(study, 1, {5, 4, 6, 5});
-  study.store().unblind(seconds(10), "as registered", true);
-  CHECK(report_of(study).primary->level == Approx(0.0055745966).epsilon(1e-5));
+  study.store().look_at_question(seconds(10), "as registered");
+  CHECK(answer_of(study).primary->level == Approx(0.0055745966).epsilon(1e-5));
   add_people(study, 5, {5, 4, 6, 5});
   study.close_and_unblind();
   const StudyReport report = report_of(study);
@@ -244,15 +320,15 @@ TEST_CASE("a registered look may end collecting, and its interval has the level 
       design::identification::classification(),
       {.registration = R"({"participants": 8, "estimand": "mean-accuracy", "looks": [4]})"});
   add_people(study, 1, {11, 12, 11, 12});
-  study.store().unblind(seconds(10), "as registered", true);
-  const StudyReport look = report_of(study);
+  study.store().look_at_question(seconds(10), "as registered");
+  const StudyReport look = answer_of(study);
   CHECK(look.primary->verdict == Verdict::supported);
   CHECK(look.primary->interval_level == Approx(1.0 - 0.0055745966));
   CHECK_THAT(look.primary->because, holds_text("At the registered look at 4 participants"));
   analysis::Provenance provenance;
-  provenance.state.unblinded = true;
+  provenance.state = study.store().state();
   CHECK_THAT(analysis::document_text(analysis::identification::study_document(look, provenance)),
-             holds_text("INTERIM LOOK, as registered"));
+             holds_text("INTERIM LOOK at the registered question"));
   study.close_and_unblind();
   const StudyReport report = report_of(study);
   CHECK(report.primary->verdict == Verdict::supported);
@@ -429,7 +505,7 @@ TEST_CASE("a registered margin has the one-sided test and the 90 % interval") {
   const nlohmann::json json = json_of(report);
   CHECK(json["registered"]["margin"] == 0.2);
   CHECK(json["primary"]["margin"] == 0.2);
-  CHECK(contains(on_one_line(terminal_text(report)), "against -20 points"));
+  CHECK(contains(on_one_line(terminal_text(report)), "against −20 points"));
 }
 
 }  // namespace touchtrial

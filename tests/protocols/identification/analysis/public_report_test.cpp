@@ -2,10 +2,15 @@
 #include "analysis/fake_study.hpp"
 #include "analysis/identities.hpp"
 #include "analysis/text_matching.hpp"
+#include "core/bytes.hpp"
+#include "core/files.hpp"
 #include "protocols/identification/analysis/figures/figures.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 #include "support/catch.hpp"
 
+#include <filesystem>
+#include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -36,7 +41,9 @@ void add_people_and_texts(FakeStudy& study) {
       if (i == 0) recorder.deviated(milliseconds(10), {"no-curtain", "qqdeviation"});
       if (i == 1) recorder.deviated(milliseconds(10), {"qqcode", "qqdeviation"});
       recorder.remarked(milliseconds(20), store::EventKind::noted, "qqremark");
-      recorder.questioned(milliseconds(30), "closing", R"({"age": 34, "words": "qqremark"})");
+      recorder.questioned(
+          milliseconds(30), "closing",
+          R"({"age": 34, "words": "qqremark", "which": )" + std::to_string(i % 2) + "}");
       if (i == 5) recorder.remarked(milliseconds(40), store::EventKind::stopped, "qqstopped");
     };
     session.complete = i != 5;
@@ -94,8 +101,36 @@ TEST_CASE("a public report names nobody and holds nothing that a person wrote") 
   CHECK_THAT(text, holds_text("1 session excluded after outcomes were seen."));
 }
 
+TEST_CASE("every code of the data dictionary stays in a public report") {
+  std::string page = text_of(
+      read_file(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "docs" / "data-dictionary.md"));
+  page.erase(0, page.find("Codes of deviations"));
+  page.erase(page.find("| any other |"));
+  analysis::Outcomes outcomes;
+  analysis::SessionRecord& session = outcomes.collection.sessions.emplace_back();
+  const std::regex code("`([^`]+)`");
+  std::istringstream lines(page);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("| `")) continue;
+    line.erase(line.find(" | "));
+    for (std::sregex_iterator one(line.begin(), line.end(), code), end; one != end; ++one) {
+      session.deviations.push_back({(*one)[1], "in words"});
+    }
+  }
+  REQUIRE(session.deviations.size() > 20);
+  const auto kept = analysis::without_identities(outcomes).collection.sessions[0].deviations;
+  REQUIRE(kept.size() == session.deviations.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    CHECK(kept[i].code == session.deviations[i].code);
+    CHECK(kept[i].text.empty());
+  }
+}
+
 TEST_CASE("a public report has the numbers of the other one, by rank of accuracy") {
-  FakeStudy study(design::identification::comparison(), {.simulated = false});
+  FakeStudy study(design::identification::comparison(),
+                  {.simulated = false, .session = R"({"closing_questions": [
+                    {"id": "which", "kind": "choice", "text": {"en": "Which was best?"},
+                     "options": [{"en": "rough"}, {"en": "smooth"}]}]})"});
   add_people_and_texts(study);
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const auto json_of = [](const analysis::Outcomes& of) {
@@ -118,6 +153,15 @@ TEST_CASE("a public report has the numbers of the other one, by rank of accuracy
     INFO(part);
     CHECK(open[part] == whole[part]);
   }
+  // Four people count, too few to show what each of them said.
+  REQUIRE(whole["said"].size() == 2);
+  CHECK(whole["said"][0]["options"][0]["participants"] == 2);
+  CHECK(whole["said"][0]["options"][1]["option"] == "smooth");
+  CHECK(whole["said"][1]["texts"].size() == 4);
+  CHECK(open["said"][0]["options"].empty());
+  CHECK(open["said"][0]["others"] == 4);
+  CHECK(open["said"][1]["answered"] == 4);
+  CHECK(open["said"][1]["texts"].empty());
   CHECK(open["primary"]["choices"] == whole["primary"]["choices"]);
   CHECK(open["primary"]["p"] == whole["primary"]["p"]);
 }

@@ -7,7 +7,6 @@
 #include "device/falcon/usbfs_shim/usb_model.hpp"
 #include "device/falcon/usbfs_shim/usbfs_shim.hpp"
 #include "protocols/session/device_station.hpp"
-#include "protocols/simulation/prompt_participant.hpp"
 #include "protocols/simulation/simulated_participant.hpp"
 
 #include <atomic>

@@ -1,0 +1,106 @@
+#include "analysis/exports/said_tables.hpp"
+
+#include <map>
+#include <set>
+
+namespace touchtrial::analysis {
+namespace {
+
+const char* name_of_kind(design::QuestionKind kind) {
+  switch (kind) {
+    case design::QuestionKind::choice:
+      return "choice";
+    case design::QuestionKind::number:
+      return "number";
+    case design::QuestionKind::text:
+      break;
+  }
+  return "text";
+}
+
+/// Of an answer whose question nobody knows, whether it was typed is all that is known.
+DataCell kind_cell(const QuestionAnswer& answer, const design::Question* question) {
+  if (question != nullptr) return std::string(name_of_kind(question->kind));
+  return answer.number ? DataCell() : DataCell(std::string("text"));
+}
+
+template <typename Value>
+DataCell cell_of(const std::optional<Value>& value) {
+  return value ? DataCell(*value) : DataCell();
+}
+
+}  // namespace
+
+DataTable answers_table(const Outcomes& outcomes, Typed typed) {
+  DataTable table{{"participant", "session", "questionnaire", "question", "question_kind",
+                   "wording", "answer", "words", "simulated"},
+                  {}};
+  const std::string& language = outcomes.design.session.language;
+  for (const QuestionAnswer& answer : outcomes.answers) {
+    if (typed == Typed::left_out && may_name_somebody(answer)) continue;
+    const design::Question* const question = question_of(outcomes.asked, answer);
+    table.rows.push_back({answer.participant, std::int64_t{answer.session}, answer.questionnaire,
+                          answer.question, kind_cell(answer, question),
+                          question == nullptr ? "" : in_language(question->text, language),
+                          cell_of(answer.number), words_of(answer, question, language),
+                          flag(outcomes.simulated)});
+  }
+  return table;
+}
+
+std::vector<DataCell> incident_cells(const Incident& incident) {
+  return {
+      incident.participant,  std::int64_t{incident.session},
+      incident.event,        std::string(store::name_of(incident.kind)),
+      cell_of(incident.at),  incident.trial ? DataCell(std::int64_t{*incident.trial}) : DataCell(),
+      incident.code,         incident.safety_fault,
+      incident.device_fault, incident.text};
+}
+
+DataTable incidents_table(const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
+                          Typed typed) {
+  DataTable table{{"participant", "session", "event", "incident", "at_s", "trial", "code",
+                   "safety_fault", "device_fault", "text", "simulated"},
+                  {}};
+  for (Incident& incident : outcomes ? std::vector(outcomes->incidents) : load_incidents(store)) {
+    if (typed == Typed::left_out) incident.text.clear();
+    table.rows.push_back(incident_cells(incident));
+    table.rows.back().push_back(flag(store.commitment().simulated));
+  }
+  return table;
+}
+
+DataTable consents_table(const store::StudyStore& store,
+                         const std::vector<store::PersonalRecord>& consents) {
+  std::set<std::string> known;
+  for (const store::SessionRow& row : store.sessions()) {
+    if (!row.erased) known.insert(row.participant);
+  }
+  DataTable table{{"participant", "consent", "consent_version", "simulated"}, {}};
+  std::map<std::string, std::int64_t> numbers;
+  for (const store::PersonalRecord& one : consents) {
+    if (!known.contains(one.participant)) continue;
+    table.rows.push_back({one.participant, ++numbers[one.participant], one.consent_version,
+                          flag(store.commitment().simulated)});
+  }
+  return table;
+}
+
+ExportFile said_file(const std::string& name, const DataTable& table, bool has_words) {
+  return text_file(name, csv_text(table), has_words ? FileMode::owner_only : FileMode::everyone);
+}
+
+std::vector<ExportFile> said_files(const store::StudyStore& store,
+                                   const std::optional<Outcomes>& outcomes,
+                                   const std::vector<store::PersonalRecord>& consents) {
+  std::vector<ExportFile> files;
+  if (outcomes) files.push_back(said_file("answers.csv", answers_table(*outcomes), true));
+  files.push_back(
+      said_file("incidents.csv", incidents_table(store, outcomes), outcomes.has_value()));
+  if (!consents.empty()) {
+    files.push_back(said_file("consents.csv", consents_table(store, consents), false));
+  }
+  return files;
+}
+
+}  // namespace touchtrial::analysis

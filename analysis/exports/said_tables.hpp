@@ -1,0 +1,49 @@
+/// \file Tables of what people said and of what happened to them: answers to questions, incidents,
+/// consents. Columns: docs/data-dictionary.md, "Exports".
+#pragma once
+
+#include "analysis/answers.hpp"
+#include "analysis/exports/data_table.hpp"
+#include "analysis/exports/export_folder.hpp"
+#include "analysis/incidents.hpp"
+#include "analysis/outcomes.hpp"
+#include "protocols/store/personal_data.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// Whether a table may have what people typed, which may name somebody.
+enum class Typed { shown, left_out };
+
+/// One row for each answer, with the wording of its question and the text of the chosen option
+/// where they are known.
+/// \param typed  left_out: without answers in words, and without ages
+[[nodiscard]] DataTable answers_table(const Outcomes& outcomes, Typed typed = Typed::shown);
+
+/// participant, session, event, kind, at_s, trial, code, safety_fault, device_fault, text.
+[[nodiscard]] std::vector<DataCell> incident_cells(const Incident& incident);
+
+/// One row for each incident. Without outcomes, times and texts are sealed, and their cells empty.
+/// \param typed  left_out: without texts
+[[nodiscard]] DataTable incidents_table(const store::StudyStore& store,
+                                        const std::optional<Outcomes>& outcomes,
+                                        Typed typed = Typed::shown);
+
+/// One row for each consent of a participant who has a session and is not erased: the version that
+/// was signed, and how many came before. Neither the day nor anything else of the personal data.
+[[nodiscard]] DataTable consents_table(const store::StudyStore& store,
+                                       const std::vector<store::PersonalRecord>& consents);
+
+/// A table as CSV.
+/// \param has_words  it has what people said: for its reader alone
+[[nodiscard]] ExportFile said_file(const std::string& name, const DataTable& table, bool has_words);
+
+/// answers.csv (with outcomes), incidents.csv, and consents.csv if there are any.
+[[nodiscard]] std::vector<ExportFile> said_files(
+    const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
+    const std::vector<store::PersonalRecord>& consents);
+
+}  // namespace touchtrial::analysis

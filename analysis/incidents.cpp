@@ -1,0 +1,117 @@
+#include "analysis/incidents.hpp"
+
+#include "analysis/sealed_sessions.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace touchtrial::analysis {
+namespace {
+
+using store::EventKind;
+
+constexpr std::array kIncidents = {
+    EventKind::interrupted, EventKind::break_taken, EventKind::paused,  EventKind::stopped,
+    EventKind::noted,       EventKind::deviated,    EventKind::resumed, EventKind::block_restarted};
+
+/// A remark's text, if it is not sealed.
+std::string remark_in(const store::Event& event) {
+  return event.sealed.empty() || event.kind == EventKind::break_taken
+             ? store::remark_from_json(event.body)
+             : "";
+}
+
+/// Fills in what the body says.
+/// \return whether an event of this kind is an incident
+bool take_body(const store::Event& event, Incident& incident) {
+  switch (event.kind) {
+    case EventKind::interrupted: {
+      store::TrialBody body = store::trial_from_json(event.body);
+      incident.trial = body.trial;
+      incident.code = std::move(body.reason);
+      incident.safety_fault = std::move(body.safety_fault);
+      incident.device_fault = std::move(body.device_fault);
+      return true;
+    }
+    case EventKind::break_taken:
+    case EventKind::paused:
+    case EventKind::noted:
+      incident.text = remark_in(event);
+      return true;
+    case EventKind::resumed:
+      incident.code = store::resumed_from_json(event.body).after;
+      return true;
+    case EventKind::block_restarted:
+      return true;
+    case EventKind::stopped: {
+      store::StopBody body = store::stop_from_json(event.body);
+      incident.code = std::move(body.code);
+      incident.text = std::move(body.text);
+      return true;
+    }
+    case EventKind::deviated: {
+      store::DeviationBody body = store::deviation_from_json(event.body);
+      incident.code = std::move(body.code);
+      incident.text = std::move(body.text);
+      return true;
+    }
+    case EventKind::participant_noted: {
+      store::NoteBody body = store::note_from_json(event.body);
+      incident.code = std::move(body.code);
+      incident.text = std::move(body.text);
+      return true;
+    }
+    case EventKind::participant_excluded: {
+      store::ParticipantBody body = store::participant_from_json(event.body);
+      incident.code = body.after_outcomes ? "after-outcomes" : "";
+      incident.text = std::move(body.reason);
+      return true;
+    }
+    case EventKind::participant_replaced:
+      incident.text = store::replacement_from_json(event.body).reason;
+      return true;
+    case EventKind::participant_withdrawn:
+      incident.text = store::withdrawal_from_json(event.body).reason;
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+std::optional<Incident> incident_of(const store::Event& event, const store::SessionRow& row) {
+  Incident incident{row.participant, row.session, event.sequence, event.kind};
+  if (!take_body(event, incident)) return std::nullopt;
+  if (event.session == 0) {
+    incident.utc = event.at;
+  } else if (event.sealed.empty()) {
+    incident.at = event.at;
+  }
+  return incident;
+}
+
+std::vector<Incident> load_incidents(const store::StudyStore& store,
+                                     const std::map<int, store::PersonKeys>& keys) {
+  std::map<int, store::SessionRow> rows;
+  for (const store::SessionRow& row : store.sessions()) {
+    if (!row.erased) rows[row.session] = row;
+  }
+  std::vector<Incident> incidents;
+  const auto add = [&](const store::Event& event) {
+    const auto row = rows.find(store::session_about(event));
+    if (row == rows.end()) return;
+    const auto own = keys.find(row->first);
+    auto incident = incident_of(
+        own == keys.end() ? event : readable_event(event, row->second, own->second), row->second);
+    if (incident) incidents.push_back(*std::move(incident));
+  };
+  store.for_each_of(kIncidents, add);
+  for (const store::Event& event : store.events(0)) add(event);
+  std::ranges::stable_sort(incidents, {}, &Incident::session);
+  return incidents;
+}
+
+}  // namespace touchtrial::analysis

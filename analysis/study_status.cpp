@@ -1,0 +1,345 @@
+#include "analysis/study_status.hpp"
+
+#include "analysis/collection.hpp"
+#include "analysis/json_figures.hpp"
+#include "analysis/text_figures.hpp"
+#include "analysis/text_table.hpp"
+#include "core/text.hpp"
+#include "core/utc.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::analysis {
+namespace {
+
+std::string standing_of(const store::SessionRow& row) {
+  if (row.erased) return "erased";
+  if (!row.replaced_by.empty()) return "replaced";
+  if (row.excluded) return "excluded";
+  if (row.withdrawn) return "withdrawn";
+  if (row.state == store::SessionState::completed) return "complete";
+  return row.state == store::SessionState::stopped ? "stopped" : "open";
+}
+
+using LastConsents = std::map<std::string, std::string>;
+
+PersonStatus of_session(const SessionRecord& record, const store::StudyCommitment& commitment,
+                        const LastConsents& consents) {
+  const store::SessionRow& row = record.row;
+  PersonStatus one;
+  one.participant = row.participant;
+  one.session = row.session;
+  one.enrolment = row.enrolment;
+  one.station = row.station;
+  one.state = standing_of(row);
+  one.counts = session_counts(row, commitment);
+  one.may_go_on = row.may_go_on();
+  one.opened_utc = record.opened_utc;
+  one.device = row.device;
+  if (record.station) {
+    one.was_felt = !record.station->visual;
+    one.certificate = record.station->calibration;
+  }
+  if (std::ranges::count(record.deviations, "no-certificate", &Deviation::code) > 0) {
+    one.certificate.clear();
+  }
+  const auto consent = consents.find(row.participant);
+  if (consent != consents.end()) one.consent = consent->second;
+  return one;
+}
+
+void add_times_and_answers(const store::StudyStore& store, std::vector<PersonStatus>& people) {
+  std::map<int, PersonStatus*> by_session;
+  for (PersonStatus& one : people) by_session[one.session] = &one;
+  for (const store::Event& event : store.events(0)) {
+    if (event.kind != store::EventKind::session_closed || store.commitment().simulated) continue;
+    const auto found = by_session.find(store::session_about(event));
+    if (found != by_session.end() && found->second->state != "erased") {
+      found->second->ended_utc = utc_text(event.at);
+    }
+  }
+  for (const store::TrialRow& trial : store.trials()) {
+    const bool is_done =
+        trial.state == store::TrialState::answered || trial.state == store::TrialState::timed_out;
+    const auto found = by_session.find(trial.session);
+    if (is_done && found != by_session.end() && found->second->state != "erased") {
+      ++found->second->answered;
+    }
+  }
+}
+
+/// Those who take somebody's place, and those who have consented, without a session so far.
+void add_people_to_come(const StatusSources& sources, const LastConsents& consents,
+                        const std::vector<store::SessionRow>& rows,
+                        std::vector<PersonStatus>& people) {
+  std::set<std::string> present;
+  for (const store::SessionRow& row : rows) {
+    if (row.replaced_by.empty()) present.insert(row.participant);
+  }
+  const auto add = [&](const std::string& id, const std::string& in_place_of, int enrolment) {
+    if (!present.insert(id).second) return;
+    PersonStatus one;
+    one.participant = id;
+    one.enrolment = enrolment;
+    one.state = "to come";
+    one.in_place_of = in_place_of;
+    const auto consent = consents.find(id);
+    if (consent != consents.end()) one.consent = consent->second;
+    people.push_back(std::move(one));
+  };
+  for (const store::SessionRow& row : rows) {
+    if (!row.replaced_by.empty()) {
+      add(row.replaced_by, row.erased ? "" : row.participant, row.enrolment);
+    }
+  }
+  for (const store::SessionRow& row : rows) present.insert(row.participant);
+  for (const store::PersonalRecord& one : sources.consents) add(one.participant, "", 0);
+}
+
+std::optional<OrderBlocks> order_blocks(const std::vector<store::SessionRow>& rows,
+                                        const store::StudyCommitment& commitment,
+                                        const StatusSources& sources, int orders) {
+  const bool is_only = commitment.station && commitment.station->name == design::kOnlyStation;
+  if (orders < 2 || (!is_only && !sources.station)) return std::nullopt;
+  std::map<int, int> filled;
+  for (const store::SessionRow& row : rows) {
+    const std::optional<int> place =
+        is_only ? std::optional(row.enrolment - 1) : sources.station->place_of(row.enrolment);
+    if (place) filled[*place / orders] += session_counts(row, commitment) ? 1 : 0;
+  }
+  OrderBlocks blocks{.orders = orders};
+  for (const auto& [block, n] : filled) {
+    if (n == orders) {
+      ++blocks.complete;
+    } else {
+      blocks.open.push_back(n);
+    }
+  }
+  return blocks;
+}
+
+template <typename Holds>
+std::vector<std::string> ids_of(const StudyStatus& status, Holds holds) {
+  std::vector<std::string> ids;
+  for (const PersonStatus& one : status.people) {
+    if (!one.participant.empty() && holds(one)) ids.push_back(one.participant);
+  }
+  return ids;
+}
+
+void add_about_people(const StudyStatus& status, const StatusSources& sources,
+                      std::vector<std::string>& left) {
+  const auto say = [&](const std::vector<std::string>& ids, const std::string& what) {
+    if (!ids.empty()) left.push_back(listed(ids, " and ") + ": " + what);
+  };
+  say(ids_of(status, [](const PersonStatus& one) { return one.may_go_on; }),
+      "the session is open; resume it, or end it");
+  for (const PersonStatus& one : status.people) {
+    if (!one.in_place_of.empty() && one.in_place_of != one.participant) {
+      left.push_back(fmt::format("{} takes the place of {} (enrolment {}), and has no session yet",
+                                 one.participant, one.in_place_of, one.enrolment));
+    }
+  }
+  say(ids_of(status,
+             [](const PersonStatus& one) {
+               return one.state == "to come" && one.in_place_of == one.participant;
+             }),
+      "the session was restarted, and is to come");
+  if (status.simulated) return;
+  if (sources.knows_consents) {
+    say(ids_of(
+            status,
+            [](const PersonStatus& one) { return one.state != "erased" && one.consent.empty(); }),
+        "no consent is recorded");
+  }
+  if (!sources.consent_version.empty()) {
+    say(ids_of(status,
+               [&](const PersonStatus& one) {
+                 return !one.consent.empty() && one.consent != sources.consent_version;
+               }),
+        "consented to another version than " + sources.consent_version +
+            ", which the study asks for");
+  }
+  say(ids_of(status,
+             [](const PersonStatus& one) {
+               return one.counts && one.was_felt && one.certificate.empty();
+             }),
+      "the session had no valid certificate of the device");
+}
+
+void add_about_study(const StudyStatus& status, std::vector<std::string>& left) {
+  const bool is_full = status.planned > 0 && status.complete >= status.planned;
+  if (!status.state.closed && status.planned > status.complete) {
+    left.push_back(counted(status.planned - status.complete, "participant") + " to come of " +
+                   std::to_string(status.planned) + " that are planned");
+  }
+  if (!status.state.closed && is_full) {
+    left.emplace_back(
+        "all participants that are planned are complete: end collection with "
+        "`touchtrial close`");
+  }
+  if (status.state.closed && (!status.state.unblinded || status.state.interim)) {
+    left.emplace_back("collection has ended: `touchtrial unblind` opens the outcomes");
+  }
+}
+
+}  // namespace
+
+StudyStatus status_of(const store::StudyStore& store, const StatusSources& sources) {
+  const store::StudyCommitment& commitment = store.commitment();
+  const Collection collection = load_collection(store);
+  const std::vector<store::SessionRow> rows = store.sessions();
+  LastConsents consents;
+  for (const store::PersonalRecord& one : sources.consents) {
+    consents[one.participant] = one.consent_version;
+  }
+  StudyStatus status;
+  status.study = commitment.study;
+  status.protocol = commitment.protocol;
+  status.state = store.state();
+  status.simulated = commitment.simulated;
+  status.pilot = commitment.pilot;
+  status.stations = store.stations();
+  status.planned = sources.planned;
+  for (const SessionRecord& record : collection.sessions) {
+    status.people.push_back(of_session(record, commitment, consents));
+  }
+  add_times_and_answers(store, status.people);
+  for (const PersonStatus& one : status.people) status.complete += one.counts ? 1 : 0;
+  if (!status.state.closed && status.stations == 0) {
+    add_people_to_come(sources, consents, rows, status.people);
+  }
+  status.orders = order_blocks(rows, commitment, sources, collection.prescription.method_orders);
+  add_about_people(status, sources, status.left);
+  add_about_study(status, status.left);
+  return status;
+}
+
+namespace {
+
+/// Words and numbers of a cell; "-" for nothing.
+std::string shown_or_dash(const std::string& text) {
+  return text.empty() ? "-" : text;
+}
+
+std::string number_or_dash(int number) {
+  return number == 0 ? "-" : std::to_string(number);
+}
+
+/// "2026-01-31 14:05" of an ISO date.
+std::string minute_of(const std::string& iso) {
+  constexpr std::size_t kDay = 10;
+  constexpr std::size_t kMinute = 16;
+  return iso.size() < kMinute
+             ? "-"
+             : iso.substr(0, kDay) + " " + iso.substr(kDay + 1, kMinute - kDay - 1);
+}
+
+std::string orders_sentence(const OrderBlocks& blocks) {
+  std::string text =
+      fmt::format("orders of methods: {}, dealt in blocks of {} enrolment numbers; {} complete",
+                  blocks.orders, blocks.orders, counted(blocks.complete, "block"));
+  for (const int n : blocks.open) text += fmt::format(", one with {} of {}", n, blocks.orders);
+  return text;
+}
+
+std::vector<std::string> balance_of(const StudyStatus& status) {
+  std::vector<std::string> lines = status.balance;
+  if (status.orders) lines.insert(lines.begin(), orders_sentence(*status.orders));
+  return lines;
+}
+
+std::string people_text(const StudyStatus& status) {
+  if (status.people.empty()) return "no participant so far\n";
+  std::vector<std::string> header{"participant",  "session", "number",      "state", "trials",
+                                  "opened (UTC)", "consent", "certificate", "device"};
+  std::set<std::size_t> left{0, 3, 5, 6, 7, 8};
+  if (status.stations > 0) header.emplace_back("station");
+  TextTable table(header, left);
+  constexpr std::size_t kDigits = 12;
+  for (const PersonStatus& one : status.people) {
+    std::vector<std::string> cells{shown_or_dash(one.participant),
+                                   number_or_dash(one.session),
+                                   number_or_dash(one.enrolment),
+                                   one.state,
+                                   one.session == 0 ? "-" : std::to_string(one.answered),
+                                   minute_of(one.opened_utc),
+                                   shown_or_dash(one.consent),
+                                   shown_or_dash(one.certificate.substr(0, kDigits)),
+                                   shown_or_dash(one.device)};
+    if (status.stations > 0) cells.push_back(number_or_dash(one.station));
+    table.add(std::move(cells));
+  }
+  return table.text();
+}
+
+nlohmann::ordered_json person_json(const PersonStatus& one) {
+  return {{"participant", one.participant},
+          {"session", one.session},
+          {"enrolment", one.enrolment},
+          {"station", one.station},
+          {"state", one.state},
+          {"counts", one.counts},
+          {"may_go_on", one.may_go_on},
+          {"answered", one.answered},
+          {"opened_utc", one.opened_utc},
+          {"ended_utc", one.ended_utc},
+          {"consent", one.consent},
+          {"device", one.device},
+          {"certificate", one.certificate},
+          {"in_place_of", one.in_place_of}};
+}
+
+}  // namespace
+
+std::string status_text(const StudyStatus& status, const std::vector<NextCommand>& next) {
+  std::string text = simulated_line(status.simulated);
+  text += fmt::format("{} ({}): {}, {}{} complete{}\n", status.study, status.protocol,
+                      name_of(status.state), counted(status.complete, "participant"),
+                      status.planned > 0 ? fmt::format(" of {}", status.planned) : "",
+                      status.pilot ? "; PILOT" : "");
+  text += people_text(status);
+  const auto list = [&](const char* title, const std::vector<std::string>& lines) {
+    if (!lines.empty()) text += heading(title, status.simulated);
+    for (const std::string& line : lines) text += wrapped("  ", line);
+  };
+  list("counterbalancing", balance_of(status));
+  list("left to do", status.left);
+  if (!next.empty()) text += heading("next", status.simulated);
+  for (const NextCommand& one : next) text += "  " + one.what + ":\n    " + one.command + "\n";
+  return text;
+}
+
+std::string status_json(const StudyStatus& status, const std::vector<NextCommand>& next) {
+  nlohmann::ordered_json object{{"study", status.study}, {"protocol", status.protocol}};
+  put_stamp(object, status.simulated);
+  put_state(object, status.state, status.pilot);
+  object["stations"] = status.stations;
+  object["planned"] = nullptr;
+  if (status.planned > 0) object["planned"] = status.planned;
+  object["complete"] = status.complete;
+  object["people"] = nlohmann::ordered_json::array();
+  for (const PersonStatus& one : status.people) object["people"].push_back(person_json(one));
+  object["orders"] = nullptr;
+  if (status.orders) {
+    object["orders"] = {{"orders", status.orders->orders},
+                        {"complete_blocks", status.orders->complete},
+                        {"begun_blocks", status.orders->open}};
+  }
+  object["balance"] = status.balance;
+  object["left"] = status.left;
+  object["next"] = nlohmann::ordered_json::array();
+  for (const NextCommand& one : next) {
+    object["next"].push_back({{"what", one.what}, {"command", one.command}});
+  }
+  return json_text(object);
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,85 @@
+/// \file How collection stands: who is done, who is open, what is left to do. Uses what a database
+/// stores in clear, and says nothing about outcomes.
+#pragma once
+
+#include "analysis/collection.hpp"
+#include "protocols/design/station.hpp"
+#include "protocols/store/personal_data.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// What is known of a study beside its database.
+struct StatusSources {
+  std::vector<store::PersonalRecord> consents{};  ///< as PersonalData::all
+  bool knows_consents = false;                    ///< there is a file of personal data
+  int planned = 0;                                ///< participants; 0: not stated
+  std::string consent_version{};                  ///< that participants sign; empty: not stated
+  std::optional<design::Station> station{};       ///< whose file the database is
+};
+
+/// One participant, by one session, or without any yet.
+struct PersonStatus {
+  std::string participant;  ///< empty if the data are erased
+  int session = 0;          ///< 0: none yet
+  int enrolment = 0;        ///< 0: not known yet
+  int station = 0;  ///< from which the session was collected; 0: the file is a station's own
+  /// "complete", "open", "stopped", "excluded", "replaced", "withdrawn", "erased" or "to come".
+  std::string state;
+  bool counts = false;     ///< a complete session that will be analysed
+  bool may_go_on = false;  ///< an open session that can be resumed
+  int answered = 0;        ///< trials, those without a response included
+  std::string opened_utc;  ///< ISO 8601; empty in virtual time
+  std::string ended_utc;   ///< likewise; empty if it has not ended
+  std::string consent;     ///< the last version; empty: none is recorded
+  std::string device;
+  bool was_felt = false;    ///< in real time on a device, not seen on a screen
+  std::string certificate;  ///< SHA-256 of the device's calibration certificate; empty: none
+  std::string in_place_of;  ///< of one to come: whose place is kept for the participant
+};
+
+/// How the orders of methods are filled. They are dealt in blocks of consecutive enrolment numbers,
+/// each with every order once; which number has which order is sealed.
+struct OrderBlocks {
+  int orders = 1;           ///< size of a block
+  int complete = 0;         ///< blocks in which every number has a session that counts
+  std::vector<int> open{};  ///< of the others that were begun: how many numbers have one
+};
+
+struct StudyStatus {
+  std::string study;
+  std::string protocol;
+  store::StudyState state{};
+  bool simulated = false;
+  bool pilot = false;
+  int stations = 0;  ///< 0: the file is a station's own
+  int planned = 0;
+  int complete = 0;                    ///< participants with a session that counts
+  std::vector<PersonStatus> people{};  ///< sessions by number, then participants to come
+  std::optional<OrderBlocks>
+      orders{};  ///< if orders differ and the numbers of one station are known
+  std::vector<std::string>
+      balance{};  ///< sentences on stations and enrolment numbers, filled in by the caller
+  std::vector<std::string> left{};  ///< sentences on what is left to do
+};
+
+[[nodiscard]] StudyStatus status_of(const store::StudyStore& store, const StatusSources& sources);
+
+/// A command to copy, and what it is for.
+struct NextCommand {
+  std::string what;
+  std::string command;
+};
+
+/// A page for a terminal, ending with a line feed.
+[[nodiscard]] std::string status_text(const StudyStatus& status,
+                                      const std::vector<NextCommand>& next);
+/// One JSON object, indented, ending with a line feed.
+[[nodiscard]] std::string status_json(const StudyStatus& status,
+                                      const std::vector<NextCommand>& next);
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,490 @@
+// new: asks a few questions and writes a study that runs, with a comment at every key.
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/strict_json.hpp"
+#include "core/text.hpp"
+#include "protocols/design/languages.hpp"
+#include "protocols/design/protocol.hpp"
+#include "protocols/design/study.hpp"
+#include "stimuli/default_set.hpp"
+#include "stimuli/import/import.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+namespace touchtrial::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+/// By option, for instance "--people".
+using Answers = std::map<std::string, std::string>;
+
+/// A question that is asked unless its option answers it in advance.
+struct NewQuestion {
+  std::string option;
+  std::string text;
+  CLI::Validator allowed;
+  std::function<std::string(const Answers&)> usual;  ///< the answer of Return and --yes
+};
+
+struct NewArguments {
+  fs::path folder;
+  Answers answers;
+  int size_px = stimuli::kDefaultStimulusSizePx;
+  int crops = 5;
+  bool yes = false;
+};
+
+constexpr const char* kUsualName = "my-study";
+
+bool is_plain_name(std::string_view name) {
+  const auto is_plain = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' ||
+           c == '-';
+  };
+  return !name.empty() && name.size() <= 64 && std::ranges::all_of(name, is_plain);
+}
+
+bool is_version(const std::string& text) {
+  const bool has_edge = !text.empty() && (text.front() == ' ' || text.back() == ' ');
+  return text.size() <= 64 && !has_edge && one_line(text) == text;
+}
+
+/// An answer that `is_allowed`, or the message.
+template <typename IsAllowed>
+CLI::Validator allowed_if(IsAllowed is_allowed, const std::string& message,
+                          const std::string& kind) {
+  return {[=](const std::string& text) { return is_allowed(text) ? std::string() : message; },
+          kind};
+}
+
+template <typename Number>
+CLI::Validator number_within(Number low, Number high) {
+  return allowed_if(
+      [=](const std::string& text) {
+        const auto number = number_in<Number>(text);
+        return number && *number >= low && *number <= high;
+      },
+      fmt::format("must be a number from {} to {}", low, high), "NUMBER");
+}
+
+std::vector<std::string> names_of_protocols() {
+  std::vector<std::string> names;
+  for (const design::Protocol* one : design::protocols()) names.emplace_back(one->name());
+  return names;
+}
+
+int methods_of(const Answers& answers) {
+  return design::find_protocol(answers.at("--protocol"))->least_methods();
+}
+
+std::vector<NewQuestion> new_questions() {
+  const auto always = [](std::string answer) {
+    return [answer = std::move(answer)](const Answers&) { return answer; };
+  };
+  const std::vector<std::string> protocols = names_of_protocols();
+  const std::vector<std::string> languages(design::language_codes().begin(),
+                                           design::language_codes().end());
+  const auto is_folder = [](const std::string& text) {
+    std::error_code unreadable;
+    return text.empty() || fs::is_directory(text, unreadable);
+  };
+  return {
+      {"--name", "Name of the study",
+       allowed_if(is_plain_name, "must have 1 to 64 of the characters 0-9 A-Z a-z _ -", "NAME"),
+       always(kUsualName)},
+      {"--protocol", "Protocol: " + listed(protocols, " or "), CLI::IsMember(protocols),
+       always(protocols.front())},
+      {"--pictures", "Folder of your photographs; empty: five textures of the program's own",
+       allowed_if(is_folder, "is no folder", "FOLDER"), always("")},
+      {"--people", "Number of participants", number_within(2, 100'000), always("20")},
+      {"--worth",
+       "Least effect worth having, in points of 100: right answers above chance, or of one method "
+       "above another",
+       number_within(1.0, 50.0),
+       [](const Answers& answers) { return methods_of(answers) > 1 ? "10" : "20"; }},
+      {"--language", "Language of the participants: " + listed(languages, " or "),
+       CLI::IsMember(languages), always(languages.front())},
+      {"--consent", "Version of the consent form; empty: none",
+       allowed_if(is_version, "must be at most 64 bytes without blanks at its ends", "VERSION"),
+       always("")},
+  };
+}
+
+std::string typed_answer(const NewQuestion& question, const std::string& usual) {
+  for (;;) {
+    const std::string prompt = question.text + (usual.empty() ? ": " : " [" + usual + "]: ");
+    std::fputs(prompt.c_str(), stderr);
+    std::string line;
+    if (!std::getline(std::cin, line)) {
+      std::fputs("\n", stderr);
+      throw UsageError("new: there is no answer for " + question.option +
+                       "; nothing was written: answer the questions, or give --yes for the usual "
+                       "answers");
+    }
+    if (line.empty()) return usual;
+    const std::string wrong = question.allowed(line);
+    if (wrong.empty()) return line;
+    std::fputs((one_line(line + ": " + wrong) + "\n").c_str(), stderr);
+  }
+}
+
+/// Answers what no option answers. The study's name is usually its folder's.
+void interview(NewArguments& arguments) {
+  const fs::path& given = arguments.folder;
+  const std::string folder =
+      (given.has_filename() ? given : given.parent_path()).filename().string();
+  for (const NewQuestion& question : new_questions()) {
+    if (arguments.answers.contains(question.option)) continue;
+    std::string usual = question.usual(arguments.answers);
+    if (question.option == "--name" && is_plain_name(folder)) usual = folder;
+    arguments.answers[question.option] = arguments.yes ? usual : typed_answer(question, usual);
+  }
+}
+
+void require_free(const fs::path& folder) {
+  std::error_code unreadable;
+  if (!is_there(folder) || fs::is_empty(folder, unreadable)) return;
+  throw UsageError(one_line(folder.string()) + ": exists already; name a new folder");
+}
+
+/// The study file to be, and what is beside it.
+struct NewStudy {
+  fs::path file;
+  Json classes = Json::array();
+  Json practice = Json::array();
+  std::uint64_t seed = stimuli::kDefaultStimuliSeed;
+};
+
+/// Makes the default pictures of one kind beside the study.
+Json generated_classes(const NewStudy& study, const std::string& ending, stimuli::StimulusKind kind,
+                       int size_px) {
+  const fs::path folder = study.file.stem().string() + ending;
+  const stimuli::StimulusManifest made = stimuli::generate_default_stimuli(
+      study.file.parent_path() / folder, {.size_px = size_px, .exemplars = 1, .kind = kind},
+      progress_bar("generating"));
+  Json classes = Json::array();
+  for (const stimuli::StimulusEntry& entry : made.entries) {
+    classes.push_back(
+        {{"label", entry.label}, {"images", {(folder / entry.file).generic_string()}}});
+  }
+  return classes;
+}
+
+void import_pictures(const NewArguments& arguments, NewStudy& study) {
+  stimuli::ImportOptions options;
+  options.photographs = arguments.answers.at("--pictures");
+  options.study = study.file;
+  options.size_px = arguments.size_px;
+  options.crops = arguments.crops;
+  options.protocol = arguments.answers.at("--protocol");
+  options.methods = methods_of(arguments.answers);
+  const stimuli::ImportReport report =
+      stimuli::import_photographs(options, progress_bar("importing"));
+  for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
+  const Json imported = Json::parse(text_of(read_file(study.file)));
+  study.classes = imported.at("classes");
+  study.seed = imported.at("seed").get<std::uint64_t>();
+}
+
+bool has_label(const Json& classes, const Json& label) {
+  return std::ranges::any_of(classes, [&](const Json& one) { return one.at("label") == label; });
+}
+
+/// Practice textures have the classes' size. There is no practice if the study's own labels leave
+/// fewer than two of them.
+void add_practice(NewStudy& study, int size_px) {
+  for (const Json& one :
+       generated_classes(study, ".practice", stimuli::StimulusKind::practice, size_px)) {
+    if (!has_label(study.classes, one.at("label"))) study.practice.push_back(one);
+  }
+  if (study.practice.size() < 2) study.practice.clear();
+}
+
+constexpr const char* kStudyText =
+    R"(// Written by `touchtrial new`. Change what you like until the first participant comes, and run
+// `touchtrial prepare` again. Every key, with its range and default: docs/study-file.md. A key that
+// is left out has its default. Comments mean nothing to the program.
+{
+  // Name in tables and file names.
+  "study": {name},
+  // The participant's task.
+  "protocol": {protocol},
+  // The textures to tell apart: a label, and pictures of one size. Of several pictures of a texture
+  // each presentation takes the next.
+  "classes": [
+    {classes}
+  ],
+  // How a texture is extracted from its picture: docs/method.md.
+  "methods": [
+    {methods}
+  ],
+  // How a texture becomes force.
+  "rendering": {
+    // "paper": the model of the source paper. "surface": no closed path of the hand gains energy.
+    "model": "paper",
+    // Size of a picture's pixel on the plane, mm.
+    "pitch_mm": 0.2,
+    // "budget": forces as strong as the plane's stiffness allows, in one scale for all textures.
+    "gains": "budget",
+    // "rms": all stimuli equally strong, so that strength alone tells nothing. "none": as they are.
+    "equalise": {equalise},
+    // No force is larger, N. The device's own limit holds as well.
+    "max_force_n": 3.3
+  },
+  // What a participant feels, and how often.
+  "trials": {
+    // Scored presentations of each texture with each method.
+    "repeats": 5,
+    // "shuffled": every order is equally likely. Others: docs/study-file.md, "Orders".
+    "order": "shuffled",
+    // "mixed": the methods in random turns. "by-method": one after the other.
+    "blocks": "mixed",
+    // The longest exploration, s. Then "fade": the force fades, and the participant still answers;
+    // or "no-response": the trial ends without an answer and counts as wrong.
+    "explore_limit_s": 60,
+    "on_timeout": "fade",
+    // Presentations in a practice round. 0: no practice.
+    "practice": {practice_trials},
+    // Trials between breaks. 0: no breaks.
+    "break_every": 10,
+    // Presentations of a plane without texture among the others, not scored.
+    "catch": 0
+  },
+{practice}  // What a participant reads and is asked.
+  "session": {
+    // Language of all that the participant reads.
+    "language": {language},
+    // Pages of instructions of your own, by language: {"en": ["first page", "second page"]}.
+    // Empty: the program's.
+    "instructions": {},
+    // "curtain": hand and device are hidden, pictures are visible. "blindfold": answers are spoken.
+    "sight": "curtain",
+    // Noise in the headphones that covers the device's sound.
+    "masking": {"wanted": true, "level_dbfs": -30},
+    // Whether to ask the handedness inventory, and the program's closing questions.
+    "handedness": true,
+    "closing": true,
+    // Your own closing questions, such as {"id": "age", "kind": "number", "text": {"en": "Age?"}}.
+    "closing_questions": [],
+    // Levels of confidence to choose from with each answer, 2 to 9. 0: not asked.
+    "confidence": 0,
+    // What to tick before a session, in addition to the program's list.
+    "day_sheet": [],
+    // Version of the consent form, and number of the ethics committee's approval.
+    "consent_version": {consent},
+    "ethics_number": ""
+  },
+  // What is deposited before the first participant; `touchtrial prereg` writes the page. First for
+  // readers, then the same for the program, which holds its reports against it.
+  "registration": {
+    "hypothesis": {hypothesis},
+    "participants": {people},
+    "stopping_rule": {stopping_rule},
+    "exclusions": "A session is left out if it was stopped early or the participant withdraws. Trials that do not meet the validity rule are analysed with and without them.",
+    "primary_test": {primary_test},
+{analysis}    "alpha": 0.05,
+    // The smallest value worth having.
+    "smallest_effect": {effect},
+    // Numbers of participants at which outcomes are looked at before the end.
+    "looks": [],
+    // Why a session is left out, besides that it was stopped or its participant withdrew.
+    "exclusion_rules": {"deviations": []}
+  },
+  // Neither participant nor experimenter knows what is presented.
+  "blinding": "double",
+  // Decides simulations alone, never what people get.
+  "seed": {seed}
+}
+)";
+
+constexpr const char* kPracticeText =
+    R"(  // Textures for learning the task; none of them is in the study.
+  "practice": {
+    "classes": [
+      {practice_classes}
+    ],
+    // Right answers of a round that end practice, and the largest number of rounds.
+    "criterion": 4,
+    "rounds": 2
+  },
+)";
+
+/// The list's entries, one a line.
+std::string lines_of(const Json& list, const std::string& indent) {
+  std::string text;
+  for (const Json& entry : list) text += (text.empty() ? "" : ",\n" + indent) + entry.dump();
+  return text;
+}
+
+using Fillings = std::map<std::string, std::string, std::less<>>;
+
+/// \param text  with names in braces, each of which gets its filling
+std::string filled_in(std::string_view text, const Fillings& fillings) {
+  std::string filled;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text[at] == '{' ? text.find('}', at) : text.npos;
+    const auto found =
+        end == text.npos ? fillings.end() : fillings.find(text.substr(at + 1, end - at - 1));
+    if (found == fillings.end()) {
+      filled += text[at++];
+    } else {
+      filled += found->second;
+      at = end + 1;
+    }
+  }
+  return filled;
+}
+
+std::string in_json(const std::string& text) {
+  return Json(text).dump();
+}
+
+/// What is about the question that decides.
+Fillings question_fillings(const NewArguments& arguments, std::size_t classes) {
+  const double points = *number_in<double>(arguments.answers.at("--worth"));
+  if (methods_of(arguments.answers) > 1) {
+    return {
+        {"methods",
+         "{\"name\": \"adaptive\", \"radius\": 2},\n"
+         "    {\"name\": \"tv-gabor\", \"lambda\": 0.01}"},
+        {"equalise", "\"rms\""},
+        {"hypothesis",
+         in_json("Participants name textures of the method adaptive more often correctly than "
+                 "those of tv-gabor.")},
+        {"primary_test",
+         in_json(fmt::format("Difference of the shares of correct answers between the two "
+                             "methods within participants, two-sided exact sign-flip "
+                             "permutation test, alpha 0.05, led by the 95 % t interval of "
+                             "their mean. {:g} points are the smallest difference worth having.",
+                             points))},
+        {"analysis",
+         "    \"estimand\": \"difference\",\n"
+         "    \"methods\": [\"adaptive\", \"tv-gabor\"],\n"
+         "    \"test\": \"sign-flip\",\n    \"sides\": \"two\",\n"},
+        {"effect", number_text(points / 100.0)}};
+  }
+  const double chance = 1.0 / static_cast<double>(classes);
+  const double least = std::min(1.0, std::round(1000.0 * chance + 10.0 * points) / 1000.0);
+  return {{"methods", "{\"name\": \"adaptive\", \"radius\": 2}"},
+          {"equalise", "\"none\""},
+          {"hypothesis",
+           in_json(fmt::format("Participants tell the {0} textures apart by touch better than by "
+                               "chance (one in {0}).",
+                               classes))},
+          {"primary_test",
+           in_json(fmt::format("Mean over participants of the share of correct answers against "
+                               "chance: one-sample t test of participants' shares, one-sided, "
+                               "alpha 0.05, led by its 95 % interval. A mean of {:g} is the "
+                               "smallest worth having.",
+                               least))},
+          {"analysis",
+           "    \"estimand\": \"mean-accuracy\",\n    \"test\": \"t\",\n"
+           "    \"sides\": \"one\",\n"},
+          {"effect", number_text(least)}};
+}
+
+std::string study_text(const NewArguments& arguments, const NewStudy& study) {
+  const Answers& answers = arguments.answers;
+  const int people = *number_in<int>(answers.at("--people"));
+  Fillings fillings = question_fillings(arguments, study.classes.size());
+  const std::string practice =
+      study.practice.empty()
+          ? ""
+          : filled_in(kPracticeText, {{"practice_classes", lines_of(study.practice, "      ")}});
+  fillings.insert(
+      {{"name", in_json(answers.at("--name"))},
+       {"protocol", in_json(answers.at("--protocol"))},
+       {"classes", lines_of(study.classes, "    ")},
+       {"practice_trials", study.practice.empty() ? "0" : "5"},
+       {"practice", practice},
+       {"language", in_json(answers.at("--language"))},
+       {"consent", in_json(answers.at("--consent"))},
+       {"people", std::to_string(people)},
+       {"stopping_rule", in_json(fmt::format("Collecting ends when {} sessions are complete; "
+                                             "outcomes are not looked at before.",
+                                             people))},
+       {"seed", std::to_string(study.seed)}});
+  return filled_in(kStudyText, fillings);
+}
+
+std::string next_steps(const NewArguments& arguments, const NewStudy& study) {
+  const std::string file = shell_word(study.file.string());
+  return fmt::format(
+      "study    {}\npictures {}\n\nLook at its screens, make its forces and its key, and rehearse "
+      "it with simulated people:\n\n  touchtrial preview {}\n  touchtrial prepare {}\n  touchtrial "
+      "simulate {} --participants {} --db {}\n",
+      study.file.string(), stimuli::default_pictures_folder(study.file).string(), file, file, file,
+      arguments.answers.at("--people"),
+      shell_word((study.file.parent_path() / "rehearsal.db").string()));
+}
+
+int write_new_study(NewArguments arguments) {
+  if (!arguments.folder.empty()) require_free(arguments.folder);
+  interview(arguments);
+  const std::string& name = arguments.answers.at("--name");
+  const fs::path folder = arguments.folder.empty() ? fs::path(name) : arguments.folder;
+  require_free(folder);
+  make_folder(folder);
+  NewStudy study{.file = folder / (name + ".json")};
+  if (arguments.answers.at("--pictures").empty()) {
+    study.classes =
+        generated_classes(study, ".pictures", stimuli::StimulusKind::texture, arguments.size_px);
+  } else {
+    import_pictures(arguments, study);
+  }
+  add_practice(study, arguments.size_px);
+  replace_file(study.file, study_text(arguments, study));
+  static_cast<void>(design::load_study(study.file));
+  print(next_steps(arguments, study));
+  return 0;
+}
+
+}  // namespace
+
+void add_new_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<NewArguments>();
+  CLI::App* command = program.add_subcommand(
+      "new", "Ask a few questions, and write a study that runs, with its pictures and comments");
+  command->add_option("FOLDER", arguments->folder, "Folder to make (default: the study's name)");
+  for (const NewQuestion& question : new_questions()) {
+    command
+        ->add_option_function<std::string>(
+            question.option,
+            [arguments, option = question.option](const std::string& answer) {
+              arguments->answers[option] = answer;
+            },
+            question.text)
+        ->check(question.allowed);
+  }
+  command->add_option("--size", arguments->size_px, "Side of a picture, pixels; one is 0.2 mm")
+      ->check(CLI::Range(stimuli::kMinCropSizePx, stimuli::kMaxCropSizePx))
+      ->capture_default_str();
+  command->add_option("--crops", arguments->crops, "Crops of the photographs of each texture")
+      ->check(CLI::Range(1, stimuli::kMaxCropsOfClass))
+      ->capture_default_str();
+  command->add_flag("--yes", arguments->yes, "Take the usual answers, and ask nothing");
+  command->callback([=, &action] { action = [=] { return write_new_study(*arguments); }; });
+}
+
+}  // namespace touchtrial::app

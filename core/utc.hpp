@@ -1,0 +1,21 @@
+/// \file Times as text, in UTC and whatever the locale.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace touchtrial {
+
+/// A time since 1970 as ISO 8601, "2026-01-31T14:05:09Z".
+/// \param at  in the years 0 to 9999; nanoseconds always are
+[[nodiscard]] std::string utc_text(std::chrono::seconds at);
+[[nodiscard]] inline std::string utc_text(std::chrono::nanoseconds at) {
+  return utc_text(std::chrono::floor<std::chrono::seconds>(at));
+}
+
+/// "2026-01-31 14:05 UTC", for people.
+[[nodiscard]] std::string utc_words(std::chrono::nanoseconds at);
+/// "2026-01-31"
+[[nodiscard]] std::string utc_day(std::chrono::nanoseconds at);
+
+}  // namespace touchtrial

@@ -1,0 +1,154 @@
+// Studies with several visits and groups, as the program runs them.
+#include "app/study_folder.hpp"
+#include "app/touchtrial_process.hpp"
+#include "core/files.hpp"
+#include "protocols/store/study_store.hpp"
+#include "support/catch.hpp"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+/// A study of two visits, a week apart, and two groups.
+struct VisitFolder : StudyFolder {
+  explicit VisitFolder(bool open = false) {
+    json study = study_of("classification");
+    study["visits"] = {{"count", 2}, {"least_days", 7}};
+    study["groups"] = {{"labels", {"trained", "control"}}, {"open", open}};
+    replace_file(path() / "cloths.json", study.dump());
+  }
+  [[nodiscard]] ProgramResult visit(const std::string& participant, const std::string& number,
+                                    const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {
+        "run",  in("cloths.json"), "--participant", participant,      "--visit",   number,
+        "--db", in("study.db"),    "--subject",     in("quick.json"), "--headless"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  [[nodiscard]] ProgramResult simulate_two(const std::string& db, const std::string& first) const {
+    return run({"simulate", in("cloths.json"), "--participants", "2", "--first-participant", first,
+                "--seed", "3", "--db", in(db), "--subject", in("quick.json")});
+  }
+  [[nodiscard]] json checks(const std::string& db) const {
+    const ProgramResult verified = run({"verify", in(db), "--json"});
+    INFO(verified.output << verified.errors);
+    REQUIRE(verified.exit_code == 0);
+    return json::parse(verified.output);
+  }
+};
+
+bool says(const ProgramResult& result, const std::string& words) {
+  INFO(result.output << result.errors);
+  return (result.output + result.errors).find(words) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("simulated participants come as often as the study says") {
+  const VisitFolder study;
+  const ProgramResult simulated = study.simulate("all.db", {"--json"});
+  INFO(simulated.errors);
+  REQUIRE(simulated.exit_code == 0);
+  CHECK(json::parse(simulated.output)["sessions"] == 8);
+  CHECK(study.checks("all.db")["complete"] == true);
+  const json report = json::parse(study.run({"report", study.in("all.db"), "--json"}).output);
+  CHECK(report["participants"] == 4);
+  CHECK(report["methods"][0]["breakdowns"]["visit"].size() == 2);
+  CHECK(report["methods"][0]["breakdowns"]["group"].size() == 2);
+  REQUIRE(study.run({"export", study.in("all.db"), "--format", "csv", "--out", study.in("out")})
+              .exit_code == 0);
+  CHECK(content(study.path() / "out" / "trials.csv").find(",visit,group\n") != std::string::npos);
+  const auto store =
+      store::StudyStore::open(study.path() / "all.db", store::StudyStore::Access::read_only);
+  for (const store::SessionRow& row : store.sessions()) {
+    CHECK(row.visit == (row.session > 4 ? 2 : 1));
+    CHECK(row.enrolment == (row.session - 1) % 4 + 1);
+  }
+}
+
+TEST_CASE("stations of a study with visits merge into what one simulation makes") {
+  const VisitFolder study;
+  REQUIRE(study.simulate("all.db").exit_code == 0);
+  REQUIRE(study.simulate_two("a.db", "1").exit_code == 0);
+  REQUIRE(study.simulate_two("b.db", "3").exit_code == 0);
+  const ProgramResult merged =
+      study.run({"merge", study.in("a.db"), study.in("b.db"), "--out", study.in("merged.db")});
+  INFO(merged.output << merged.errors);
+  REQUIRE(merged.exit_code == 0);
+  static_cast<void>(study.checks("merged.db"));
+  const auto sessions = [&](const std::string& db) {
+    std::vector<std::string> all;
+    for (const store::SessionRow& row :
+         store::StudyStore::open(study.path() / db, store::StudyStore::Access::read_only)
+             .sessions()) {
+      all.push_back(row.participant + " " + std::to_string(row.visit));
+    }
+    return all;
+  };
+  CHECK(sessions("merged.db") == sessions("all.db"));
+}
+
+TEST_CASE("a visit is asked for by its number, and comes after the one before it") {
+  const VisitFolder study;
+  CHECK(says(study.visit("P07", "2"), "there is no visit before; check the participant id"));
+  fs::remove(study.path() / "study.db");
+  fs::remove(study.path() / "study.db.head");
+  REQUIRE(study.visit("P07", "1").exit_code == 0);
+  const ProgramResult again = study.visit("P07", "1");
+  CHECK(again.exit_code == 1);
+  CHECK(says(again, "is complete; give another participant id, or --visit 2 for the next visit"));
+  CHECK(study.visit("P07", "3").exit_code == 2);
+  // Where time is real, a simulated participant has to wait as a person has.
+  const ProgramResult early = study.visit("P07", "2", {"--real-time"});
+  CHECK(early.exit_code == 1);
+  CHECK(says(early,
+             "comes 0.0 days after visit 1 by this machine's clock, and the study has at "
+             "least 7 days between visits: come back after 20"));
+  const ProgramResult second = study.visit("P07", "2");
+  INFO(second.errors);
+  REQUIRE(second.exit_code == 0);
+  CHECK(says(study.visit("P07", "1"), "the last visit was visit 2 (session 2)"));
+  CHECK_FALSE(says(second, "trained"));
+  CHECK_FALSE(says(second, "control"));
+  static_cast<void>(study.checks("study.db"));
+}
+
+TEST_CASE("an exclusion is of the participant, with all visits, and ends them") {
+  const VisitFolder study;
+  REQUIRE(study.visit("P07", "1").exit_code == 0);
+  REQUIRE(study.visit("P07", "2").exit_code == 0);
+  REQUIRE(study.visit("P08", "1").exit_code == 0);
+  for (const std::string participant : {"P07", "P08"}) {
+    REQUIRE(study
+                .run({"exclude", study.in("study.db"), "--participant", participant, "--reason",
+                      "asleep"})
+                .exit_code == 0);
+  }
+  const auto store =
+      store::StudyStore::open(study.path() / "study.db", store::StudyStore::Access::read_only);
+  for (const store::SessionRow& row : store.sessions()) CHECK(row.excluded);
+  CHECK(says(study.visit("P08", "2"), "cannot follow session 3, whose participant was excluded"));
+}
+
+TEST_CASE("groups that are open are said when a session begins, and the key's holder sees all") {
+  const VisitFolder study(true);
+  const ProgramResult first = study.visit("P01", "1");
+  CHECK((says(first, "P01 is in group trained") || says(first, "P01 is in group control")));
+  const VisitFolder hidden;
+  REQUIRE(hidden.run({"prepare", hidden.in("cloths.json")}).exit_code == 0);
+  const ProgramResult dealt =
+      hidden.run({"plan", hidden.in("cloths.json"), "--groups", "--participants", "10", "--json"});
+  INFO(dealt.errors);
+  REQUIRE(dealt.exit_code == 0);
+  std::map<std::string, int> sizes;
+  const json document = json::parse(dealt.output);
+  for (const json& one : document["groups"]) ++sizes[one["group"]];
+  CHECK(sizes == std::map<std::string, int>{{"control", 5}, {"trained", 5}});
+  CHECK(says(hidden.run({"plan", hidden.in("cloths.json"), "--groups", "--participants", "3"}),
+             "Keep this from whoever runs sessions."));
+}
+
+}  // namespace touchtrial

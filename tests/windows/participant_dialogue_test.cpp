@@ -1,0 +1,126 @@
+// Who comes: the questions before a session whose participant no option names.
+#include "app/run/participant_dialogue.hpp"
+
+#include "support/catch.hpp"
+#include "windows/virtual_screen.hpp"
+
+#include <chrono>
+#include <deque>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+using Replies = std::deque<std::vector<std::string>>;
+
+store::SessionRow session_of(const std::string& participant, int enrolment) {
+  store::SessionRow row;
+  row.participant = participant;
+  row.enrolment = enrolment;
+  return row;
+}
+
+design::Station station_with(int first, int last) {
+  design::Station station{"attic", {}, {}};
+  station.ranges.push_back({first, last});
+  return station;
+}
+
+TEST_CASE("the first of a station has the id of the plan, and others follow the one before") {
+  const design::Station all = station_with(1, 100);
+  CHECK(app::proposed_participant({}, all) == "P01");
+  CHECK(app::proposed_participant({}, station_with(11, 20)) == "P11");
+  CHECK(app::proposed_participant({session_of("P01", 1), session_of("P02", 2)}, all) == "P03");
+  CHECK(app::proposed_participant({session_of("Ada", 1)}, all).empty());
+}
+
+/// Asks with these replies.
+/// \param seen  gets what stood in the field of each first question
+app::ParticipantAnswers answers_to(Replies replies, const std::string& version,
+                                   std::vector<std::string>* seen = nullptr) {
+  const app::ParticipantQuestions questions{
+      "P07", version, [](const std::string& id) {
+        return id == "P06" ? std::string("P06 has a session already.") : std::string();
+      }};
+  const app::ParticipantAnswers answers = app::ask_participant(
+      [&](const session::QuestionStep& step) {
+        REQUIRE_FALSE(replies.empty());
+        std::vector<std::string> reply = replies.front();
+        replies.pop_front();
+        REQUIRE(step.questionnaire->questions.size() == reply.size());
+        if (seen != nullptr) {
+          seen->push_back(std::string(step.typed) + "|" +
+                          step.questionnaire->questions.front().text.at("en"));
+        }
+        return reply;
+      },
+      questions);
+  CHECK(replies.empty());
+  return answers;
+}
+
+TEST_CASE("whoever has consented is asked for age and hand, nobody else") {
+  const app::ParticipantAnswers yes = answers_to({{"P07", "0"}, {"2", "1"}}, "2026-03");
+  CHECK(yes.id == "P07");
+  CHECK(yes.has_consented);
+  CHECK(yes.age_band == "20-29");
+  CHECK(yes.hand == "left");
+  const app::ParticipantAnswers silent = answers_to({{"P07", "0"}, {"", ""}}, "");
+  CHECK(silent.age_band.empty());
+  CHECK(silent.hand.empty());
+  CHECK_FALSE(answers_to({{"P07", "1"}}, "2026-03").has_consented);
+}
+
+TEST_CASE("a participant who cannot come is asked for again, with the reason") {
+  std::vector<std::string> seen;
+  CHECK(answers_to({{"P06", "0"}, {"P08", "0"}, {"", ""}}, "", &seen).id == "P08");
+  REQUIRE(seen.size() == 3);
+  CHECK(seen[0].starts_with("P07|"));
+  CHECK(seen[1].starts_with("P06|"));
+  CHECK_THAT(seen[1], holds_text("P06 has a session already."));
+}
+
+/// Presses keys one after the other: '#' is Enter; a digit also types itself, as on a keyboard.
+void press(app::ParticipantWindow& window, const std::string& keys) {
+  for (const char key : keys) {
+    app::InputEvent event;
+    event.at = std::chrono::steady_clock::now();
+    event.key = key == '#' ? app::Key::enter : app::Key::digit;
+    event.digit = key == '#' ? 0 : key - '0';
+    window.inject(event);
+    if (key == '#') continue;
+    event.kind = app::InputEvent::Kind::letter;
+    event.letter = static_cast<unsigned char>(key);
+    window.inject(event);
+  }
+}
+
+TEST_CASE("the experimenter answers in a window, where the proposed id stands already") {
+  const auto screen = VirtualScreen::open("1280x720");
+  app::ParticipantWindowOptions wanted;
+  wanted.size_px = {1280, 720};
+  app::ParticipantWindow window(wanted);
+  app::ParticipantAnswers answers;
+  constexpr std::chrono::milliseconds kPatience{300'000};
+  app::run_beside(window, [&] {
+    int step = 0;
+    answers = app::ask_participant(
+        [&](const session::QuestionStep& asked) {
+          CHECK_FALSE(window.attend(asked));
+          CHECK(window.wait_until_shown(kPatience));
+          press(window, step++ == 0 ? "8#1#" : "3#2#");
+          for (;;) {
+            if (const auto reply = window.attend(asked)) return reply->answers;
+          }
+        },
+        {"P0", "2026-03", [](const std::string&) { return std::string(); }});
+  });
+  CHECK(answers.id == "P08");
+  CHECK(answers.has_consented);
+  CHECK(answers.age_band == "20-29");
+  CHECK(answers.hand == "left");
+}
+
+}  // namespace
+}  // namespace touchtrial
