@@ -301,9 +301,10 @@ nlohmann::ordered_json person_json(const PersonStatus& one) {
 
 std::string status_text(const StudyStatus& status, const std::vector<NextCommand>& next) {
   std::string text = simulated_line(status.simulated);
-  text += fmt::format("{} ({}): {}, {}{} complete{}\n", status.study, status.protocol,
+  text += fmt::format("{} ({}): {}, {}{} complete{}{}\n", status.study, status.protocol,
                       name_of(status.state), counted(status.complete, "participant"),
                       status.planned > 0 ? fmt::format(" of {}", status.planned) : "",
+                      status.state.question ? "; a registered look was made" : "",
                       status.pilot ? "; PILOT" : "");
   text += people_text(status);
   const auto list = [&](const char* title, const std::vector<std::string>& lines) {

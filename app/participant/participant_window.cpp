@@ -154,6 +154,7 @@ struct ParticipantWindow::State {
         monitor(monitor_of(options)),
         window(make_window(options, monitor)),
         shelf(options.pictures, options.pitch_mm) {
+    if (wanted.has_several_methods) words.answer_title = words.answer_fits_title;
     context = {
         &words, options.session.language, options.session.sight, options.pointer != nullptr, &shelf,
         &glass};

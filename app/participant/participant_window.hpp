@@ -36,6 +36,8 @@ struct ParticipantWindowOptions {
   std::map<std::string, GreyImage> pictures;
   double pitch_mm = 0.2;    ///< of the study; gives the pictures' true size
   double rate_hz = 1000.0;  ///< of the servo
+  /// Textures are made by several methods: the participant is asked which picture fits best.
+  bool has_several_methods = false;
   /// What must be felt before Enter ends an exploration: over all explorations of a presentation.
   design::LeastTouch least_touch{0.0, 0.0};
   /// Returns the explored device; called when each plane comes on.

@@ -32,6 +32,7 @@ constexpr std::pair<const char*, std::string Words::*> kWords[] = {
     {"too_hard", &Words::too_hard},
     {"touch_first", &Words::touch_first},
     {"answer_title", &Words::answer_title},
+    {"answer_fits_title", &Words::answer_fits_title},
     {"answer_spoken_title", &Words::answer_spoken_title},
     {"answer_spoken_text", &Words::answer_spoken_text},
     {"time_is_up", &Words::time_is_up},

@@ -41,6 +41,7 @@ struct Words {
   std::string touch_first;  ///< Enter was pressed before the surface was felt
 
   std::string answer_title;
+  std::string answer_fits_title;  ///< where textures are made by several methods
   std::string answer_spoken_title;
   std::string answer_spoken_text;
   std::string time_is_up;  ///< an answer is still required

@@ -71,6 +71,7 @@ ParticipantWindowOptions window_options(const RunOptions& options, const design:
   window.session.high_contrast = study.session.high_contrast || options.high_contrast;
   window.pictures = answer_pictures(study);
   window.pitch_mm = study.rendering.pitch_mm;
+  window.has_several_methods = study.presented_methods() > 1;
   window.least_touch = study.trials.answer_after;
   return window;
 }

@@ -106,6 +106,11 @@ RunStudy run_study_for(const RunOptions& options) {
     if (options.is_simulated() && options.pack.empty() && !is_there(place.pack)) {
       return simulated_study(options, study);
     }
+    if (!is_there(place.key) && !is_there(place.pack)) {
+      throw UsageError(
+          one_line(options.study.string()) + ": is not prepared yet; run `touchtrial prepare " +
+          one_line(options.study.string()) + "`, or copy the station's file and the pack here");
+    }
     throw UsageError(
         one_line(file.string()) +
         ": there is no such station file; name this station with --station, or copy its "

@@ -38,7 +38,9 @@ Header read_header(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) {
-    refuse_file(path, "no such database; check the name, or make one with `touchtrial simulate`");
+    refuse_file(
+        path,
+        "no such database; check the name; `touchtrial run` and `touchtrial simulate` make one");
   }
   if (std::filesystem::is_directory(status))
     refuse_file(path, "is a folder; name a database in it");

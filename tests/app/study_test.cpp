@@ -183,6 +183,8 @@ TEST_CASE("a registered look shows the registered question alone") {
                  .errors,
              holds_text("no look at the outcomes of participant P001 is recorded"));
 
+  CHECK_THAT(study.run({"status", study.in("a.db")}).output,
+             holds_text("; a registered look was made"));
   const json quoted = json::parse(study.run({"report", study.in("a.db"), "--json"}).output);
   REQUIRE(look({"--unregistered"}).exit_code == 0);
   const json all = json::parse(study.run({"report", study.in("a.db"), "--json"}).output);
@@ -190,6 +192,16 @@ TEST_CASE("a registered look shows the registered question alone") {
   CHECK(all.at("looks").at(1).at("kind") == "unregistered");
   CHECK_THAT(all.at("departures").dump(), holds_text("This look was not registered"));
   CHECK(all.at("primary").at("estimate") == quoted.at("primary").at("estimate"));
+}
+
+TEST_CASE("a session of a study that is not prepared names the command that prepares it") {
+  const StudyFolder study;
+  const ProgramResult refused = study.run(
+      {"run", study.in("cloths.json"), "--participant", "P01", "--db", study.in("study.db")});
+  CHECK(refused.exit_code == 2);
+  CHECK(line_count(refused.errors) == 1);
+  CHECK_THAT(refused.errors, holds_text("is not prepared yet; run `touchtrial prepare "));
+  CHECK_FALSE(fs::exists(study.path() / "study.db"));
 }
 
 TEST_CASE("an interim look at a number of participants that was not registered is refused") {
