@@ -44,6 +44,8 @@ std::optional<session::StepReply> SpokenAnswers::attend(const session::Step& ste
 
 namespace {
 
+using Kind = session::ExperimenterRequest::Kind;
+
 constexpr char kEscape = '\x1b';
 constexpr char kTab = '\t';
 constexpr std::size_t kLongest = 500;
@@ -120,7 +122,6 @@ void RequestTyping::complete_code() {
 }
 
 void RequestTyping::begin(char key) {
-  using Kind = session::ExperimenterRequest::Kind;
   switch (key) {
     case 'p':
       ask(Kind::pause);
@@ -149,7 +150,6 @@ void RequestTyping::begin(char key) {
 }
 
 void RequestTyping::end_line() {
-  using Kind = session::ExperimenterRequest::Kind;
   const std::string text = line_.text();
   line_.clear();
   const Field ended = std::exchange(field_, Field::none);

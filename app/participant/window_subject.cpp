@@ -27,8 +27,8 @@ std::optional<session::StepReply> WindowSubject::attend(const session::Step& ste
   if (!step_ || !is_same_step(*step_, step)) forget();
   step_ = step;
   if (!reply && !meant_) meant_ = subject_.attend(step);
-  constexpr std::chrono::milliseconds kPictureLimit{1000};
-  if (!reply && meant_ && !typed_ && window_.wait_until_shown(kPictureLimit)) {
+  constexpr std::chrono::milliseconds kShownLimit{1000};
+  if (!reply && meant_ && !typed_ && window_.wait_until_shown(kShownLimit)) {
     type(step, *meant_);
     typed_ = true;
     reply = window_.attend(step);

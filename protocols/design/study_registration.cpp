@@ -48,7 +48,7 @@ ExclusionRules read_exclusion_rules(const JsonValue& place) {
       rules.deviations.push_back(read_line(code, kLongestCode));
     }
   }
-  std::ranges::stable_partition(rules.deviations, is_deviation_code);
+  std::stable_partition(rules.deviations.begin(), rules.deviations.end(), is_deviation_code);
   if (const auto member = object.find("invalid_trials")) {
     rules.invalid_trials = member->number({.low = 0.0, .high = 1.0});
   }
