@@ -433,8 +433,7 @@ TEST_CASE("the schema's defaults are the reader's") {
     CHECK(written.registration == bare.registration);
     CHECK(written.seed == bare.seed);
   }
-  CHECK(defaults ==
-        (23 + 8 + 3 + 2 + 13 + 2 + 1 + 10) * (static_cast<int>(kMethods.size()) + 1));
+  CHECK(defaults == (23 + 8 + 3 + 2 + 13 + 2 + 1 + 10) * (static_cast<int>(kMethods.size()) + 1));
 }
 
 TEST_CASE("the schema's defaults of the methods' keys are the reader's") {
