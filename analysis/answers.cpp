@@ -82,17 +82,15 @@ QuestionSummary question_summary(const std::string& id, const design::Question* 
 
 }  // namespace
 
-std::vector<QuestionAnswer> open_answers(const store::StudyStore& store,
-                                         const design::StudyKey& key) {
+std::vector<QuestionAnswer> open_answers(const store::StudyStore& store, const SessionKeys& keys) {
   std::map<int, store::SessionRow> rows;
   for (const store::SessionRow& row : store.sessions()) rows[row.session] = row;
-  const std::map<int, SecretKey> keys = participant_keys(store, key);
   std::vector<QuestionAnswer> all;
   store.for_each(store::EventKind::questioned, [&](const store::Event& event) {
     const auto own = keys.find(event.session);
-    if (own == keys.end()) return;
+    if (own == keys.end() || !own->second.participant) return;
     add_answers(rows.at(event.session), store::remark_from_json(event.body),
-                whole_event(event, own->second).secret, all);
+                whole_event(event, *own->second.participant).secret, all);
   });
   return all;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "analysis/demographics.hpp"
+#include "analysis/sealed_sessions.hpp"
 #include "analysis/statistics/descriptive.hpp"
 
 #include <optional>
@@ -28,7 +29,7 @@ struct QuestionAnswer {
 /// \throws VerificationError if an answer does not open
 /// \throws StoreError if an answer is not in the form that this program writes
 [[nodiscard]] std::vector<QuestionAnswer> open_answers(const store::StudyStore& store,
-                                                       const design::StudyKey& key);
+                                                       const SessionKeys& keys);
 
 /// Questions with their wording: the study's own, and those of the program where it knows them.
 using Questionnaires = std::vector<design::Questionnaire>;

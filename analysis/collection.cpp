@@ -64,13 +64,11 @@ std::optional<CollectionDates> dates_of(const std::vector<SessionRecord>& sessio
   return dates;
 }
 
-Collection load_collection(const store::StudyStore& store, const design::StudyKey* key) {
+Collection load_collection(const store::StudyStore& store, const SessionKeys& keys) {
   const std::vector<store::SessionRow> rows = store.sessions();
   std::map<int, SessionRecord> records = empty_records(rows);
   Collection collection;
   collection.prescription = prescription_from_json(store.commitment().configuration);
-  std::map<int, store::PersonKeys> keys;
-  if (key != nullptr) keys = person_keys(store, *key);
   const auto add = [&](const store::Event& event) {
     const auto record = records.find(store::session_about(event));
     if (record == records.end() || record->second.row.erased) return;

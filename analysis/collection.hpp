@@ -2,6 +2,7 @@
 /// They reveal nothing about outcomes, so they may be shown at any time.
 #pragma once
 
+#include "analysis/sealed_sessions.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/study_store.hpp"
 
@@ -151,9 +152,9 @@ struct Collection {
 [[nodiscard]] Prescription prescription_from_json(const std::string& configuration);
 
 /// Reads how every session was collected, but neither schedules, answers nor traces.
-/// \param key  opens what is sealed of practice and deviations; null: those parts are missing
+/// \param keys  of sessions; open what is sealed of practice and deviations; where there are none, those parts are missing
 /// \throws VerificationError, naming the event, if one does not open
 [[nodiscard]] Collection load_collection(const store::StudyStore& store,
-                                         const design::StudyKey* key = nullptr);
+                                         const SessionKeys& keys = {});
 
 }  // namespace touchtrial::analysis

@@ -140,19 +140,19 @@ void add_dealt(const Outcomes& outcomes, Collection& collection) {
 }
 
 /// Answers, incidents and demographics of the sessions that are shown.
-void take_what_was_said(const store::StudyStore& store, const design::StudyKey& key,
-                        Outcomes& outcomes) {
-  std::map<int, store::PersonKeys> keys;
+void take_what_was_said(const store::StudyStore& store, const design::Study& study,
+                        const SessionKeys& all_keys, Outcomes& outcomes) {
+  SessionKeys keys;
   for (const SessionOutcome& one : outcomes.sessions) {
-    keys.emplace(one.row.session, person_keys(store, key, one.row));
+    keys.emplace(one.row.session, all_keys.at(one.row.session));
   }
   const auto is_unseen = [&](const auto& one) { return !keys.contains(one.session); };
-  outcomes.asked = own_questions(key.study);
-  outcomes.answers = open_answers(store, key);
+  outcomes.asked = own_questions(study);
+  outcomes.answers = open_answers(store, keys);
   std::erase_if(outcomes.answers, is_unseen);
   outcomes.incidents = load_incidents(store, keys);
   std::erase_if(outcomes.incidents, is_unseen);
-  const std::map<int, Demographics> said = demographics_of(outcomes.answers, key.study);
+  const std::map<int, Demographics> said = demographics_of(outcomes.answers, study);
   outcomes.demographics = in_bands(said_by_participants(outcomes, said));
   for (SessionRecord& record : outcomes.collection.sessions) {
     const auto own = said.find(record.row.session);
@@ -189,8 +189,9 @@ Outcomes opened(const store::StudyStore& store, const design::StudyKey& key, Sho
   const std::vector<store::SessionRow> rows = store.sessions();
   Outcomes outcomes = labelled(store, key.study);
   require_whole(store);
-  require_sealed_ends(store, key);
-  outcomes.collection = load_collection(store, &key);
+  const SessionKeys keys = person_keys(store, key);
+  require_sealed_ends(store, keys);
+  outcomes.collection = load_collection(store, keys);
   outcomes.visual = outcomes.collection.visual;
   outcomes.looked = look_record(store, key);
   std::vector<store::SessionRow> shown;
@@ -208,10 +209,10 @@ Outcomes opened(const store::StudyStore& store, const design::StudyKey& key, Sho
     outcomes.sessions.push_back(sessions[row.session]);
   }
   add_dealt(outcomes, outcomes.collection);
-  take_what_was_said(store, key, outcomes);
-  const auto schedules = open_schedules(store, key);
+  take_what_was_said(store, key.study, keys, outcomes);
+  const auto schedules = open_schedules(store, key, keys);
   Measures measures;
-  for (const store::TrialRow& row : open_trials(store, key, &measures)) {
+  for (const store::TrialRow& row : open_trials(store, keys, &measures)) {
     const auto schedule = schedules.find(row.session);
     if (schedule == schedules.end()) continue;  // without an opening
     const auto session = sessions.find(row.session);

@@ -27,12 +27,12 @@ std::string place_of(const store::Event& event) {
 /// Calls `visit` with each event of a kind, opened, and its secret text, for all sessions that have
 /// a key.
 template <typename Visit>
-void for_each_secret(const store::StudyStore& store, const std::map<int, SecretKey>& keys,
-                     store::EventKind kind, Visit visit) {
+void for_each_secret(const store::StudyStore& store, const SessionKeys& keys, store::EventKind kind,
+                     Visit visit) {
   store.for_each(kind, [&](const store::Event& stored) {
     const auto own = keys.find(stored.session);
-    if (own == keys.end()) return;
-    const auto [event, secret] = whole_event(stored, own->second);
+    if (own == keys.end() || !own->second.participant) return;
+    const auto [event, secret] = whole_event(stored, *own->second.participant);
     try {
       visit(event, secret);
     } catch (const StoreError& error) {
@@ -95,9 +95,10 @@ void require_key_of(const store::StudyStore& store, const design::StudyKey& key)
   }
 }
 
-std::optional<SecretKey> participant_key(const store::StudyStore& store,
-                                         const design::StudyKey& key,
-                                         const store::SessionRow& session) {
+namespace {
+
+std::optional<SecretKey> unwrapped_key(const store::StudyStore& store, const BoxKeys& investigator,
+                                       const store::SessionRow& session) {
   if (session.erased) return std::nullopt;
   const std::optional<Bytes> wrapped = store.wrapped_key(session.session);
   if (!wrapped) {
@@ -106,7 +107,7 @@ std::optional<SecretKey> participant_key(const store::StudyStore& store,
                     "restore a backup of the database",
                     session.session));
   }
-  const auto own = store::unwrap_participant_key(key.box(), session.own_session, *wrapped);
+  const auto own = store::unwrap_participant_key(investigator, session.own_session, *wrapped);
   if (!own) {
     throw VerificationError(
         fmt::format("session {}: the participant's key does not open with this study key; "
@@ -116,21 +117,12 @@ std::optional<SecretKey> participant_key(const store::StudyStore& store,
   return own;
 }
 
-std::map<int, SecretKey> participant_keys(const store::StudyStore& store,
-                                          const design::StudyKey& key) {
-  std::map<int, SecretKey> keys;
-  for (const store::SessionRow& session : store.sessions()) {
-    if (const auto own = participant_key(store, key, session)) keys.emplace(session.session, *own);
-  }
-  return keys;
-}
-
-store::PersonKeys person_keys(const store::StudyStore& store, const design::StudyKey& key,
-                              const store::SessionRow& session) {
-  store::PersonKeys own{.participant = participant_key(store, key, session), .safety = {}};
+store::PersonKeys unwrapped_keys(const store::StudyStore& store, const BoxKeys& investigator,
+                                 const store::SessionRow& session) {
+  store::PersonKeys own{.participant = unwrapped_key(store, investigator, session), .safety = {}};
   const std::optional<Bytes> wrapped = store.wrapped_keys(session.session).safety;
   if (!wrapped) return own;
-  own.safety = store::unwrap_safety_key(key.box(), session.own_session, *wrapped);
+  own.safety = store::unwrap_safety_key(investigator, session.own_session, *wrapped);
   if (own.safety) return own;
   throw VerificationError(
       fmt::format("session {}: the safety key does not open with this study key; restore a backup "
@@ -138,11 +130,24 @@ store::PersonKeys person_keys(const store::StudyStore& store, const design::Stud
                   session.session));
 }
 
-std::map<int, store::PersonKeys> person_keys(const store::StudyStore& store,
-                                             const design::StudyKey& key) {
-  std::map<int, store::PersonKeys> all;
+}  // namespace
+
+std::optional<SecretKey> participant_key(const store::StudyStore& store,
+                                         const design::StudyKey& key,
+                                         const store::SessionRow& session) {
+  return unwrapped_key(store, key.box(), session);
+}
+
+store::PersonKeys person_keys(const store::StudyStore& store, const design::StudyKey& key,
+                              const store::SessionRow& session) {
+  return unwrapped_keys(store, key.box(), session);
+}
+
+SessionKeys person_keys(const store::StudyStore& store, const design::StudyKey& key) {
+  const BoxKeys investigator = key.box();
+  SessionKeys all;
   for (const store::SessionRow& session : store.sessions()) {
-    all.emplace(session.session, person_keys(store, key, session));
+    all.emplace(session.session, unwrapped_keys(store, investigator, session));
   }
   return all;
 }
@@ -169,12 +174,13 @@ store::Event readable_event(const store::Event& event, const store::SessionRow& 
   return *std::move(opened);
 }
 
-std::vector<store::TrialRow> open_trials(const store::StudyStore& store,
-                                         const design::StudyKey& key, Measures* measures) {
+std::vector<store::TrialRow> open_trials(const store::StudyStore& store, const SessionKeys& keys,
+                                         Measures* measures) {
   std::vector<WaitingSession> sessions;
-  for (const auto& [session, own] : participant_keys(store, key)) {
+  for (const auto& [session, own] : keys) {
+    if (!own.participant) continue;
     WaitingSession& waiting = sessions.emplace_back();
-    waiting.own = own;
+    waiting.own = *own.participant;
     waiting.session = session;
     waiting.measured = measures != nullptr;
     waiting.events = store.events(session);
@@ -189,8 +195,8 @@ std::vector<store::TrialRow> open_trials(const store::StudyStore& store,
   return trials;
 }
 
-void require_sealed_ends(const store::StudyStore& store, const design::StudyKey& key) {
-  for_each_secret(store, participant_keys(store, key), store::EventKind::closed,
+void require_sealed_ends(const store::StudyStore& store, const SessionKeys& keys) {
+  for_each_secret(store, keys, store::EventKind::closed,
                   [&](const store::Event& event, const std::string& text) {
                     const store::ChainEnd before{.length = event.sequence, .head = event.previous};
                     if (store::chain_end_from_json(text) == before) return;
@@ -202,8 +208,8 @@ void require_sealed_ends(const store::StudyStore& store, const design::StudyKey&
 }
 
 std::map<int, design::Schedule> open_schedules(const store::StudyStore& store,
-                                               const design::StudyKey& key) {
-  const std::map<int, SecretKey> keys = participant_keys(store, key);
+                                               const design::StudyKey& key,
+                                               const SessionKeys& keys) {
   std::map<int, design::Schedule> schedules;
   for_each_secret(store, keys, store::EventKind::opened,
                   [&](const store::Event& event, const std::string& text) {

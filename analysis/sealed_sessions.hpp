@@ -26,21 +26,16 @@ void require_key_of(const store::StudyStore& store, const design::StudyKey& key)
                                                        const design::StudyKey& key,
                                                        const store::SessionRow& session);
 
-/// The participants' keys of all sessions that are not erased, by session.
-/// \throws VerificationError as participant_key does
-[[nodiscard]] std::map<int, SecretKey> participant_keys(const store::StudyStore& store,
-                                                        const design::StudyKey& key);
-
 /// What is left of a session's keys.
 /// \throws VerificationError as participant_key does, for either key
 [[nodiscard]] store::PersonKeys person_keys(const store::StudyStore& store,
                                             const design::StudyKey& key,
                                             const store::SessionRow& session);
 
-/// The same of every session, by session.
+/// The same of every session, by session: unwrapped once, for all that open parts of a study.
+using SessionKeys = std::map<int, store::PersonKeys>;
 /// \throws the same
-[[nodiscard]] std::map<int, store::PersonKeys> person_keys(const store::StudyStore& store,
-                                                           const design::StudyKey& key);
+[[nodiscard]] SessionKeys person_keys(const store::StudyStore& store, const design::StudyKey& key);
 
 /// A session's event as it was recorded.
 /// \param own  the participant's key
@@ -61,19 +56,20 @@ using Measures = std::map<std::pair<int, int>, store::TrialMeasures>;
 ///   the last presentation counts
 /// \throws VerificationError, naming the event, if one does not open or cannot follow those before
 [[nodiscard]] std::vector<store::TrialRow> open_trials(const store::StudyStore& store,
-                                                       const design::StudyKey& key,
+                                                       const SessionKeys& keys,
                                                        Measures* measures = nullptr);
 
 /// Checks the chain of every session that has ended and is not erased against the end that was
 /// sealed with it. Somebody without the key can rebuild a chain, but cannot seal its end.
 /// \throws VerificationError, naming the session, if a sealed end belongs to another chain
-void require_sealed_ends(const store::StudyStore& store, const design::StudyKey& key);
+void require_sealed_ends(const store::StudyStore& store, const SessionKeys& keys);
 
 /// Schedules and layouts of all sessions that are not erased, by session. Restarted blocks, in
 /// their new order, follow the schedule with which the session began.
 /// \throws VerificationError, naming the session, if a schedule does not open or does not belong to
 ///   this key
 [[nodiscard]] std::map<int, design::Schedule> open_schedules(const store::StudyStore& store,
-                                                             const design::StudyKey& key);
+                                                             const design::StudyKey& key,
+                                                             const SessionKeys& keys);
 
 }  // namespace touchtrial::analysis

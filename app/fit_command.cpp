@@ -157,7 +157,8 @@ int fit_study(const FitArguments& arguments) {
   design::require_choice_of_classes(key.study, "fit");
   const analysis::Outcomes outcomes = analysis::load_outcomes(store, key);
   const planning::FitCounts counts =
-      counts_of(arguments, key, outcomes, analysis::open_schedules(store, key));
+      counts_of(arguments, key, outcomes,
+                analysis::open_schedules(store, key, analysis::person_keys(store, key)));
   const engine::Pack pack = pack_for(store, key, arguments);
   const planning::AnswerModel model =
       planning::answer_model_of(key, pack, subject, arguments.felt, progress_bar("feeling"));

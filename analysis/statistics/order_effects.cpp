@@ -136,26 +136,47 @@ class Places {
   std::vector<double> slopes_;    ///< of the participants who have one
 };
 
-/// Deals the trials of each class over the places that an order gives the class.
-/// \param trials  on return, the trial of each place
-/// \return false if the order does not have as many places of each class
-bool dealt_by_class(const Places& places, std::span<const int> order,
-                    std::vector<std::size_t>& trials, RandomStream& random) {
-  shuffle(std::span(trials), random);
-  std::vector<std::size_t> of_place(trials.size());
-  std::iota(of_place.begin(), of_place.end(), std::size_t{0});
-  std::ranges::stable_sort(of_place, {}, [&](std::size_t i) { return order[i]; });
-  std::ranges::stable_sort(trials, {}, [&](std::size_t i) { return places.presented_at(i); });
-  std::vector<std::size_t> dealt(trials.size());
-  for (std::size_t i = 0; i < trials.size(); ++i) {
-    if (places.presented_at(trials[i]) != order[of_place[i]]) return false;
-    dealt[of_place[i]] = trials[i];
+/// Deals the trials of each class over the places that an order gives the class. Keeps its memory
+/// from block to block.
+class DealByClass {
+ public:
+  /// \param trials  on return, the trial of each place
+  /// \return false if the order does not have as many places of each class
+  [[nodiscard]] bool deal(const Places& places, std::span<const int> order,
+                          std::vector<std::size_t>& trials, RandomStream& random) {
+    shuffle(std::span(trials), random);
+    for (auto& [dealt, of_class] : classes_) {
+      dealt = 0;
+      of_class.clear();
+    }
+    for (const std::size_t trial : trials) {
+      if (places.presented_at(trial) < 0) return false;
+      const auto presented = static_cast<std::size_t>(places.presented_at(trial));
+      if (presented >= classes_.size()) classes_.resize(presented + 1);
+      classes_[presented].trials.push_back(trial);
+    }
+    dealt_.clear();
+    for (const int wanted : order) {
+      if (wanted < 0 || static_cast<std::size_t>(wanted) >= classes_.size()) return false;
+      OfClass& own = classes_[static_cast<std::size_t>(wanted)];
+      if (own.dealt == own.trials.size()) return false;
+      dealt_.push_back(own.trials[own.dealt++]);
+    }
+    trials.swap(dealt_);
+    return true;
   }
-  trials = std::move(dealt);
-  return true;
-}
 
-void draw_orders(Places& places, const RedrawnClasses& redraw, int number, RandomStream& random) {
+ private:
+  struct OfClass {
+    std::size_t dealt = 0;
+    std::vector<std::size_t> trials;  ///< as they were shuffled
+  };
+  std::vector<OfClass> classes_;
+  std::vector<std::size_t> dealt_;
+};
+
+void draw_orders(Places& places, const RedrawnClasses& redraw, int number, RandomStream& random,
+                 DealByClass& by_class) {
   std::vector<std::size_t> trials;
   for (std::size_t b = 0; b < places.blocks().size(); ++b) {
     const std::vector<std::size_t>& moving = places.blocks()[b].moving;
@@ -166,7 +187,7 @@ void draw_orders(Places& places, const RedrawnClasses& redraw, int number, Rando
       if (order.size() != moving.size()) {
         throw std::invalid_argument("a redrawn block must keep its length");
       }
-      if (!dealt_by_class(places, order, trials, random)) trials = moving;
+      if (!by_class.deal(places, order, trials, random)) trials = moving;
     } else {
       shuffle(std::span(trials), random);
     }
@@ -204,8 +225,9 @@ std::optional<OrderEffects> order_effects(std::span<const std::vector<FeltBlock>
   std::vector<double> classes;
   std::vector<double> answers;
   RandomStream random(0, "order effects", index);
+  DealByClass by_class;
   for (int number = 0; number < draws; ++number) {
-    draw_orders(places, redraw, number, random);
+    draw_orders(places, redraw, number, random, by_class);
     const Observed drawn = places.observed();
     slopes.push_back(drawn.slope);
     classes.push_back(drawn.class_same);

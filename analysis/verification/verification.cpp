@@ -152,7 +152,8 @@ void require_own_number(const store::StudyStore& store, const design::StudyKey& 
 }
 
 std::string check_schedule(const store::StudyStore& store, const design::StudyKey& key) {
-  const std::map<int, design::Schedule> schedules = open_schedules(store, key);
+  const std::map<int, design::Schedule> schedules =
+      open_schedules(store, key, person_keys(store, key));
   require_days_between(store, key);
   require_dealt_groups(store, key);
   int presentations = 0;
@@ -174,7 +175,7 @@ std::string check_schedule(const store::StudyStore& store, const design::StudyKe
 std::string check_responses(const store::StudyStore& store, const design::StudyKey& key) {
   const int positions = store.commitment().positions;
   int responses = 0;
-  for (const store::TrialRow& row : open_trials(store, key)) {
+  for (const store::TrialRow& row : open_trials(store, person_keys(store, key))) {
     for (const std::optional<int>& position : {row.position, row.first_position}) {
       if (!position || (*position >= 0 && *position < positions)) continue;
       throw VerificationError(fmt::format("session {}, trial {}: answers position {} of {}",
@@ -229,10 +230,12 @@ void require_kept_keys(const store::StudyStore& store, const design::StudyKey& k
 std::string check_payloads(const store::StudyStore& store, const design::StudyKey& key) {
   require_kept_keys(store, key);
   int parts = 0;
-  for (const auto& [session, own] : participant_keys(store, key)) {
+  const SessionKeys keys = person_keys(store, key);
+  for (const auto& [session, own] : keys) {
+    if (!own.participant) continue;
     std::chrono::nanoseconds last{0};
     for (const store::Event& stored : store.events(session)) {
-      const store::Event event = whole_event(stored, own).event;
+      const store::Event event = whole_event(stored, *own.participant).event;
       if (event.at < last) {
         throw VerificationError(
             fmt::format("session {}, event {}: its time is before that of the event before",
@@ -242,7 +245,7 @@ std::string check_payloads(const store::StudyStore& store, const design::StudyKe
       ++parts;
     }
   }
-  require_sealed_ends(store, key);
+  require_sealed_ends(store, keys);
   parts += check_safety_record(store, key);
   return fmt::format("{} sealed parts of events, the ends of chains among them", parts);
 }
@@ -262,12 +265,12 @@ void check_trace(const store::StudyStore& store, const store::Event& event, cons
 }
 
 std::string check_traces(const store::StudyStore& store, const design::StudyKey& key) {
-  const std::map<int, SecretKey> keys = participant_keys(store, key);
+  const SessionKeys keys = person_keys(store, key);
   int traces = 0;
   store.for_each(store::EventKind::trace_stored, [&](const store::Event& event) {
     const auto own = keys.find(event.session);
-    if (own == keys.end()) return;
-    check_trace(store, event, own->second);
+    if (own == keys.end() || !own->second.participant) return;
+    check_trace(store, event, *own->second.participant);
     ++traces;
   });
   return fmt::format("{} traces opened and decoded", traces);

@@ -85,7 +85,8 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
   study.store().note(1, milliseconds(100), "moved-hand", "during trial 3");
   study.store().note(1, milliseconds(110), "", "a remark is no deviation");
 
-  const analysis::Collection collection = analysis::load_collection(study.store(), &study.key());
+  const analysis::Collection collection =
+      analysis::load_collection(study.store(), analysis::person_keys(study.store(), study.key()));
   REQUIRE(collection.sessions.size() == 1);
   const analysis::SessionRecord& record = collection.sessions[0];
   CHECK(record.row.participant == "P01");
@@ -187,7 +188,8 @@ TEST_CASE("Every participant is counted once, by the session that stands") {
   CHECK(blind.flow.exclusion_reasons == std::vector<std::string>{"(sealed)"});
   CHECK(blind.sessions[1].stop_reason == "(sealed)");
   CHECK(blind.sessions[4].replacement_reason == "(sealed)");
-  const analysis::Collection collection = analysis::load_collection(store, &study.key());
+  const analysis::Collection collection =
+      analysis::load_collection(store, analysis::person_keys(store, study.key()));
   const analysis::ParticipantFlow& flow = collection.flow;
   CHECK(flow.enrolled == 7);
   CHECK(flow.analysed == 3);  // complete, successor, again
@@ -216,7 +218,8 @@ TEST_CASE("A collection holds nothing about an erased participant except the wit
   study.add(session);
   study.store().exclude(1, milliseconds(10), "told a name");
   study.store().withdraw(1, milliseconds(20), "");
-  const analysis::Collection collection = analysis::load_collection(study.store(), &study.key());
+  const analysis::Collection collection =
+      analysis::load_collection(study.store(), analysis::person_keys(study.store(), study.key()));
   REQUIRE(collection.sessions.size() == 1);
   const analysis::SessionRecord& record = collection.sessions[0];
   CHECK(record.row.withdrawn);
@@ -242,7 +245,8 @@ TEST_CASE("Who withdraws and lets the data be used is counted like the others, a
   CHECK(blind.sessions[0].withdrawal_reason == "(sealed)");
   CHECK(analysis::quality_text(analysis::make_quality(study.store()))
             .find("1 participant withdrew and let the data be used") != std::string::npos);
-  const analysis::Collection opened = analysis::load_collection(study.store(), &study.key());
+  const analysis::Collection opened =
+      analysis::load_collection(study.store(), analysis::person_keys(study.store(), study.key()));
   CHECK(opened.sessions[0].withdrawal_reason == "moves away");
   study.store().withdraw(1, milliseconds(20), "changed her mind");
   CHECK(analysis::load_collection(study.store()).flow.erased == 1);

@@ -64,9 +64,10 @@ struct Laboratory {
 };
 
 std::vector<store::TrialRow> trials_in(const Laboratory& lab, const std::string& database) {
+  const auto store =
+      store::StudyStore::open(lab.in(database), store::StudyStore::Access::read_only);
   return analysis::open_trials(
-      store::StudyStore::open(lab.in(database), store::StudyStore::Access::read_only),
-      design::load_study_key(lab.in("config/study.key")));
+      store, analysis::person_keys(store, design::load_study_key(lab.in("config/study.key"))));
 }
 
 std::vector<int> positions_of(const std::vector<store::TrialRow>& trials) {

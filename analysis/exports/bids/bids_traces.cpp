@@ -22,8 +22,8 @@ namespace {
 
 /// Shared by the recordings that are written at the same time.
 struct SharedReading {
-  std::map<int, SecretKey> keys;  ///< by session
-  std::mutex store;               ///< held by the one thread that reads the store
+  SessionKeys keys;
+  std::mutex store;  ///< held by the one thread that reads the store
 };
 
 store::Trace opened_trace(const DatasetSource& study, const store::TrialRow& row,
@@ -33,7 +33,7 @@ store::Trace opened_trace(const DatasetSource& study, const store::TrialRow& row
     return study.store.sealed_trace(row.session, row.trial);
   }();
   if (box) {
-    auto trace = store::unsealed_trace(*box, shared.keys.at(row.session));
+    auto trace = store::unsealed_trace(*box, *shared.keys.at(row.session).participant);
     if (trace) return *std::move(trace);
   }
   throw VerificationError(fmt::format(
@@ -126,11 +126,11 @@ std::vector<ExportFile> trace_files(const DatasetSource& study,
                                     const std::vector<BidsSession>& sessions,
                                     const std::string& task) {
   const auto shared = std::make_shared<SharedReading>();
-  shared->keys = participant_keys(study.store, *study.key);
+  shared->keys = person_keys(study.store, *study.key);
   std::map<int, const BidsSession*> by_number;
   for (const BidsSession& session : sessions) by_number[session.row.session] = &session;
   std::vector<ExportFile> files;
-  for (const store::TrialRow& row : open_trials(study.store, *study.key)) {
+  for (const store::TrialRow& row : open_trials(study.store, shared->keys)) {
     const auto session = by_number.find(row.session);
     if (session == by_number.end() || !row.has_trace()) continue;
     const std::string name =

@@ -80,18 +80,18 @@ Vec2 farthest_contact_mm(const store::Trace& trace) {
 std::vector<std::size_t> visit_traces(const store::StudyStore& store, const design::StudyKey& key,
                                       std::span<const TrialOutcome* const> trials, int jobs,
                                       const TraceVisitor& visit, const TraceProgress& progress) {
-  const std::map<int, SecretKey> keys = participant_keys(store, key);
+  const SessionKeys keys = person_keys(store, key);
   std::vector<std::size_t> missing;
   std::vector<WaitingTrace> batch;
   for (std::size_t place = 0; place < trials.size(); ++place) {
     const store::TrialRow& row = trials[place]->row;
     std::optional<store::SealedTrace> box = store.sealed_trace(row.session, row.trial);
     const auto own = keys.find(row.session);
-    if (!box || own == keys.end()) {
+    if (!box || own == keys.end() || !own->second.participant) {
       missing.push_back(place);
       continue;
     }
-    batch.push_back({place, &row, &own->second, *std::move(box), {}});
+    batch.push_back({place, &row, &*own->second.participant, *std::move(box), {}});
     if (batch.size() < kBatch) continue;
     visit_batch(batch, jobs, visit);
     if (progress) progress(static_cast<int>(place), static_cast<int>(trials.size()));
