@@ -97,6 +97,7 @@ Outcomes without_identities(Outcomes outcomes) {
     answer.words.clear();
   }
   outcomes.incidents.clear();
+  outcomes.marks.clear();
   for (Look& look : outcomes.looked.looks) {
     rename(names, look.participant);
     look.reason.clear();

@@ -114,4 +114,35 @@ std::vector<Incident> load_incidents(const store::StudyStore& store,
   return incidents;
 }
 
+std::vector<InstrumentMark> load_marks(const store::StudyStore& store,
+                                       const std::map<int, store::PersonKeys>& keys) {
+  constexpr std::array kMarked = {EventKind::marked};
+  std::map<int, std::string> participants;
+  for (const store::SessionRow& row : store.sessions()) {
+    participants[row.session] = row.participant;
+  }
+  std::vector<InstrumentMark> marks;
+  store.for_each_of(kMarked, [&](const store::Event& event) {
+    const auto own = keys.find(event.session);
+    if (own == keys.end() || !own->second.participant) return;
+    const store::MarksBody body =
+        store::marks_from_json(whole_event(event, *own->second.participant).secret);
+    for (std::size_t i = 0; i < body.codes.size(); ++i) {
+      InstrumentMark mark{.participant = participants[event.session],
+                          .session = event.session,
+                          .trial = static_cast<int>(body.trials[i]),
+                          .code = static_cast<int>(body.codes[i]),
+                          .at = std::chrono::nanoseconds(body.at_ns[i])};
+      if (body.latency_ns[i] > 0) mark.latency = std::chrono::nanoseconds(body.latency_ns[i]);
+      if (body.lsl_zero_s) {
+        mark.lsl_s = *body.lsl_zero_s + std::chrono::duration<double>(mark.at).count();
+        mark.lsl_uncertainty_s = body.lsl_uncertainty_s;
+      }
+      marks.push_back(std::move(mark));
+    }
+  });
+  std::ranges::stable_sort(marks, {}, &InstrumentMark::session);
+  return marks;
+}
+
 }  // namespace touchtrial::analysis

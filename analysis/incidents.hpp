@@ -31,6 +31,19 @@ struct Incident {
   std::string text{};  ///< what was typed; empty: nothing, or it is sealed
 };
 
+/// One event code that other instruments were told of.
+struct InstrumentMark {
+  std::string participant;
+  int session = 0;
+  int trial = 0;                  ///< 0 outside trials
+  int code = 0;                   ///< store::Mark
+  std::chrono::nanoseconds at{};  ///< since the session's opening
+  /// To the end of the write on the serial line; empty: no line, or it took nothing.
+  std::optional<std::chrono::nanoseconds> latency{};
+  std::optional<double> lsl_s{};  ///< time of the event on the Lab Streaming Layer's clock
+  std::optional<double> lsl_uncertainty_s{};
+};
+
 /// \param event  stored or opened, of a session's or the file's chain
 /// \param row  of the session that it is about
 /// \return nothing if an event of this kind is no incident
@@ -43,5 +56,11 @@ struct Incident {
 /// \throws VerificationError, naming the event, if one does not open
 [[nodiscard]] std::vector<Incident> load_incidents(
     const store::StudyStore& store, const std::map<int, store::PersonKeys>& keys = {});
+
+/// The marks of all sessions whose key is given, by session and time: what instruments were told,
+/// and when, is sealed.
+/// \throws VerificationError, naming the event, if one does not open
+[[nodiscard]] std::vector<InstrumentMark> load_marks(const store::StudyStore& store,
+                                                     const std::map<int, store::PersonKeys>& keys);
 
 }  // namespace touchtrial::analysis

@@ -152,6 +152,7 @@ void take_what_was_said(const store::StudyStore& store, const design::Study& stu
   std::erase_if(outcomes.answers, is_unseen);
   outcomes.incidents = load_incidents(store, keys);
   std::erase_if(outcomes.incidents, is_unseen);
+  outcomes.marks = load_marks(store, keys);
   const std::map<int, Demographics> said = demographics_of(outcomes.answers, study);
   outcomes.demographics = in_bands(said_by_participants(outcomes, said));
   for (SessionRecord& record : outcomes.collection.sessions) {

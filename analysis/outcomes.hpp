@@ -67,6 +67,7 @@ struct Outcomes {
   std::vector<Characteristic> demographics{};  ///< of the participants who count
   std::vector<QuestionAnswer> answers{};       ///< of `sessions`
   std::vector<Incident> incidents{};           ///< of `sessions`, with texts and times
+  std::vector<InstrumentMark> marks{};         ///< of `sessions`
   /// The questions that were asked: the study's own, until somebody adds those of the program.
   Questionnaires asked{};
 };

@@ -21,6 +21,13 @@ constexpr NumberRange kMassKg{.low = 0.0, .high = 10.0};
 constexpr std::int64_t kMostDevices = 64;
 constexpr std::int64_t kFastestRateHz = 10'000;
 constexpr std::int64_t kSlowestRateHz = 500;
+/// Beside the drivers' names.
+constexpr std::string_view kInstruments = "instruments";
+constexpr std::int64_t kSlowestBaud = 9'600;
+constexpr std::int64_t kFastestBaud = 1'000'000;
+constexpr std::int64_t kWidestTrial = 4;
+constexpr std::array kMarkerFormats = {Named<MarkerFormat>{"byte", MarkerFormat::byte},
+                                       Named<MarkerFormat>{"text", MarkerFormat::text}};
 constexpr std::array kOrientations = {
     Named<PlaneOrientation>{"horizontal", PlaneOrientation::horizontal},
     Named<PlaneOrientation>{"vertical", PlaneOrientation::vertical}};
@@ -164,6 +171,43 @@ DeviceUse read_replay(const JsonValue& place, const fs::path& folder, DeviceSett
   return read_use(object);
 }
 
+MarkerLineSettings read_serial(const JsonValue& place) {
+  const JsonObject object = place.object({"port", "baud", "format", "width", "reset_ms"});
+  MarkerLineSettings serial;
+  if (const auto port = object.find("port")) serial.port = plain_text(*port);
+  if (const auto format = object.find("format")) serial.format = format->choice(kMarkerFormats);
+  if (const auto baud = object.find("baud")) {
+    serial.baud = static_cast<int>(baud->integer(kSlowestBaud, kFastestBaud));
+  }
+  if (const auto width = object.find("width")) {
+    serial.width = static_cast<int>(width->integer(0, kWidestTrial));
+  }
+  if (const auto reset = object.find("reset_ms")) {
+    serial.reset_ms = reset->number({.low = 0.0, .high = 1000.0});
+    if (serial.format == MarkerFormat::text && serial.reset_ms > 0.0) {
+      reset->refuse("sets back codes sent as bytes; leave it out, or set the format to byte");
+    }
+  }
+  return serial;
+}
+
+LabStreamingSettings read_lsl(const JsonValue& place, const fs::path& folder) {
+  const JsonObject object = place.object({"library", "name"});
+  LabStreamingSettings lsl;
+  lsl.library = "liblsl.so";
+  read_library(object, folder, lsl.library);
+  read_text(object, "name", lsl.name);
+  return lsl;
+}
+
+InstrumentSettings read_instruments(const JsonValue& place, const fs::path& folder) {
+  const JsonObject object = place.object({"serial", "lsl"});
+  InstrumentSettings instruments;
+  if (const auto serial = object.find("serial")) instruments.serial = read_serial(*serial);
+  if (const auto lsl = object.find("lsl")) instruments.lsl = read_lsl(*lsl, folder);
+  return instruments;
+}
+
 /// Drivers with settings of their own; the others have only limits.
 using ReadDriver = DeviceUse (*)(const JsonValue&, const fs::path&, DeviceSettings&);
 constexpr std::array kReaders = {
@@ -211,8 +255,12 @@ DeviceSettings parse_device_settings(std::string_view text, const fs::path& fold
                                      const std::string& source) {
   std::vector<std::string_view> names;
   for (const DeviceDriver& driver : device_drivers()) names.push_back(driver.name);
+  names.push_back(kInstruments);
   const JsonObject root = parse_strict_json(text, source).object(names);
   DeviceSettings settings;
+  if (const auto member = root.find(kInstruments)) {
+    settings.instruments = read_instruments(*member, folder);
+  }
   for (const DeviceDriver& driver : device_drivers()) {
     if (const auto member = root.find(driver.name)) {
       settings.uses[driver.name] = read_driver(driver.name, *member, folder, settings);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "core/vec.hpp"
+#include "device/instruments/lab_streaming.hpp"
+#include "device/instruments/marker_line.hpp"
 #include "device/placed_device.hpp"
 #include "device/safety/safety_chain.hpp"
 
@@ -61,11 +63,20 @@ struct DeviceUse {
   std::optional<Vec3> centre_mm;
 };
 
+/// What records beside a session and is told of its events.
+struct InstrumentSettings {
+  MarkerLineSettings serial;
+  LabStreamingSettings lsl;
+
+  [[nodiscard]] bool any() const { return !serial.port.empty() || !lsl.library.empty(); }
+};
+
 struct DeviceSettings {
   FalconSettings falcon;
   OpenHapticsSettings openhaptics;
   DhdSettings dhd;
   ReplaySettings replay;
+  InstrumentSettings instruments;
   std::map<std::string, DeviceUse> uses;  ///< by driver; those that the file mentions
 
   /// \return the defaults for a driver that the file does not mention

@@ -165,6 +165,12 @@ Meanings of_what_was_said() {
       {"code",
        {"Why: the reason of an interruption, the program's reason for a stop, the code of a "
         "deviation, what a session was resumed after"}},
+      {"mark", {"Event that other instruments were told of"}},
+      {"value", {"Code of the event that other instruments were told of"}},
+      {"latency_s", {"From the event to the end of the write on the serial line", "s"}},
+      {"lsl_time", {"Time of the event on the Lab Streaming Layer's clock", "s"}},
+      {"lsl_s", {"Time of the event on the Lab Streaming Layer's clock", "s"}},
+      {"lsl_uncertainty_s", {"Uncertainty of that clock's reading", "s"}},
       {"safety_fault", {"Fault that the safety chain found"}},
       {"device_fault", {"Fault that the device reported"}},
       {"text", {"What was typed"}},

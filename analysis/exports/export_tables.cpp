@@ -198,6 +198,7 @@ std::filesystem::path export_json(const store::StudyStore& store,
   document["trials"] = rows_json(trials_table(store, outcomes));
   if (outcomes) document["unscored_trials"] = rows_json(unscored_table(*outcomes));
   if (outcomes) document["answers"] = rows_json(answers_table(*outcomes));
+  if (outcomes && !outcomes->marks.empty()) document["marks"] = rows_json(marks_table(*outcomes));
   document["incidents"] = rows_json(incidents_table(store, outcomes));
   if (!consents.empty()) document["consents"] = rows_json(consents_table(store, consents));
   const FileMode mode = outcomes ? FileMode::owner_only : FileMode::everyone;

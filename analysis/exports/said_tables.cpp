@@ -1,5 +1,7 @@
 #include "analysis/exports/said_tables.hpp"
 
+#include "protocols/store/marks.hpp"
+
 #include <map>
 #include <set>
 
@@ -70,6 +72,21 @@ DataTable incidents_table(const store::StudyStore& store, const std::optional<Ou
   return table;
 }
 
+DataTable marks_table(const Outcomes& outcomes) {
+  DataTable table{{"participant", "session", "trial", "mark", "code", "at_s", "latency_s", "lsl_s",
+                   "lsl_uncertainty_s", "simulated"},
+                  {}};
+  for (const InstrumentMark& mark : outcomes.marks) {
+    table.rows.push_back({mark.participant, std::int64_t{mark.session},
+                          mark.trial > 0 ? DataCell(std::int64_t{mark.trial}) : DataCell(),
+                          std::string(name_of(static_cast<store::Mark>(mark.code))),
+                          std::int64_t{mark.code}, mark.at, cell_of(mark.latency),
+                          cell_of(mark.lsl_s), cell_of(mark.lsl_uncertainty_s),
+                          flag(outcomes.simulated)});
+  }
+  return table;
+}
+
 DataTable consents_table(const store::StudyStore& store,
                          const std::vector<store::PersonalRecord>& consents) {
   std::set<std::string> known;
@@ -95,6 +112,9 @@ std::vector<ExportFile> said_files(const store::StudyStore& store,
                                    const std::vector<store::PersonalRecord>& consents) {
   std::vector<ExportFile> files;
   if (outcomes) files.push_back(said_file("answers.csv", answers_table(*outcomes), true));
+  if (outcomes && !outcomes->marks.empty()) {
+    files.push_back(said_file("marks.csv", marks_table(*outcomes), false));
+  }
   files.push_back(
       said_file("incidents.csv", incidents_table(store, outcomes), outcomes.has_value()));
   if (!consents.empty()) {

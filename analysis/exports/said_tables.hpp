@@ -41,7 +41,12 @@ enum class Typed { shown, left_out };
 /// \param has_words  it has what people said: for its reader alone
 [[nodiscard]] ExportFile said_file(const std::string& name, const DataTable& table, bool has_words);
 
-/// answers.csv (with outcomes), incidents.csv, and consents.csv if there are any.
+/// What other instruments were told: each mark's time on the session's clock and, where the Lab
+/// Streaming Layer was used, on its clock.
+[[nodiscard]] DataTable marks_table(const Outcomes& outcomes);
+
+/// answers.csv (with outcomes), marks.csv where instruments were told of sessions, incidents.csv,
+/// and consents.csv if there are any.
 [[nodiscard]] std::vector<ExportFile> said_files(
     const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
     const std::vector<store::PersonalRecord>& consents);

@@ -10,6 +10,7 @@
 #include "app/run/run_study.hpp"
 #include "app/run/session_bounds.hpp"
 #include "app/run/session_device.hpp"
+#include "app/run/session_instruments.hpp"
 #include "app/sound/session_sound.hpp"
 #include "app/study_inputs.hpp"
 #include "app/texts/study_texts.hpp"
@@ -209,6 +210,7 @@ class PersonsSession {
         source_(study.pack, study.key.study.rendering),
         terminal_(standard_terminal()),
         device_(options, source_.plane(), terminal_),
+        instruments_(session_instruments(device_.instruments(), device::kServoRateHz)),
         practice_(study, source_.plane()) {
     require_blind(options, device_.info());
     require_consent(device_.info());
@@ -262,7 +264,8 @@ class PersonsSession {
                                                 .practice = practice_.textures_for(entered.draw),
                                                 .participant_name = options_.participant,
                                                 .device_name = device_.driver(),
-                                                .limits = device_.limits()});
+                                                .limits = device_.limits(),
+                                                .instruments = instruments_.get()});
     terminal_.end_line();
     return conclude_session(options_, entered.number, tally, database_.made());
   }
@@ -274,6 +277,7 @@ class PersonsSession {
   TerminalExperimenter terminal_;
   ConsoleExperimenter console_{terminal_};
   SessionDevice device_;
+  std::unique_ptr<session::Instruments> instruments_;
   ParticipantPractice practice_;
   std::optional<SessionSound> sound_;  ///< nothing with --no-sound: no sound card is opened
 };
@@ -282,6 +286,13 @@ class PersonsSession {
 std::unique_ptr<session::Explorer> explorer_for(const RunOptions& options) {
   if (options.real_time) return std::make_unique<session::RealTimeExplorer>();
   return std::make_unique<session::VirtualExplorer>();
+}
+
+/// In virtual time there is nothing to be told of.
+std::unique_ptr<session::Instruments> instruments_for(const RunOptions& options) {
+  if (!options.real_time) return nullptr;
+  return session_instruments(device::device_settings_for(options.settings).instruments,
+                             device::kServoRateHz);
 }
 
 std::unique_ptr<session::SessionClock> clock_for(const session::Explorer& explorer,
@@ -310,6 +321,7 @@ class SimulatedSession {
         study_(study),
         database_(options, study),
         source_(study.pack, study.key.study.rendering),
+        instruments_(instruments_for(options)),
         subject_(subject_for(*options.subject, study.key.study)),
         population_(simulation::population_of(
             {study.key, source_, subject_, options.seed,
@@ -352,7 +364,8 @@ class SimulatedSession {
          .experimenter = experimenter,
          .texts = texts,
          .participant_name = options_.participant,
-         .device_name = "simulated"});
+         .device_name = "simulated",
+         .instruments = instruments_.get()});
     return conclude_session(options_, entered.number, tally, database_.made());
   }
 
@@ -360,6 +373,7 @@ class SimulatedSession {
   const RunStudy& study_;
   RunDatabase database_;
   session::StimulusSource source_;
+  std::unique_ptr<session::Instruments> instruments_;
   simulation::SubjectModel subject_;
   std::unique_ptr<const simulation::Population> population_;
 };

@@ -35,6 +35,9 @@ class SessionDevice {
   [[nodiscard]] const device::DeviceInfo& info() const noexcept { return info_; }
   [[nodiscard]] const std::string& driver() const noexcept { return driver_; }
   [[nodiscard]] device::LabLimits limits() const { return settings_.use_of(driver_).limits; }
+  [[nodiscard]] const device::InstrumentSettings& instruments() const noexcept {
+    return settings_.instruments;
+  }
   /// SHA-256 of the certificate, hexadecimal; empty without a certificate.
   [[nodiscard]] const std::string& certificate() const noexcept { return certificate_; }
   /// What the session's record must say about the device.

@@ -120,6 +120,10 @@ class Participant {
   ///   call. Its `read` may return `stopped` when the participant is done exploring.
   [[nodiscard]] virtual device::HapticDevice& begin_exploring(const PlaneGeometry& plane) = 0;
 
+  /// In real time, called on the servo's thread just before its first tick: ticks count from
+  /// `began`.
+  virtual void plane_is_on(std::chrono::steady_clock::time_point /*began*/) noexcept {}
+
   /// Called repeatedly in real time while the plane is on, to look for what the participant does:
   /// `finish` when they are done, `comfort_stop` when they want no force.
   virtual void exploring(device::ServoControl& /*servo*/) {}

@@ -161,6 +161,7 @@ device::ServoReport RealTimeExplorer::Machinery::run(device::HapticDevice& devic
   device::ServoReport report;
   device::RunningServo running(thread, control, [&] {
     began = std::chrono::steady_clock::now();
+    participant.plane_is_on(began);
     report = device::run_servo(device, force, sink, servo, *clock, hooks);
   });
   while (running.runs(kBetweenLooks)) participant.exploring(control);

@@ -138,6 +138,7 @@ void Session::require(SessionInput input, Time at) const {
                            std::string(name_of(input)));
   }
   if (at < last_) throw std::logic_error("a session's time went back");
+  if (told_) told_(input, current() == nullptr ? 0 : current()->trial);
 }
 
 void Session::move_to(SessionPhase phase, Time at) noexcept {
@@ -336,6 +337,12 @@ void Session::question(Time at, const std::string& name, const std::string& answ
   require(Input::note, at);
   recorder_.questioned(at, name, answers);
   remarks_.questionnaires.insert(name);
+  move_to(phase_, at);
+}
+
+void Session::mark(Time at, const store::MarksBody& marks) {
+  require(Input::note, at);
+  recorder_.marked(at, marks);
   move_to(phase_, at);
 }
 

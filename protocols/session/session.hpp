@@ -3,6 +3,7 @@
 #pragma once
 
 #include "protocols/design/course.hpp"
+#include "protocols/store/marks.hpp"
 #include "protocols/store/payload.hpp"
 #include "protocols/store/session_recorder.hpp"
 
@@ -56,7 +57,7 @@ enum class SessionInput {
   take_break,
   pause,
   resume,
-  note,  ///< and the other remarks: deviations, ticks, questionnaires
+  note,  ///< and the other remarks: deviations, ticks, questionnaires, marks
   stop,
   close,
 };
@@ -100,6 +101,11 @@ class Session {
   /// Takes the session up after the program that ran it ended: interrupts the current presentation,
   /// if there is one, and ends a pause.
   void take_up(Time at, const store::ResumedBody& body);
+
+  /// Called for every input that is accepted, before it is recorded, with the current trial's
+  /// number (0: none is left).
+  using Told = std::function<void(SessionInput, int trial)>;
+  void tell(Told told) { told_ = std::move(told); }
 
   [[nodiscard]] const design::TrialOptions& options() const noexcept { return options_; }
   [[nodiscard]] SessionPhase phase() const noexcept { return phase_; }
@@ -174,6 +180,8 @@ class Session {
   void tick(Time at, const std::string& item);
   /// \param answers  JSON, sealed
   void question(Time at, const std::string& name, const std::string& answers);
+  /// Records what other instruments were told of.
+  void mark(Time at, const store::MarksBody& marks);
   /// Ends the session early. The current presentation remains without an answer.
   /// \param reason  in the experimenter's words, sealed; may be empty
   /// \param code  in clear, if the program stops it
@@ -211,6 +219,7 @@ class Session {
   design::TrialOptions options_;
   store::SessionRecorder recorder_;
   std::function<std::string(const std::vector<design::Presentation>&)> secret_of_block_;
+  Told told_;
   SessionPhase phase_ = SessionPhase::fresh;
   SessionPhase before_pause_ = SessionPhase::ready;
   Time last_{};

@@ -38,11 +38,18 @@ class SessionDesk::AttendedParticipant final : public Participant {
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
     return participant_.begin_exploring(plane);
   }
+  void plane_is_on(std::chrono::steady_clock::time_point began) noexcept override {
+    desk_.marks_.plane_is_on(began);
+    participant_.plane_is_on(began);
+  }
   void exploring(device::ServoControl& servo) override {
     participant_.exploring(servo);
     desk_.look(servo);
   }
-  void feel(const device::ServoSample& sample) noexcept override { participant_.feel(sample); }
+  void feel(const device::ServoSample& sample) noexcept override {
+    desk_.marks_.feel(sample);
+    participant_.feel(sample);
+  }
 
  private:
   SessionDesk& desk_;
@@ -50,9 +57,16 @@ class SessionDesk::AttendedParticipant final : public Participant {
 };
 
 SessionDesk::SessionDesk(Session& session, const SessionParts& parts)
-    : session_(session), parts_(parts) {
+    : session_(session),
+      parts_(parts),
+      marks_(parts.explorer.in_real_time() ? parts.instruments : nullptr, session, parts.rate_hz) {
   status_.participant = parts.participant_name;
   status_.device = parts.device_name;
+}
+
+void SessionDesk::record_marks() {
+  if (!session_.accepts(SessionInput::note)) return;
+  if (const auto marks = marks_.take(parts_.clock)) session_.mark(now(), *marks);
 }
 
 SessionDesk::Time SessionDesk::now() {

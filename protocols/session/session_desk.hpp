@@ -4,6 +4,7 @@
 /// Private to protocols/session.
 #pragma once
 
+#include "protocols/session/instruments.hpp"
 #include "protocols/session/session_runner.hpp"
 
 #include <chrono>
@@ -57,6 +58,11 @@ class SessionDesk {
   [[nodiscard]] bool goes_on() const noexcept;
   /// Why the session is to be left open; empty if it is not.
   [[nodiscard]] const std::optional<std::string>& left() const noexcept { return left_; }
+  /// Tells the other instruments that the session begins, or ends.
+  void tell_of_begin() { marks_.begin(); }
+  void tell_of_end() { marks_.end(); }
+  /// Records what they were told of since the last call.
+  void record_marks();
   /// Counts an interrupted exploration; the device needs consent before the next one.
   /// \return the reason, in clear
   [[nodiscard]] std::string note_interruption(const device::ServoReport& report);
@@ -90,6 +96,7 @@ class SessionDesk {
 
   Session& session_;
   const SessionParts& parts_;
+  SessionMarks marks_;
   std::optional<std::string> left_;
   bool is_aborted_ = false;  ///< after the last trial, when there is nothing left to stop
   SessionStatus status_;

@@ -96,6 +96,7 @@ bool Session::follow_trial(const store::Event& event) {
 bool Session::follow_remark(const store::Event& event) {
   switch (event.kind) {
     case store::EventKind::noted:
+    case store::EventKind::marked:
       return true;
     case store::EventKind::practised:
       remarks_.practice.push_back(store::practice_from_json(event.body));

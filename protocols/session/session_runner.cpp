@@ -177,6 +177,7 @@ void run_trials(SessionDesk& desk, SessionTally& tally) {
     if (session.break_due()) take_break(desk);
     if (!desk.goes_on() || session.phase() != SessionPhase::ready) continue;
     trials.run();
+    desk.record_marks();
     static_cast<void>(desk.obey());
     if (desk.interruptions() > most_interruptions && session.accepts(SessionInput::stop)) {
       session.stop(desk.now(), "", "too many faults");
@@ -211,8 +212,11 @@ const SessionTexts& no_texts() {
 SessionTally run_session(Session& session, const SessionParts& parts) {
   SessionDesk desk(session, parts);
   SessionTally tally;
+  desk.tell_of_begin();
   if (run_opening_stages(desk)) run_trials(desk, tally);
   if (session.phase() == SessionPhase::finished) ask_closing_questions(desk);
+  if (!desk.left()) desk.tell_of_end();
+  desk.record_marks();
   if (!desk.left()) session.close(desk.now());
   tally.duration = desk.now();
   tally.left = desk.left();

@@ -36,6 +36,8 @@ struct SessionTally {
 /// Nothing to read and nothing to ask.
 [[nodiscard]] const SessionTexts& no_texts();
 
+class Instruments;
+
 /// Everything that a session needs to run. All of it must outlive the run.
 struct SessionParts {
   const design::StudyCodes& key;
@@ -51,6 +53,7 @@ struct SessionParts {
   std::string participant_name{};              ///< for the experimenter
   std::string device_name{};                   ///< for the experimenter
   device::LabLimits limits{};                  ///< the lab's, beside those of the study
+  Instruments* instruments = nullptr;          ///< told of the session's events in real time
 };
 
 /// Runs a session that was opened or taken up again until it is closed or left: the opening stages

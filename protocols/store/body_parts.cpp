@@ -96,6 +96,8 @@ std::size_t sealed_padding(EventKind kind) {
       return 4 * kSealedUnit;
     case EventKind::trace_stored:
       return 16 * kSealedUnit;
+    case EventKind::marked:
+      return 32 * kSealedUnit;
     case EventKind::opened:
     case EventKind::interrupted:
     case EventKind::noted:

@@ -18,7 +18,7 @@ auto statement_of(const Event& event) {
   return statement;
 }
 
-constexpr std::array<std::pair<EventKind, std::string_view>, 31> kNames = {{
+constexpr std::array<std::pair<EventKind, std::string_view>, 32> kNames = {{
     {EventKind::study_committed, "study-committed"},
     {EventKind::session_opened, "session-opened"},
     {EventKind::session_closed, "session-closed"},
@@ -49,6 +49,7 @@ constexpr std::array<std::pair<EventKind, std::string_view>, 31> kNames = {{
     {EventKind::explored_again, "explored-again"},
     {EventKind::block_restarted, "block-restarted"},
     {EventKind::resumed, "resumed"},
+    {EventKind::marked, "marked"},
     {EventKind::closed, "closed"},
 }};
 static_assert(kNames.size() == static_cast<std::size_t>(EventKind::closed) + 1);

@@ -48,6 +48,7 @@ enum class EventKind {
   explored_again,   ///< the participant went back to the plane before answering
   block_restarted,  ///< a block's trials are void and are presented anew, in another order
   resumed,          ///< after a pause, or after the program ended
+  marked,           ///< what other instruments were told of, and when
   closed,
 };
 

@@ -104,6 +104,16 @@ void members(Io& io, In<Io, AnswerBody>& body) {
 }
 
 template <typename Io>
+void members(Io& io, In<Io, MarksBody>& body) {
+  io("codes", body.codes);
+  io("trials", body.trials);
+  io("at_ns", body.at_ns);
+  io("latency_ns", body.latency_ns);
+  io("lsl_zero_s", body.lsl_zero_s);
+  io("lsl_uncertainty_s", body.lsl_uncertainty_s);
+}
+
+template <typename Io>
 void members(Io& io, In<Io, PracticeBody>& body) {
   io("round", body.round, 1);
   io("presentation", body.presentation, 1);
@@ -321,6 +331,7 @@ template std::string to_json(const ReplacementBody&);
 template std::string to_json(const NoteBody&);
 template std::string to_json(const UnblindingBody&);
 template std::string to_json(const LossBody&);
+template std::string to_json(const MarksBody&);
 
 template StudyCommitment from_json(const std::string&);
 template SessionOpening from_json(const std::string&);
@@ -343,6 +354,16 @@ template UnblindingBody from_json(const std::string&);
 template LossBody from_json(const std::string&);
 template TrialBody from_json(const std::string&);
 template BlockBody from_json(const std::string&);
+
+MarksBody marks_from_json(const std::string& text) {
+  auto marks = from_json<MarksBody>(text);
+  const std::size_t count = marks.codes.size();
+  if (marks.trials.size() != count || marks.at_ns.size() != count ||
+      marks.latency_ns.size() != count) {
+    throw StoreError("/codes has another length than the lists beside it");
+  }
+  return marks;
+}
 
 TrialMeasures measures_from_json(const std::string& text) try {
   return from_json<TrialMeasures>(text);

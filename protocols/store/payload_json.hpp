@@ -3,6 +3,7 @@
 /// docs/data-dictionary.md, "Events".
 #pragma once
 
+#include "protocols/store/marks.hpp"
 #include "protocols/store/payload.hpp"
 
 #include <string>
@@ -42,6 +43,8 @@ inline constexpr auto* deviation_from_json = &from_json<DeviationBody>;
 inline constexpr auto* resumed_from_json = &from_json<ResumedBody>;
 inline constexpr auto* trace_body_from_json = &from_json<TraceBody>;
 inline constexpr auto* interruption_from_json = &from_json<InterruptionDetail>;
+/// \throws StoreError also if the lists differ in length
+[[nodiscard]] MarksBody marks_from_json(const std::string& text);
 inline constexpr auto* closed_from_json = &from_json<ClosedBody>;
 inline constexpr auto* chain_end_from_json = &from_json<ChainEnd>;
 inline constexpr auto* session_opened_from_json = &from_json<SessionOpenedBody>;

@@ -118,6 +118,10 @@ void SessionRecorder::questioned(std::chrono::nanoseconds at, const std::string&
   append(at, {EventKind::questioned, remark_to_json(name), answers});
 }
 
+void SessionRecorder::marked(std::chrono::nanoseconds at, const MarksBody& marks) {
+  append(at, {EventKind::marked, "{}", to_json(marks)});
+}
+
 void SessionRecorder::explored_again(std::chrono::nanoseconds at, int trial) {
   append(at, {EventKind::explored_again, trial_to_json(trial)});
 }

@@ -1,6 +1,7 @@
 /// \file Turns what happens in one session into chained, sealed events.
 #pragma once
 
+#include "protocols/store/marks.hpp"
 #include "protocols/store/payload.hpp"
 #include "protocols/store/sealing.hpp"
 
@@ -86,6 +87,8 @@ class SessionRecorder {
   /// \param name  of the questionnaire, in clear
   /// \param answers  JSON, sealed
   void questioned(std::chrono::nanoseconds at, const std::string& name, const std::string& answers);
+  /// Sealed altogether.
+  void marked(std::chrono::nanoseconds at, const MarksBody& marks);
   void explored_again(std::chrono::nanoseconds at, int trial);
   /// \param first_trial  number of the block's first trial from now on
   /// \param secret_schedule  JSON of the block's new presentations, sealed

@@ -133,8 +133,8 @@ TEST_CASE("the schema of device settings and the reader know the same keys") {
     for (const auto& [key, unused] : object.rule.at("properties").items()) in_schema.insert(key);
     CHECK(keys_of_reader(object.place) == in_schema);
   }
-  CHECK(objects.size() == 1 + 6 + 6 + 3);
-  CHECK(leaves.size() == 4 + 3 + 7 + 1 + 6 * 4 + 3 * 2);
+  CHECK(objects.size() == 1 + 6 + 6 + 3 + 3);
+  CHECK(leaves.size() == 4 + 3 + 7 + 1 + 6 * 4 + 3 * 2 + 5 + 2);
 }
 
 TEST_CASE("the reader keeps the bounds of the schema of device settings") {
@@ -144,7 +144,7 @@ TEST_CASE("the reader keeps the bounds of the schema of device settings") {
     bounds += holds_bound(leaf, "maximum", 1.0, true) ? 1 : 0;
     bounds += holds_bound(leaf, "exclusiveMinimum", -1.0, false) ? 1 : 0;
   }
-  CHECK(bounds == 2 * (1 + 1 + 1 + 5 + 6 * 4 + 3));
+  CHECK(bounds == 2 * (1 + 1 + 1 + 5 + 6 * 4 + 3 + 3));
 }
 
 TEST_CASE("the reader keeps the types of the schema of device settings") {
@@ -153,7 +153,10 @@ TEST_CASE("the reader keeps the types of the schema of device settings") {
     const json number = type == "integer" ? leaf.rule.at("default") : json(1);
     for (const json& value :
          {json("horizontal"), number, json(true), json::array({0, 1, 2}), json::object(), json()}) {
-      const bool fits = (type == "string" && value.is_string()) ||
+      const bool is_word =
+          !leaf.rule.contains("enum") ||
+          std::ranges::find(leaf.rule.at("enum"), value) != leaf.rule.at("enum").end();
+      const bool fits = (type == "string" && value.is_string() && is_word) ||
                         ((type == "number" || type == "integer") && value.is_number()) ||
                         (type == "boolean" && value.is_boolean()) ||
                         (type == "array" && value.is_array());
@@ -191,9 +194,9 @@ TEST_CASE("the reader keeps the words, lengths and defaults of the schema of dev
     }
     if (leaf.rule.contains("default")) CHECK(refusal(leaf.place, leaf.rule.at("default")).empty());
   }
-  CHECK(words == 3);
+  CHECK(words == 3 + 1);
   CHECK(lists == 6);
-  CHECK(texts == 6);
+  CHECK(texts == 6 + 3);
 }
 
 TEST_CASE("the defaults of the schema of device settings are the reader's") {
@@ -204,6 +207,12 @@ TEST_CASE("the defaults of the schema of device settings are the reader's") {
   const device::DeviceSettings written =
       device::parse_device_settings(file.dump(), "/lab", "devices.json");
   const device::DeviceSettings bare;
+  CHECK(written.instruments.serial.port == bare.instruments.serial.port);
+  CHECK(written.instruments.serial.baud == bare.instruments.serial.baud);
+  CHECK(written.instruments.serial.format == bare.instruments.serial.format);
+  CHECK(written.instruments.serial.width == bare.instruments.serial.width);
+  CHECK(written.instruments.serial.reset_ms == bare.instruments.serial.reset_ms);
+  CHECK(written.instruments.lsl.name == bare.instruments.lsl.name);
   CHECK(written.falcon.serial == bare.falcon.serial);
   CHECK(written.falcon.gravity_bias_n == bare.falcon.gravity_bias_n);
   CHECK(written.falcon.led_order == bare.falcon.led_order);

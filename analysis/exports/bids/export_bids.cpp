@@ -7,6 +7,7 @@
 #include "analysis/exports/trial_tables.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "protocols/store/marks.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <algorithm>
@@ -188,6 +189,22 @@ void add_trials(Files& files, const DatasetSource& study, const DatasetOptions& 
   }
 }
 
+/// A mark as a row of events.tsv.
+std::vector<DataCell> mark_cells(const InstrumentMark& mark,
+                                 const std::vector<std::string>& columns) {
+  std::vector<DataCell> row(columns.size());
+  const auto set = [&](std::string_view column, DataCell cell) {
+    row[static_cast<std::size_t>(std::ranges::find(columns, column) - columns.begin())] =
+        std::move(cell);
+  };
+  set("onset", mark.at);
+  set("incident", std::string(name_of(static_cast<store::Mark>(mark.code))));
+  if (mark.trial > 0) set("trial", std::int64_t{mark.trial});
+  set("value", std::int64_t{mark.code});
+  if (mark.lsl_s) set("lsl_time", *mark.lsl_s);
+  return row;
+}
+
 /// Answers to questions below phenotype/, and what happened in a session besides its trials.
 void add_what_was_said(Files& files, const DatasetSource& study, const DatasetOptions& options,
                        const std::vector<BidsSession>& sessions, const std::string& task) {
@@ -201,6 +218,8 @@ void add_what_was_said(Files& files, const DatasetSource& study, const DatasetOp
   }
   std::vector<std::string> columns{"onset", "duration",     "incident",    "trial",
                                    "code",  "safety_fault", "device_fault"};
+  const bool has_marks = !study.outcomes->marks.empty();
+  if (has_marks) columns.insert(columns.end(), {"value", "lsl_time"});
   if (options.typed == Typed::shown) columns.emplace_back("text");
   bool is_described = false;
   for (const BidsSession& session : sessions) {
@@ -210,8 +229,15 @@ void add_what_was_said(Files& files, const DatasetSource& study, const DatasetOp
       table.rows.push_back({*one.at, std::monostate{}, std::string(store::name_of(one.kind)),
                             one.trial ? DataCell(std::int64_t{*one.trial}) : DataCell(), one.code,
                             one.safety_fault, one.device_fault});
+      if (has_marks) table.rows.back().resize(table.rows.back().size() + 2);
       if (options.typed == Typed::shown) table.rows.back().emplace_back(one.text);
     }
+    for (const InstrumentMark& mark : study.outcomes->marks) {
+      if (mark.session == session.row.session) table.rows.push_back(mark_cells(mark, columns));
+    }
+    std::ranges::stable_sort(table.rows, {}, [](const std::vector<DataCell>& row) {
+      return std::get<std::chrono::nanoseconds>(row.front());
+    });
     if (table.rows.empty()) continue;
     files.push_back(
         text_file(session.folder() + "/" + session.stem() + "_task-" + task + "_events.tsv",

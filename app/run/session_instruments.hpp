@@ -1,0 +1,18 @@
+/// \file The instruments of a lab that record beside a session: a serial line of event codes and
+/// the Lab Streaming Layer.
+#pragma once
+
+#include "device/device_settings.hpp"
+#include "protocols/session/instruments.hpp"
+
+#include <memory>
+
+namespace touchtrial::app {
+
+/// \param rate_hz  of the servo
+/// \return null if the settings name no instrument
+/// \throws DeviceError with the remedy if one cannot be used
+[[nodiscard]] std::unique_ptr<session::Instruments> session_instruments(
+    const device::InstrumentSettings& settings, double rate_hz);
+
+}  // namespace touchtrial::app

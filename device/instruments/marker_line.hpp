@@ -1,0 +1,87 @@
+/// \file Event codes on a serial line, for instruments that record beside a session: EEG
+/// amplifiers, trigger boxes, oscilloscopes.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace touchtrial::device {
+
+/// How a marker goes over the line.
+enum class MarkerFormat {
+  byte,  ///< the code as one byte, then the trial's number, most significant byte first
+  text,  ///< for instance "E10 T007" and a line feed
+};
+
+struct MarkerLineSettings {
+  std::filesystem::path port;  ///< for instance /dev/ttyUSB0; empty: no line
+  int baud = 115'200;
+  MarkerFormat format = MarkerFormat::byte;
+  /// 0 to 4. byte: how many bytes of the trial's number follow the code. text: the digits that the
+  /// number has at least.
+  int width = 0;
+  /// After this time the byte 0 follows, which sets trigger lines back; 0: never. byte only.
+  double reset_ms = 0.0;
+};
+
+/// \param code  1 to 255
+/// \param trial  0 outside trials; as many of its low bytes as fit are sent
+[[nodiscard]] std::string marker_bytes(const MarkerLineSettings& settings, int code, int trial);
+
+/// What became of one marker.
+struct SentMarker {
+  /// From the event to the return of the write; nothing: the line did not take it.
+  std::optional<std::chrono::nanoseconds> latency;
+};
+
+/// A serial line (raw, 8 data bits, no parity, one stop bit, no flow control) and the thread that
+/// writes to it, so that nobody waits for the line. Any thread may call every function.
+class MarkerLine {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  /// \throws DeviceError with the remedy if the port cannot be opened, is no serial line, or does
+  ///   not have this rate
+  explicit MarkerLine(const MarkerLineSettings& settings);
+  /// Writes what was sent before.
+  ~MarkerLine();
+  MarkerLine(const MarkerLine&) = delete;
+  MarkerLine& operator=(const MarkerLine&) = delete;
+
+  /// \param at  the time of the event
+  void send(int code, int trial, TimePoint at) noexcept;
+
+  /// Waits until everything that was sent before is written, or the line has refused it.
+  /// \return what became of the markers sent since the last call, in their order
+  [[nodiscard]] std::vector<SentMarker> take();
+
+ private:
+  struct Waiting {
+    std::string bytes;
+    TimePoint at;
+  };
+
+  void run() noexcept;
+  [[nodiscard]] bool write(const std::string& bytes) noexcept;
+
+  MarkerLineSettings settings_;
+  int descriptor_ = -1;
+  std::mutex mutex_;
+  std::condition_variable woken_;  ///< for the line's thread
+  std::condition_variable done_;   ///< for `take`
+  std::deque<Waiting> waiting_;
+  bool is_writing_ = false;
+  bool is_closing_ = false;
+  std::vector<SentMarker> sent_;
+  std::thread thread_;
+};
+
+}  // namespace touchtrial::device

@@ -1,0 +1,109 @@
+#include "protocols/session/instruments.hpp"
+
+#include "protocols/session/exploration.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace touchtrial::session {
+namespace {
+
+using store::Mark;
+using Clock = std::chrono::steady_clock;
+
+/// The mark of an input that is told as it comes; that of an exploration's beginning and of the
+/// contact come from the servo's samples.
+std::optional<Mark> mark_of(SessionInput input) {
+  switch (input) {
+    case SessionInput::end_exploring:
+      return Mark::plane_off;
+    case SessionInput::time_out:
+      return Mark::time_up;
+    case SessionInput::interrupt:
+      return Mark::interrupted;
+    case SessionInput::confirm:
+      return Mark::answered;
+    case SessionInput::practise:
+      return Mark::practised;
+    case SessionInput::take_break:
+      return Mark::break_taken;
+    case SessionInput::pause:
+      return Mark::paused;
+    case SessionInput::resume:
+      return Mark::resumed;
+    case SessionInput::stop:
+      return Mark::stopped;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
+SessionMarks::SessionMarks(Instruments* instruments, Session& session, double rate_hz)
+    : instruments_(instruments), session_(session), rate_hz_(rate_hz) {
+  if (instruments_ == nullptr) return;
+  session_.tell([this](SessionInput what, int trial) { input(what, trial); });
+}
+
+void SessionMarks::input(SessionInput input, int trial) {
+  if (input == SessionInput::present || input == SessionInput::explore_again) trial_ = trial;
+  const std::optional<Mark> known = mark_of(input);
+  if (!known) return;
+  const bool is_in_trial = *known == Mark::plane_off || *known == Mark::time_up ||
+                           *known == Mark::interrupted || *known == Mark::answered;
+  mark(*known, is_in_trial ? trial : 0, Clock::now());
+  if (*known == Mark::answered || *known == Mark::interrupted) trial_ = 0;
+}
+
+void SessionMarks::plane_is_on(TimePoint began) noexcept {
+  if (instruments_ == nullptr) return;
+  began_ = began;
+  has_landed_ = false;
+  mark(Mark::plane_on, trial_, began);
+}
+
+void SessionMarks::feel(const device::ServoSample& sample) noexcept {
+  if (instruments_ == nullptr) return;
+  const TimePoint at = began_ + time_of_tick(sample.tick, rate_hz_);
+  if (!std::exchange(has_landed_, has_landed_ || sample.position_mm.z < kLandingHeightMm) &&
+      has_landed_) {
+    mark(Mark::contact, trial_, at);
+  }
+  instruments_->feel(sample, at);
+}
+
+void SessionMarks::mark(Mark mark, int trial, TimePoint at) noexcept {
+  if (instruments_ == nullptr) return;
+  instruments_->mark(mark, trial, at);
+  told_.push_back({mark, trial, at});
+}
+
+std::optional<store::MarksBody> SessionMarks::take(SessionClock& clock) {
+  if (instruments_ == nullptr || told_.empty()) return std::nullopt;
+  const TimePoint now = Clock::now();
+  const TimePoint zero = now - clock.of(now);
+  const Instruments::Report report = instruments_->take();
+  if (report.latencies.size() != told_.size()) {
+    throw std::logic_error("instruments: another number of marks was taken than was made");
+  }
+  store::MarksBody body;
+  for (std::size_t i = 0; i < told_.size(); ++i) {
+    const Told& one = told_[i];
+    body.codes.push_back(static_cast<int>(one.mark));
+    body.trials.push_back(one.trial);
+    // A session that is taken up again begins before its clock is known to instruments.
+    body.at_ns.push_back(std::max<std::int64_t>(0, (one.at - zero).count()));
+    body.latency_ns.push_back(report.latencies[i].value_or(std::chrono::nanoseconds(0)).count());
+  }
+  if (report.clock_zero_s) {
+    body.lsl_zero_s =
+        *report.clock_zero_s + std::chrono::duration<double>(zero.time_since_epoch()).count();
+    body.lsl_uncertainty_s = report.clock_uncertainty_s;
+  }
+  told_.clear();
+  return body;
+}
+
+}  // namespace touchtrial::session

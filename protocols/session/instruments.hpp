@@ -1,0 +1,85 @@
+/// \file Other instruments that record beside a session (EEG, video, physiology): what they are told
+/// of its events, and how that is recorded.
+#pragma once
+
+#include "device/servo/servo.hpp"
+#include "protocols/session/session.hpp"
+#include "protocols/session/session_clock.hpp"
+#include "protocols/store/marks.hpp"
+
+#include <chrono>
+#include <optional>
+#include <vector>
+
+namespace touchtrial::session {
+
+/// The instruments themselves. Any thread may call all functions; none but `take` waits.
+class Instruments {
+ public:
+  using Mark = store::Mark;
+  using TimePoint = std::chrono::steady_clock::time_point;
+  virtual ~Instruments() = default;
+
+  /// \param trial  0 outside trials
+  virtual void mark(Mark mark, int trial, TimePoint at) noexcept = 0;
+  /// One tick of the servo, plane frame, in the order of time.
+  virtual void feel(const device::ServoSample& sample, TimePoint at) noexcept = 0;
+
+  struct Report {
+    /// One entry for each mark since the last call, in their order: from the event to the end of
+    /// its write; empty: there is no line, or it took nothing.
+    std::vector<std::optional<std::chrono::nanoseconds>> latencies;
+    /// Time of another clock at the zero of the monotonic clock, s, and its uncertainty.
+    std::optional<double> clock_zero_s;
+    double clock_uncertainty_s = 0.0;
+  };
+  /// Waits until all marks are written.
+  [[nodiscard]] virtual Report take() = 0;
+};
+
+/// Tells instruments of a session's course, and collects what the session records of that. The
+/// session's thread makes all calls except `plane_is_on` and `feel`.
+class SessionMarks {
+ public:
+  using Mark = store::Mark;
+  using TimePoint = Instruments::TimePoint;
+
+  /// \param instruments  null: there are none, and nothing happens; else must outlive this
+  /// \param session  told by this object from now on; must outlive it
+  /// \param rate_hz  of the servo
+  SessionMarks(Instruments* instruments, Session& session, double rate_hz);
+  ~SessionMarks() { session_.tell({}); }
+  SessionMarks(const SessionMarks&) = delete;
+  SessionMarks& operator=(const SessionMarks&) = delete;
+
+  void begin() { mark(Mark::session_begins, 0, std::chrono::steady_clock::now()); }
+  void end() { mark(Mark::session_ends, 0, std::chrono::steady_clock::now()); }
+  /// Called on the servo's thread, before its first tick.
+  void plane_is_on(TimePoint began) noexcept;
+  /// Called on the thread that takes the servo's samples.
+  void feel(const device::ServoSample& sample) noexcept;
+
+  /// \param clock  of the session, in real time
+  /// \return the marks since the last call; nothing if there are none
+  [[nodiscard]] std::optional<store::MarksBody> take(SessionClock& clock);
+
+ private:
+  void input(SessionInput input, int trial);
+  void mark(Mark mark, int trial, TimePoint at) noexcept;
+
+  struct Told {
+    Mark mark{};
+    int trial = 0;
+    TimePoint at;
+  };
+
+  Instruments* instruments_;
+  Session& session_;
+  double rate_hz_;
+  int trial_ = 0;  ///< set between explorations
+  TimePoint began_;
+  bool has_landed_ = false;
+  std::vector<Told> told_;  ///< of the threads one after the other, never at once
+};
+
+}  // namespace touchtrial::session
