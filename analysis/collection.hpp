@@ -127,8 +127,10 @@ struct Prescription {
   bool masking_wanted = true;
   double masking_dbfs = 0.0;
   design::ValidityRule validity{};
-  int visits = 1;         ///< of each participant
-  int visits_needed = 1;  ///< design::Study::visits_needed
+  int visits = 1;                     ///< of each participant
+  int visits_needed = 1;              ///< design::Study::visits_needed
+  double least_days = 0.0;            ///< between visits
+  std::optional<double> most_days{};  ///< likewise
   std::vector<std::string> groups{};
   std::string draft{};  ///< design::draft_notice of the participants' language
 };

@@ -66,6 +66,10 @@ Json session_json(const SessionRecord& session) {
   object["replaced_by"] = session.row.replaced_by;
   object["device"] = session.row.device;
   object["device_serial"] = session.device_serial;
+  if (session.station && session.station->screen) {
+    object["screen"] = {{"mm_per_px", figure_json(session.station->screen->mm_per_px)},
+                        {"source", session.station->screen->source}};
+  }
   object["practice"] = practice_json(session.practice);
   object["answers"] = answers_json(session.answers);
   object["exclusion_reason"] = exclusion_words(session);

@@ -57,6 +57,10 @@ Prescription prescription_of(const json& configuration) {
   if (configuration.contains("visits")) {
     prescription.visits = configuration["visits"].at("count").get<int>();
     prescription.visits_needed = configuration["visits"].at("needed").get<int>();
+    prescription.least_days = configuration["visits"].value("least_days", 0.0);
+    if (const json most = configuration["visits"].value("most_days", json()); most.is_number()) {
+      prescription.most_days = most.get<double>();
+    }
   }
   if (configuration.contains("groups")) {
     configuration["groups"].at("labels").get_to(prescription.groups);

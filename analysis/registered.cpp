@@ -189,11 +189,14 @@ std::string words_on_number(const StudyCourse& course) {
       counted(course.completed, "participant"), course.completed - course.planned);
 }
 
-/// "p is above 0.05", or with the digits that tell them apart.
-std::string compared_p(const PrimaryResult& result, const std::string& how) {
-  const bool look_alike = fmt::format("{:.3f}", *result.p) == fmt::format("{:.3f}", result.level);
-  return look_alike ? fmt::format("p = {:.8f} is {} {:.5g}.", *result.p, how, result.level)
-                    : fmt::format("p is {} {:.3g}.", how, result.level);
+/// "p > 0.05.", or with the digits that tell them apart.
+std::string compared_p(const PrimaryResult& result) {
+  const double p = *result.p;
+  if (p == result.level) return fmt::format("p = {:.5g}, the level itself.", p);
+  const char sign = p < result.level ? '<' : '>';
+  const bool look_alike = fmt::format("{:.3f}", p) == fmt::format("{:.3f}", result.level);
+  return look_alike ? fmt::format("p = {:.8f} {} {:.5g}.", p, sign, result.level)
+                    : fmt::format("p {} {:.3g}.", sign, result.level);
 }
 
 /// Why the registered test cannot decide yet; empty if it can.
@@ -251,18 +254,17 @@ void judge(PrimaryResult& result, const StudyCourse& course) {
   const std::string hindered = obstacle(result, course);
   if (!hindered.empty()) return decide(Verdict::undecided, hindered + worth);
   if (*result.p > result.level) {
-    const std::string above = compared_p(result, "above");
     const std::optional<Interval> interval = telling_interval(result);
     const std::optional<double> least =
         result.margin ? std::optional(-*result.margin) : result.smallest_effect;
     const bool open = least && (!interval || interval->high >= *least);
-    return decide(open ? Verdict::undecided : Verdict::not_supported, above + worth);
+    return decide(open ? Verdict::undecided : Verdict::not_supported, compared_p(result) + worth);
   }
   if (is_against(result)) {
     return decide(Verdict::not_supported,
                   "The test rejects, but in the direction opposite to the hypothesis." + worth);
   }
-  decide(Verdict::supported, compared_p(result, "not above") + words_on_sides(result) + worth +
+  decide(Verdict::supported, compared_p(result) + words_on_sides(result) + worth +
                                  words_on_early_end(result, course) + words_on_number(course));
 }
 

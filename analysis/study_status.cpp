@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <map>
+#include <ratio>
 #include <set>
 #include <utility>
 
@@ -37,7 +38,9 @@ PersonStatus of_session(const SessionRecord& record, const store::StudyCommitmen
   one.participant = row.participant;
   one.session = row.session;
   one.enrolment = row.enrolment;
+  one.visit = row.visit;
   one.station = row.station;
+  one.group = record.group;
   one.state = standing_of(row);
   one.counts = session_counts(row, commitment);
   one.may_go_on = row.may_go_on();
@@ -83,10 +86,12 @@ void add_people_to_come(const StatusSources& sources, const LastConsents& consen
   for (const store::SessionRow& row : rows) {
     if (row.replaced_by.empty()) present.insert(row.participant);
   }
-  const auto add = [&](const std::string& id, const std::string& in_place_of, int enrolment) {
+  const auto add = [&](const std::string& id, const std::string& in_place_of, int enrolment,
+                       int visit) {
     if (!present.insert(id).second) return;
     PersonStatus one;
     one.participant = id;
+    one.visit = visit;
     one.enrolment = enrolment;
     one.state = "to come";
     one.in_place_of = in_place_of;
@@ -95,27 +100,36 @@ void add_people_to_come(const StatusSources& sources, const LastConsents& consen
     people.push_back(std::move(one));
   };
   for (const store::SessionRow& row : rows) {
-    if (!row.replaced_by.empty()) {
-      add(row.replaced_by, row.erased ? "" : row.participant, row.enrolment);
-    }
+    if (row.replaced_by.empty()) continue;
+    // Who takes a place begins with the first visit.
+    const bool is_again = row.replaced_by == row.participant;
+    add(row.replaced_by, row.erased ? "" : row.participant, row.enrolment,
+        is_again ? row.visit : 1);
   }
   for (const store::SessionRow& row : rows) present.insert(row.participant);
-  for (const store::PersonalRecord& one : sources.consents) add(one.participant, "", 0);
+  for (const store::PersonalRecord& one : sources.consents) add(one.participant, "", 0, 1);
 }
 
 std::optional<OrderBlocks> order_blocks(const std::vector<store::SessionRow>& rows,
                                         const store::StudyCommitment& commitment,
-                                        const StatusSources& sources, int orders) {
+                                        const StatusSources& sources,
+                                        const Prescription& prescription) {
+  const int orders = prescription.method_orders;
   const bool is_only = commitment.station && commitment.station->name == design::kOnlyStation;
   if (orders < 2 || (!is_only && !sources.station)) return std::nullopt;
-  std::map<int, int> filled;
+  // Orders are dealt within each group, and which number is in which group is sealed.
+  if (!prescription.groups.empty()) return std::nullopt;
+  std::map<int, std::set<int>> filled;  // numbers with a session that counts, by block
   for (const store::SessionRow& row : rows) {
     const std::optional<int> place =
         is_only ? std::optional(row.enrolment - 1) : sources.station->place_of(row.enrolment);
-    if (place) filled[*place / orders] += session_counts(row, commitment) ? 1 : 0;
+    if (!place) continue;
+    std::set<int>& numbers = filled[*place / orders];
+    if (session_counts(row, commitment)) numbers.insert(row.enrolment);
   }
   OrderBlocks blocks{.orders = orders};
-  for (const auto& [block, n] : filled) {
+  for (const auto& [block, numbers] : filled) {
+    const int n = static_cast<int>(numbers.size());
     if (n == orders) {
       ++blocks.complete;
     } else {
@@ -152,6 +166,11 @@ void add_about_people(const StudyStatus& status, const StatusSources& sources,
                return one.state == "to come" && one.in_place_of == one.participant;
              }),
       "the session was restarted, and is to come");
+  for (const VisitToCome& one : status.visits_to_come) {
+    left.push_back(fmt::format("{}: visit {} of {} is to come{}{}", one.participant, one.visit,
+                               status.visits, one.from ? ", from " + utc_words(*one.from) : "",
+                               one.until ? " to " + utc_words(*one.until) : ""));
+  }
   if (status.simulated) return;
   if (sources.knows_consents) {
     say(ids_of(
@@ -192,6 +211,61 @@ void add_about_study(const StudyStatus& status, std::vector<std::string>& left) 
 
 }  // namespace
 
+std::vector<VisitToCome> visits_to_come(const store::StudyStore& store) {
+  const Prescription prescription = prescription_from_json(store.commitment().configuration);
+  if (prescription.visits < 2 || store.state().closed) return {};
+  std::map<int, std::chrono::nanoseconds> opened;
+  for (const store::Event& event : store.events(0)) {
+    if (event.kind == store::EventKind::session_opened) {
+      opened[store::session_opened_from_json(event.body).session] = event.at;
+    }
+  }
+  using Days = std::chrono::duration<double, std::ratio<86'400>>;
+  const auto after = [](std::chrono::nanoseconds at, double days) {
+    return at + std::chrono::ceil<std::chrono::nanoseconds>(Days(days));
+  };
+  std::map<std::string, const store::SessionRow*> last;
+  const std::vector<store::SessionRow> rows = store.sessions();
+  for (const store::SessionRow& row : rows) {
+    if (!row.replaced_by.empty()) continue;
+    const store::SessionRow*& known = last[row.participant];
+    if (known == nullptr || known->visit < row.visit) known = &row;
+  }
+  std::vector<VisitToCome> visits;
+  for (const auto& [participant, row] : last) {
+    const bool may_come = row->state == store::SessionState::completed && !row->excluded &&
+                          !row->withdrawn && row->visit < prescription.visits;
+    if (!may_come) continue;
+    VisitToCome& next = visits.emplace_back();
+    next.participant = participant;
+    next.visit = row->visit + 1;
+    if (row->simulated) continue;
+    next.from = after(opened[row->session], prescription.least_days);
+    if (prescription.most_days) {
+      next.until = after(opened[row->session], *prescription.most_days);
+    }
+  }
+  std::ranges::stable_sort(visits, {}, &VisitToCome::from);
+  return visits;
+}
+
+StudyStatus status_before(const std::string& study, const std::string& protocol,
+                          const StatusSources& sources) {
+  StudyStatus status;
+  status.study = study;
+  status.protocol = protocol;
+  status.planned = sources.planned;
+  LastConsents consents;
+  for (const store::PersonalRecord& one : sources.consents) {
+    consents[one.participant] = one.consent_version;
+  }
+  add_people_to_come(sources, consents, {}, status.people);
+  status.left.emplace_back("there is no database yet: the first session makes it");
+  add_about_people(status, sources, status.left);
+  add_about_study(status, status.left);
+  return status;
+}
+
 StudyStatus status_of(const store::StudyStore& store, const StatusSources& sources) {
   const store::StudyCommitment& commitment = store.commitment();
   const Collection collection = load_collection(store);
@@ -207,16 +281,23 @@ StudyStatus status_of(const store::StudyStore& store, const StatusSources& sourc
   status.simulated = commitment.simulated;
   status.pilot = commitment.pilot;
   status.stations = store.stations();
-  status.planned = sources.planned;
+  status.planned = commitment.pilot ? 0 : sources.planned;
+  status.visits = collection.prescription.visits;
   for (const SessionRecord& record : collection.sessions) {
     status.people.push_back(of_session(record, commitment, consents));
   }
   add_times_and_answers(store, status.people);
-  for (const PersonStatus& one : status.people) status.complete += one.counts ? 1 : 0;
+  const std::set<int> counted = counted_sessions(rows, commitment);
+  std::set<std::pair<std::string, int>> complete;
+  for (const store::SessionRow& row : rows) {
+    if (counted.contains(row.session)) complete.emplace(row.participant, row.enrolment);
+  }
+  status.complete = static_cast<int>(complete.size());
   if (!status.state.closed && status.stations == 0) {
     add_people_to_come(sources, consents, rows, status.people);
   }
-  status.orders = order_blocks(rows, commitment, sources, collection.prescription.method_orders);
+  status.orders = order_blocks(rows, commitment, sources, collection.prescription);
+  status.visits_to_come = visits_to_come(store);
   add_about_people(status, sources, status.left);
   add_about_study(status, status.left);
   return status;
@@ -260,8 +341,18 @@ std::string people_text(const StudyStatus& status) {
   if (status.people.empty()) return "no participant so far\n";
   std::vector<std::string> header{"participant",  "session", "number",      "state", "trials",
                                   "opened (UTC)", "consent", "certificate", "device"};
-  std::set<std::size_t> left{0, 3, 5, 6, 7, 8};
+  const bool has_visits = status.visits > 1;
+  const bool has_groups = std::ranges::any_of(
+      status.people, [](const PersonStatus& one) { return !one.group.empty(); });
+  constexpr std::ptrdiff_t kVisit = 3;
+  if (has_visits) header.insert(header.begin() + kVisit, "visit");
+  if (has_groups) header.emplace_back("group");
   if (status.stations > 0) header.emplace_back("station");
+  const std::set<std::string> numbers{"session", "number", "trials", "station"};
+  std::set<std::size_t> left;
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    if (!numbers.contains(header[i])) left.insert(i);
+  }
   TextTable table(header, left);
   constexpr std::size_t kDigits = 12;
   for (const PersonStatus& one : status.people) {
@@ -274,6 +365,10 @@ std::string people_text(const StudyStatus& status) {
                                    shown_or_dash(one.consent),
                                    shown_or_dash(one.certificate.substr(0, kDigits)),
                                    shown_or_dash(one.device)};
+    if (has_visits) {
+      cells.insert(cells.begin() + kVisit, fmt::format("{} of {}", one.visit, status.visits));
+    }
+    if (has_groups) cells.push_back(shown_or_dash(one.group));
     if (status.stations > 0) cells.push_back(number_or_dash(one.station));
     table.add(std::move(cells));
   }
@@ -284,6 +379,8 @@ nlohmann::ordered_json person_json(const PersonStatus& one) {
   return {{"participant", one.participant},
           {"session", one.session},
           {"enrolment", one.enrolment},
+          {"visit", one.visit},
+          {"group", one.group},
           {"station", one.station},
           {"state", one.state},
           {"counts", one.counts},
@@ -301,11 +398,11 @@ nlohmann::ordered_json person_json(const PersonStatus& one) {
 
 std::string status_text(const StudyStatus& status, const std::vector<NextCommand>& next) {
   std::string text = simulated_line(status.simulated);
-  text += fmt::format("{} ({}): {}, {}{} complete{}{}\n", status.study, status.protocol,
-                      name_of(status.state), counted(status.complete, "participant"),
-                      status.planned > 0 ? fmt::format(" of {}", status.planned) : "",
-                      status.state.question ? "; a registered look was made" : "",
-                      status.pilot ? "; PILOT" : "");
+  if (!status.study.empty()) text += fmt::format("{} ({}): ", status.study, status.protocol);
+  text += fmt::format(
+      "{}, {}{} complete{}{}\n", name_of(status.state), counted(status.complete, "participant"),
+      status.planned > 0 ? fmt::format(" of {}", status.planned) : "",
+      status.state.question ? "; a registered look was made" : "", status.pilot ? "; PILOT" : "");
   text += people_text(status);
   const auto list = [&](const char* title, const std::vector<std::string>& lines) {
     if (!lines.empty()) text += heading(title, status.simulated);
@@ -325,9 +422,19 @@ std::string status_json(const StudyStatus& status, const std::vector<NextCommand
   object["stations"] = status.stations;
   object["planned"] = nullptr;
   if (status.planned > 0) object["planned"] = status.planned;
+  object["visits"] = status.visits;
   object["complete"] = status.complete;
   object["people"] = nlohmann::ordered_json::array();
   for (const PersonStatus& one : status.people) object["people"].push_back(person_json(one));
+  object["visits_to_come"] = nlohmann::ordered_json::array();
+  for (const VisitToCome& one : status.visits_to_come) {
+    nlohmann::ordered_json visit{{"participant", one.participant}, {"visit", one.visit}};
+    visit["from"] = nullptr;
+    if (one.from) visit["from"] = utc_text(*one.from);
+    visit["until"] = nullptr;
+    if (one.until) visit["until"] = utc_text(*one.until);
+    object["visits_to_come"].push_back(std::move(visit));
+  }
   object["orders"] = nullptr;
   if (status.orders) {
     object["orders"] = {{"orders", status.orders->orders},

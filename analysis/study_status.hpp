@@ -7,11 +7,32 @@
 #include "protocols/store/personal_data.hpp"
 #include "protocols/store/study_store.hpp"
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace touchtrial::analysis {
+
+/// A visit of a participant who has completed the one before and may come again.
+struct VisitToCome {
+  std::string participant;
+  int visit = 2;
+  /// By the study's least and most days between visits; nothing in virtual time. `until` also if
+  /// the study has no most.
+  std::optional<std::chrono::nanoseconds> from{};
+  std::optional<std::chrono::nanoseconds> until{};
+
+  /// \param now  UTC since 1970
+  [[nodiscard]] bool is_due(std::chrono::nanoseconds now) const noexcept {
+    return !from || *from <= now;
+  }
+};
+
+/// The next visits of all participants, the earliest first; empty if the study has one visit, or
+/// takes no sessions any more.
+/// \throws StoreError as prescription_from_json
+[[nodiscard]] std::vector<VisitToCome> visits_to_come(const store::StudyStore& store);
 
 /// What is known of a study beside its database.
 struct StatusSources {
@@ -27,6 +48,7 @@ struct PersonStatus {
   std::string participant;  ///< empty if the data are erased
   int session = 0;          ///< 0: none yet
   int enrolment = 0;        ///< 0: not known yet
+  int visit = 1;            ///< of the participant, from 1
   int station = 0;  ///< from which the session was collected; 0: the file is a station's own
   /// "complete", "open", "stopped", "excluded", "replaced", "withdrawn", "erased" or "to come".
   std::string state;
@@ -40,6 +62,7 @@ struct PersonStatus {
   bool was_felt = false;    ///< in real time on a device, not seen on a screen
   std::string certificate;  ///< SHA-256 of the device's calibration certificate; empty: none
   std::string in_place_of;  ///< of one to come: whose place is kept for the participant
+  std::string group;        ///< only where groups are open
 };
 
 /// How the orders of methods are filled. They are dealt in blocks of consecutive enrolment numbers,
@@ -57,9 +80,12 @@ struct StudyStatus {
   bool simulated = false;
   bool pilot = false;
   int stations = 0;  ///< 0: the file is a station's own
-  int planned = 0;
-  int complete = 0;                    ///< participants with a session that counts
+  int planned = 0;   ///< 0: not stated, or a pilot, to which no plan applies
+  int visits = 1;    ///< of each participant
+  /// Participants with a session that counts, of each visit that the study needs.
+  int complete = 0;
   std::vector<PersonStatus> people{};  ///< sessions by number, then participants to come
+  std::vector<VisitToCome> visits_to_come{};
   std::optional<OrderBlocks>
       orders{};  ///< if orders differ and the numbers of one station are known
   std::vector<std::string>
@@ -68,6 +94,11 @@ struct StudyStatus {
 };
 
 [[nodiscard]] StudyStatus status_of(const store::StudyStore& store, const StatusSources& sources);
+
+/// The same before the first session, when there is no database: who has consented.
+/// \param study,protocol  names; empty if they are not known
+[[nodiscard]] StudyStatus status_before(const std::string& study, const std::string& protocol,
+                                        const StatusSources& sources);
 
 /// A command to copy, and what it is for.
 struct NextCommand {

@@ -2,6 +2,7 @@
 
 #include "app/console.hpp"
 #include "app/passphrases.hpp"
+#include "app/study_inputs.hpp"
 #include "core/text.hpp"
 
 #include <algorithm>
@@ -75,6 +76,16 @@ void add_passphrase_option(CLI::App& command) {
       ->allow_extra_args(false);
 }
 
+void add_signing_options(CLI::App& command, SigningFiles& files) {
+  CLI::Option* key =
+      add_key_option(command, files.key, "The investigator's key, in place of a station's file");
+  command
+      .add_option("--station-file", files.station,
+                  "This station's file (default: the one beside the database, or here)")
+      ->excludes(key);
+  add_accept_loss_option(command, files.accept_loss);
+}
+
 void add_pack_option(CLI::App& command, std::filesystem::path& pack) {
   command.add_option("--pack", pack, "Folder of the pack (default: <study>.pack)");
 }
@@ -100,13 +111,13 @@ void add_settings_option(CLI::App& command, std::filesystem::path& settings) {
 }
 
 void add_window_options(CLI::App& command, int& monitor,
-                        std::optional<std::pair<int, int>>& size_px) {
+                        std::optional<std::pair<int, int>>& size_px,
+                        const std::string& size_meaning) {
   command.add_option("--monitor", monitor, "Monitor of the participant's window, from 1")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
   command.add_option_function<std::string>(
-      "--window", [&size_px](const std::string& text) { size_px = size_of(text); },
-      "Size WIDTHxHEIGHT of a window instead of the whole monitor, pixels");
+      "--window", [&size_px](const std::string& text) { size_px = size_of(text); }, size_meaning);
 }
 
 void add_rate_option(CLI::App& command, double& rate_hz) {

@@ -15,6 +15,8 @@
 
 namespace touchtrial::app {
 
+struct SigningFiles;
+
 /// The work of the chosen command.
 /// \return the exit code
 /// \throws touchtrial::Error
@@ -47,8 +49,10 @@ void add_status_command(CLI::App& program, Action& action);
 void add_key_command(CLI::App& program, Action& action);
 /// The command "key check".
 void add_key_check_command(CLI::App& keys, Action& action);
-/// exclude, replace, withdraw, note, close, unblind, migrate.
-void add_record_commands(CLI::App& program, Action& action);
+/// exclude, replace, withdraw, note.
+void add_people_commands(CLI::App& program, Action& action);
+/// close, unblind, migrate.
+void add_study_end_commands(CLI::App& program, Action& action);
 void add_merge_command(CLI::App& program, Action& action);
 void add_power_command(CLI::App& program, Action& action);
 void add_device_command(CLI::App& program, Action& action);
@@ -80,6 +84,8 @@ CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key,
 void add_passphrase_option(CLI::App& command);
 /// Why to go on without what the database lacks and its head file knows.
 CLI::Option* add_accept_loss_option(CLI::App& command, std::string& reason);
+/// --key, --station-file and --accept-loss, of commands that record; see opened_to_record.
+void add_signing_options(CLI::App& command, SigningFiles& files);
 /// --pack; see pack_place_for.
 void add_pack_option(CLI::App& command, std::filesystem::path& pack);
 /// --subject; see subject_for.
@@ -98,8 +104,11 @@ void add_driver_argument(CLI::App& command, const std::string& name, std::string
 /// --settings; see device::device_settings_for.
 void add_settings_option(CLI::App& command, std::filesystem::path& settings);
 /// --monitor, and --window for a window of this size in place of the whole monitor.
+/// \param size_meaning  of --window
 void add_window_options(CLI::App& command, int& monitor,
-                        std::optional<std::pair<int, int>>& size_px);
+                        std::optional<std::pair<int, int>>& size_px,
+                        const std::string& size_meaning =
+                            "Size WIDTHxHEIGHT of a window instead of the whole monitor, pixels");
 /// --rate, 1,000 to 10,000 Hz.
 void add_rate_option(CLI::App& command, double& rate_hz);
 

@@ -116,41 +116,6 @@ void read_details(store::PersonalRecord& record) {
   }
 }
 
-/// The ids of the study's sessions, in their order, and of those who take somebody's place.
-std::vector<std::string> participants_of(const std::filesystem::path& database) {
-  std::vector<std::string> ids;
-  if (!is_there(database)) return ids;
-  try {
-    const auto store = store::StudyStore::open(database, store::StudyStore::Access::read_only);
-    for (const store::SessionRow& row : store.sessions()) {
-      for (const std::string& id : {row.participant, row.replaced_by}) {
-        if (!id.empty() && std::ranges::count(ids, id) == 0) ids.push_back(id);
-      }
-    }
-  } catch (const StoreError&) {
-    // A consent is recorded whatever became of the database.
-  }
-  return ids;
-}
-
-std::vector<std::string> known_ids(const std::filesystem::path& database) {
-  std::vector<std::string> ids = participants_of(database);
-  for (const store::PersonalRecord& one : consents_beside(database)) {
-    if (std::ranges::count(ids, one.participant) == 0) ids.push_back(one.participant);
-  }
-  return ids;
-}
-
-/// Asks about an id that nobody has and that is like another's.
-void confirm_id(const ConsentArguments& arguments) {
-  const std::string& id = arguments.record.participant;
-  const auto meant = perhaps_meant(id, known_ids(arguments.database));
-  if (!meant) return;
-  confirm("consent: participant " + id + " has neither a session nor a consent, and " + *meant +
-              " is known; give --participant " + *meant + " if that is who is meant",
-          arguments.yes);
-}
-
 int record_consent(const ConsentArguments& arguments) {
   if (arguments.on_command_line) {
     throw UsageError(
@@ -172,7 +137,7 @@ int record_consent(const ConsentArguments& arguments) {
     throw UsageError(fmt::format(
         "consent: --version is the name of a form: one line of at most {} bytes", kLongestVersion));
   }
-  confirm_id(arguments);
+  confirm_id("consent", arguments.database, record.participant, arguments.yes);
   if (!arguments.details.empty() && ::isatty(STDIN_FILENO) != 0) {
     ask_details(record);
   } else if (!arguments.details.empty()) {
@@ -228,6 +193,10 @@ int show_consents(const ConsentArguments& arguments) {
 
 /// Who consented to what and when, and who has a session and no consent. Nothing else about them.
 int list_consents(const ConsentArguments& arguments) {
+  if (!is_there(arguments.database) && !is_there(store::personal_data_path(arguments.database))) {
+    throw StoreError(one_line(arguments.database.string()) +
+                     ": there is neither such a database nor a consent beside it; check the name");
+  }
   std::map<std::string, std::vector<store::PersonalRecord>> people;
   for (const std::string& id : participants_of(arguments.database)) people[id];
   for (store::PersonalRecord& one : consents_beside(arguments.database)) {

@@ -3,9 +3,11 @@
 #include "core/errors.hpp"
 #include "core/printable.hpp"
 
+#include <cerrno>
 #include <cstdio>
 #include <iostream>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -31,9 +33,11 @@ void draw_bar(const std::string& what, int done, int of) {
 void print(const std::string& given) {
   const std::string text = printable(given);
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (!written || std::fflush(stdout) != 0) {
-    throw FileError("standard output: cannot be written; check the disk or the pipe");
-  }
+  if (written && std::fflush(stdout) == 0) return;
+  const int why = errno;
+  if (why == EPIPE) throw ClosedPipe("standard output: nobody reads it any more");
+  throw FileError("standard output: cannot be written (" + std::generic_category().message(why) +
+                  "); make room, or name another file");
 }
 
 void confirm(const std::string& about, bool yes) {

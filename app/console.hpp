@@ -2,6 +2,7 @@
 /// endings of file names.
 #pragma once
 
+#include "core/errors.hpp"
 #include "core/strict_json.hpp"
 
 #include <chrono>
@@ -11,8 +12,16 @@
 
 namespace touchtrial::app {
 
+/// Whoever read standard output has ended, as in `touchtrial report DB | head -1`. The program then
+/// ends without a word, like others.
+class ClosedPipe : public FileError {
+ public:
+  using FileError::FileError;
+};
+
 /// Prints to standard output, as core/printable.hpp shows it.
-/// \throws FileError if that fails (a full disk, a closed pipe)
+/// \throws ClosedPipe if nobody reads it any more
+/// \throws FileError if it cannot be written, for instance to a full disk
 void print(const std::string& text);
 
 /// Asks at the terminal whether to do something, before anything is done; `--yes` answers in

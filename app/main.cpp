@@ -1,5 +1,6 @@
 // touchtrial: parses the command line and runs one command.
 #include "app/commands.hpp"
+#include "app/console.hpp"
 #include "app/passphrases.hpp"
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
@@ -28,6 +29,7 @@ namespace {
 
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
+constexpr int kClosedPipe = 128 + SIGPIPE;  // as a shell says it of a program that the signal ends
 
 void add_commands(CLI::App& program, Action& action) {
   add_extract_command(program, action);
@@ -44,7 +46,8 @@ void add_commands(CLI::App& program, Action& action) {
   add_run_command(program, action);
   add_consent_command(program, action);
   add_status_command(program, action);
-  add_record_commands(program, action);
+  add_people_commands(program, action);
+  add_study_end_commands(program, action);
   add_sync_command(program, action);
   add_verify_command(program, action);
   add_report_command(program, action);
@@ -160,10 +163,13 @@ int parse_and_run(int argc, char** argv) {
 }
 
 /// Runs one command, and reports any error as one line on standard error.
-/// \return 0 done, 1 failed, 2 bad arguments or bad study file, 3 verification failed
+/// \return 0 done, 1 failed, 2 bad arguments or bad study file, 3 verification failed, kClosedPipe
+///   (without a line) if nobody reads the output any more
 int run_program(int argc, char** argv) noexcept {
   try {
     return parse_and_run(argc, argv);
+  } catch (const ClosedPipe&) {
+    return kClosedPipe;
   } catch (const UsageError& error) {
     return complain(kBadInput, error.what());
   } catch (const StudyError& error) {

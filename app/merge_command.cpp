@@ -10,7 +10,10 @@
 #include "protocols/collect/stations.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/payload_json.hpp"
+#include "protocols/store/personal_data.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -50,6 +53,33 @@ collect::Stations stations_of(const std::vector<fs::path>& databases) {
     for (auto& station : those) stations.push_back(std::move(station));
   }
   return stations;
+}
+
+/// Takes who consented to which version and when from beside the stations' databases: what exports
+/// have of the personal data, and nothing else. Consents that are there already stay as they are.
+/// \return how many consents the merged database has
+std::size_t merge_consents(const MergeArguments& arguments) {
+  std::vector<store::PersonalRecord> consents;
+  for (const fs::path& database : arguments.databases) {
+    try {
+      for (const store::PersonalRecord& one : consents_beside(database)) {
+        consents.push_back({.participant = one.participant,
+                            .consent_version = one.consent_version,
+                            .consented_utc = one.consented_utc});
+      }
+    } catch (const Error& error) {
+      spdlog::warn("consents are left out: {}", error.what());
+    }
+  }
+  if (consents.empty()) return 0;
+  store::PersonalData data(store::personal_data_path(arguments.target));
+  std::vector<store::PersonalRecord> known = data.all();
+  for (const store::PersonalRecord& one : consents) {
+    if (std::ranges::count(known, one) > 0) continue;
+    data.put(one);
+    known.push_back(one);
+  }
+  return known.size();
 }
 
 /// The key beside one of the databases, if it is that of a simulated study with this seal.
@@ -99,14 +129,18 @@ void warn_of(const collect::CollectReport& report) {
 }
 
 std::string summary_of(const MergeArguments& arguments, const collect::CollectReport& report,
-                       bool key) {
+                       std::size_t consents, bool key) {
   const std::string key_path = key_path_for(arguments.target, {}).string();
   if (!arguments.json) {
-    return fmt::format("{}: {} of {}\n{}", arguments.target.string(),
-                       analysis::counted(report.sessions, "session"),
-                       analysis::counted(report.stations, "station"),
-                       key ? "key " + key_path + "\n"
-                           : "the key of the study stays where it is: name it with --key\n");
+    return fmt::format(
+        "{}: {} of {}\n{}{}", arguments.target.string(),
+        analysis::counted(report.sessions, "session"),
+        analysis::counted(report.stations, "station"),
+        consents > 0
+            ? fmt::format("consents {}\n", store::personal_data_path(arguments.target).string())
+            : "",
+        key ? "key " + key_path + "\n"
+            : "the key of the study stays where it is: name it with --key\n");
   }
   nlohmann::json left_out = nlohmann::json::array();
   for (const collect::SessionLeftOut& session : report.left_out) {
@@ -115,10 +149,13 @@ std::string summary_of(const MergeArguments& arguments, const collect::CollectRe
                         {"participant", session.participant},
                         {"cut_short", session.cut_short}});
   }
-  const nlohmann::json summary = {
-      {"database", arguments.target.string()}, {"stations", report.stations},
-      {"sessions", report.sessions},           {"left_out", left_out},
-      {"superfluous", report.superfluous},     {"key", key ? nlohmann::json(key_path) : nullptr}};
+  const nlohmann::json summary = {{"database", arguments.target.string()},
+                                  {"stations", report.stations},
+                                  {"sessions", report.sessions},
+                                  {"left_out", left_out},
+                                  {"superfluous", report.superfluous},
+                                  {"consents", consents},
+                                  {"key", key ? nlohmann::json(key_path) : nullptr}};
   return json_text(summary);
 }
 
@@ -131,7 +168,7 @@ int merge(const MergeArguments& arguments) {
       collect::collect_into_file(std::move(stations), arguments.target, progress_bar("merging"));
   warn_of(report);
   if (key) design::save_study_key(key_path_for(arguments.target, {}), *key);
-  print(summary_of(arguments, report, key.has_value()));
+  print(summary_of(arguments, report, merge_consents(arguments), key.has_value()));
   return 0;
 }
 

@@ -21,6 +21,8 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -45,6 +47,7 @@ struct NewQuestion {
   std::string text;
   CLI::Validator allowed;
   std::function<std::string(const Answers&)> usual;  ///< the answer of Return and --yes
+  bool (*is_asked)(const Answers&) = [](const Answers&) { return true; };
 };
 
 struct NewArguments {
@@ -56,6 +59,7 @@ struct NewArguments {
 };
 
 constexpr const char* kUsualName = "my-study";
+constexpr std::size_t kMostGroups = 16;
 
 bool is_plain_name(std::string_view name) {
   const auto is_plain = [](char c) {
@@ -98,6 +102,30 @@ int methods_of(const Answers& answers) {
   return design::find_protocol(answers.at("--protocol"))->least_methods();
 }
 
+int visits_of(const Answers& answers) {
+  return *number_in<int>(answers.at("--visits"));
+}
+
+std::vector<std::string> groups_in(const std::string& text) {
+  std::vector<std::string> groups;
+  std::istringstream names(text);
+  for (std::string name; std::getline(names, name, ',');) {
+    const std::size_t begin = name.find_first_not_of(' ');
+    groups.push_back(begin == std::string::npos
+                         ? ""
+                         : name.substr(begin, name.find_last_not_of(' ') + 1 - begin));
+  }
+  return groups;
+}
+
+bool are_groups(const std::string& text) {
+  const std::vector<std::string> groups = groups_in(text);
+  const std::set<std::string> different(groups.begin(), groups.end());
+  return groups.empty() ||
+         (groups.size() >= 2 && groups.size() <= kMostGroups && different.size() == groups.size() &&
+          std::ranges::all_of(groups, is_plain_name));
+}
+
 std::vector<NewQuestion> new_questions() {
   const auto always = [](std::string answer) {
     return [answer = std::move(answer)](const Answers&) { return answer; };
@@ -128,6 +156,13 @@ std::vector<NewQuestion> new_questions() {
       {"--consent", "Version of the consent form; empty: none",
        allowed_if(is_version, "must be at most 64 bytes without blanks at its ends", "VERSION"),
        always("")},
+      {"--visits", "Visits of each participant", number_within(1, 100), always("1")},
+      {"--between", "Least days between two visits", number_within(0.0, 3650.0), always("7"),
+       [](const Answers& answers) { return visits_of(answers) > 1; }},
+      {"--groups", "Groups that participants are dealt into, as trained,control; empty: none",
+       allowed_if(are_groups, "must be 2 to 16 names of 0-9 A-Z a-z _ - with commas between them",
+                  "NAMES"),
+       always("")},
   };
 }
 
@@ -149,18 +184,106 @@ std::string typed_answer(const NewQuestion& question, const std::string& usual) 
   }
 }
 
+stimuli::ImportOptions import_options(const NewArguments& arguments) {
+  stimuli::ImportOptions options;
+  options.photographs = arguments.answers.at("--pictures");
+  options.size_px = arguments.size_px;
+  options.crops = arguments.crops;
+  options.protocol = arguments.answers.at("--protocol");
+  options.methods = methods_of(arguments.answers);
+  return options;
+}
+
+/// Asks for another size and number of crops, of which the photographs have enough.
+void ask_crops(NewArguments& arguments, const stimuli::CropsDoNotFit& now) {
+  const auto answer = [](const char* option, const char* text, int low, int high, int usual) {
+    const NewQuestion question{option, text, number_within(low, high), {}};
+    return *number_in<int>(typed_answer(question, std::to_string(usual)));
+  };
+  arguments.size_px =
+      answer("--size", "Side of a picture, pixels", stimuli::kMinCropSizePx,
+             stimuli::kMaxCropSizePx, now.size_px() > 0 ? now.size_px() : arguments.size_px);
+  arguments.crops = answer("--crops", "Crops of the photographs of each texture", 1,
+                           stimuli::kMaxCropsOfClass, arguments.crops);
+}
+
+/// Tries the photographs where they are named, before further questions. If they are too small,
+/// asks for the size and number of crops; if nothing can be made of them, for another folder.
+/// \param question  "--pictures"
+/// \param typed  the folder was an answer; an option's is refused where only another one would do
+void try_pictures(NewArguments& arguments, const NewQuestion& question, bool typed) {
+  std::string& folder = arguments.answers.at(question.option);
+  while (!folder.empty()) {
+    try {
+      return stimuli::try_photographs(import_options(arguments), progress_bar("reading"));
+    } catch (const stimuli::CropsDoNotFit& small) {
+      if (arguments.yes) throw;
+      std::fputs((one_line(small.what()) + "\n").c_str(), stderr);
+      const bool some_would_do = small.size_px() > 0 || small.crops() > 0;
+      if (some_would_do) {
+        ask_crops(arguments, small);
+      } else if (typed) {
+        folder = typed_answer(question, "");
+      } else {
+        throw;
+      }
+    } catch (const FileError& wrong) {
+      if (!typed || arguments.yes) throw;
+      std::fputs((one_line(wrong.what()) + "\n").c_str(), stderr);
+      folder = typed_answer(question, "");
+    }
+  }
+}
+
 /// Answers what no option answers. The study's name is usually its folder's.
 void interview(NewArguments& arguments) {
   const fs::path& given = arguments.folder;
   const std::string folder =
       (given.has_filename() ? given : given.parent_path()).filename().string();
   for (const NewQuestion& question : new_questions()) {
-    if (arguments.answers.contains(question.option)) continue;
-    std::string usual = question.usual(arguments.answers);
-    if (question.option == "--name" && is_plain_name(folder)) usual = folder;
-    arguments.answers[question.option] = arguments.yes ? usual : typed_answer(question, usual);
+    const bool is_given = arguments.answers.contains(question.option);
+    if (!is_given) {
+      std::string usual = question.usual(arguments.answers);
+      if (question.option == "--name" && is_plain_name(folder)) usual = folder;
+      const bool is_asked = !arguments.yes && question.is_asked(arguments.answers);
+      arguments.answers[question.option] = is_asked ? typed_answer(question, usual) : usual;
+    }
+    if (question.option == "--pictures") try_pictures(arguments, question, !is_given);
   }
 }
+
+/// A folder that is made, and is gone again with what is in it, and folders above it that were made
+/// for it, unless it is kept.
+class MadeFolder {
+ public:
+  explicit MadeFolder(const fs::path& folder) : folder_(folder), had_(is_there(folder)) {
+    for (first_ = folder; !had_ && first_.has_parent_path() && !is_there(first_.parent_path());) {
+      first_ = first_.parent_path();
+    }
+    make_folder(folder);
+  }
+  ~MadeFolder() {
+    if (is_kept_) return;
+    std::error_code ignored;
+    if (!had_) {
+      fs::remove_all(first_, ignored);
+      return;
+    }
+    for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
+      fs::remove_all(entry.path(), ignored);
+    }
+  }
+  MadeFolder(const MadeFolder&) = delete;
+  MadeFolder& operator=(const MadeFolder&) = delete;
+
+  void keep() noexcept { is_kept_ = true; }
+
+ private:
+  fs::path folder_;
+  fs::path first_;  ///< the topmost that is made
+  bool had_;        ///< it was there, and empty
+  bool is_kept_ = false;
+};
 
 void require_free(const fs::path& folder) {
   std::error_code unreadable;
@@ -192,13 +315,8 @@ Json generated_classes(const NewStudy& study, const std::string& ending, stimuli
 }
 
 void import_pictures(const NewArguments& arguments, NewStudy& study) {
-  stimuli::ImportOptions options;
-  options.photographs = arguments.answers.at("--pictures");
+  stimuli::ImportOptions options = import_options(arguments);
   options.study = study.file;
-  options.size_px = arguments.size_px;
-  options.crops = arguments.crops;
-  options.protocol = arguments.answers.at("--protocol");
-  options.methods = methods_of(arguments.answers);
   const stimuli::ImportReport report =
       stimuli::import_photographs(options, progress_bar("importing"));
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
@@ -271,7 +389,7 @@ constexpr const char* kStudyText =
     // Presentations of a plane without texture among the others, not scored.
     "catch": 0
   },
-{practice}  // What a participant reads and is asked.
+{practice}{visits}{groups}  // What a participant reads and is asked.
   "session": {
     // Language of all that the participant reads.
     "language": {language},
@@ -328,6 +446,18 @@ constexpr const char* kPracticeText =
     "criterion": 4,
     "rounds": 2
   },
+)";
+
+constexpr const char* kVisitsText =
+    R"(  // How often each participant comes, and the least days from one visit to the next. "most_days":
+  // after which a visit is late. "methods": "divided" presents as many of the methods at each visit.
+  "visits": {"count": {count}, "least_days": {least_days}},
+)";
+
+constexpr const char* kGroupsText =
+    R"(  // Into which participants are dealt at random. "open": whether the experimenter knows who is in
+  // which; otherwise the holder of the key sees it with `touchtrial plan --groups`.
+  "groups": {"labels": {labels}, "open": false},
 )";
 
 /// The list's entries, one a line.
@@ -412,8 +542,17 @@ std::string study_text(const NewArguments& arguments, const NewStudy& study) {
       study.practice.empty()
           ? ""
           : filled_in(kPracticeText, {{"practice_classes", lines_of(study.practice, "      ")}});
+  const int visits = visits_of(answers);
+  const std::vector<std::string> groups = groups_in(answers.at("--groups"));
   fillings.insert(
-      {{"name", in_json(answers.at("--name"))},
+      {{"visits",
+        visits > 1
+            ? filled_in(kVisitsText,
+                        {{"count", std::to_string(visits)},
+                         {"least_days", number_text(*number_in<double>(answers.at("--between")))}})
+            : ""},
+       {"groups", groups.empty() ? "" : filled_in(kGroupsText, {{"labels", Json(groups).dump()}})},
+       {"name", in_json(answers.at("--name"))},
        {"protocol", in_json(answers.at("--protocol"))},
        {"classes", lines_of(study.classes, "    ")},
        {"practice_trials", study.practice.empty() ? "0" : "5"},
@@ -421,9 +560,13 @@ std::string study_text(const NewArguments& arguments, const NewStudy& study) {
        {"language", in_json(answers.at("--language"))},
        {"consent", in_json(answers.at("--consent"))},
        {"people", std::to_string(people)},
-       {"stopping_rule", in_json(fmt::format("Collecting ends when {} sessions are complete; "
-                                             "outcomes are not looked at before.",
-                                             people))},
+       {"stopping_rule",
+        in_json(visits > 1 ? fmt::format("Collecting ends when {} participants have completed all "
+                                         "{} visits; outcomes are not looked at before.",
+                                         people, visits)
+                           : fmt::format("Collecting ends when {} sessions are complete; outcomes "
+                                         "are not looked at before.",
+                                         people))},
        {"seed", std::to_string(study.seed)}});
   return filled_in(kStudyText, fillings);
 }
@@ -445,7 +588,7 @@ int write_new_study(NewArguments arguments) {
   const std::string& name = arguments.answers.at("--name");
   const fs::path folder = arguments.folder.empty() ? fs::path(name) : arguments.folder;
   require_free(folder);
-  make_folder(folder);
+  MadeFolder made(folder);
   NewStudy study{.file = folder / (name + ".json")};
   if (arguments.answers.at("--pictures").empty()) {
     study.classes =
@@ -456,6 +599,7 @@ int write_new_study(NewArguments arguments) {
   add_practice(study, arguments.size_px);
   replace_file(study.file, study_text(arguments, study));
   static_cast<void>(design::load_study(study.file));
+  made.keep();
   print(next_steps(arguments, study));
   return 0;
 }

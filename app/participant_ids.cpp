@@ -1,7 +1,13 @@
 #include "app/participant_ids.hpp"
 
+#include "app/console.hpp"
+#include "app/study_inputs.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
 #include "core/nearest_name.hpp"
 #include "core/text.hpp"
+#include "protocols/store/personal_data.hpp"
+#include "protocols/store/study_store.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -71,6 +77,43 @@ std::optional<std::string> perhaps_meant(const std::string& id,
       std::ranges::find_if(known, [&](const std::string& one) { return are_alike(id, one); });
   if (found == known.end()) return std::nullopt;
   return *found;
+}
+
+std::vector<std::string> participants_of(const std::filesystem::path& database) {
+  std::vector<std::string> ids;
+  if (!is_there(database)) return ids;
+  try {
+    const auto store = store::StudyStore::open(database, store::StudyStore::Access::read_only);
+    for (const store::SessionRow& row : store.sessions()) {
+      for (const std::string& id : {row.participant, row.replaced_by}) {
+        if (!id.empty() && std::ranges::count(ids, id) == 0) ids.push_back(id);
+      }
+    }
+  } catch (const StoreError&) {
+    // Whoever records in the database is told; a consent is recorded whatever became of it.
+  }
+  return ids;
+}
+
+std::vector<std::string> known_ids(const std::filesystem::path& database) {
+  std::vector<std::string> ids = participants_of(database);
+  try {
+    for (const store::PersonalRecord& one : consents_beside(database)) {
+      if (std::ranges::count(ids, one.participant) == 0) ids.push_back(one.participant);
+    }
+  } catch (const Error&) {
+    // Whoever records a consent is told.
+  }
+  return ids;
+}
+
+void confirm_id(const std::string& command, const std::filesystem::path& database,
+                const std::string& id, bool yes) {
+  const auto meant = perhaps_meant(id, known_ids(database));
+  if (!meant) return;
+  confirm(command + ": participant " + id + " has neither a session nor a consent, and " + *meant +
+              " is known; give --participant " + *meant + " if that is who is meant",
+          yes);
 }
 
 }  // namespace touchtrial::app

@@ -2,6 +2,7 @@
 /// of the finger.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,5 +20,20 @@ namespace touchtrial::app {
 /// \return nothing if the id is known, is next_id, or is like no other
 [[nodiscard]] std::optional<std::string> perhaps_meant(const std::string& id,
                                                        const std::vector<std::string>& known);
+
+/// The ids of a study's sessions, in their order, and of those who take somebody's place.
+/// \return none if the database is missing or cannot be read
+[[nodiscard]] std::vector<std::string> participants_of(const std::filesystem::path& database);
+
+/// The same, then those who have consented and have no session. A file of personal data that cannot
+/// be read adds nobody.
+[[nodiscard]] std::vector<std::string> known_ids(const std::filesystem::path& database);
+
+/// Asks at the terminal about an id that nobody has and that perhaps_meant takes for another's.
+/// \param command  that the id was given to, for the message
+/// \param yes  as for `confirm`
+/// \throws as confirm
+void confirm_id(const std::string& command, const std::filesystem::path& database,
+                const std::string& id, bool yes);
 
 }  // namespace touchtrial::app

@@ -1,6 +1,7 @@
 // preview: the participant's screens of a study, without a session.
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/experimenter/console_experimenter.hpp"
 #include "app/participant/preview_screens.hpp"
 #include "app/participant/screen.hpp"
 #include "app/run/run_session.hpp"
@@ -33,6 +34,7 @@ struct PreviewArguments {
   std::string screen;  ///< empty: the first, or all with `png`
   fs::path png;        ///< empty: a window to look at
   bool mouse = false;
+  bool console = false;
   RunOptions window;
 };
 
@@ -74,6 +76,7 @@ class Preview {
   ParticipantWindowOptions options() {
     ParticipantWindowOptions wanted = window_options(arguments_.window, study_);
     if (arguments_.mouse) wanted.pointer = &pointer_;
+    if (arguments_.console) wanted.console = &console_;
     wanted.least_touch = {0.0, 0.0};  // nothing is felt
     wanted.turn = [this](int pages) {
       turn_ = pages == 0 ? Turn::end : pages < 0 ? Turn::back : Turn::next;
@@ -91,6 +94,7 @@ class Preview {
 
   /// Shows a screen as it is after a plane, so that nothing of the one before is left.
   void present(const PreviewScreen& screen) {
+    console_.show({.participant = "P07", .stage = screen.name, .device = "preview"});
     window_.see_pictures(preview_labels(study_, screen));
     static_cast<void>(window_.attend(session::ReadyStep{1, 1, screen.practice}));
     window_.show_exploring(plane_);
@@ -110,9 +114,17 @@ class Preview {
       present(screens_[i]);
       require_shown();
       const fs::path file = is_one ? arguments_.png : arguments_.png / (screens_[i].name + ".png");
-      replace_file(file, engine::png_bytes(window_.picture()));
-      print(file.string() + "\n");
+      write(file, window_.picture());
     }
+    if (arguments_.console) {
+      write((is_one ? arguments_.png.parent_path() : arguments_.png) / "console.png",
+            window_.console_picture());
+    }
+  }
+
+  static void write(const fs::path& file, const engine::ColourImage& picture) {
+    replace_file(file, engine::png_bytes(picture));
+    print(file.string() + "\n");
   }
 
   void browse() {
@@ -162,6 +174,8 @@ class Preview {
   PlaneGeometry plane_;
   device::PointerExchange pointer_;
   std::atomic<Turn> turn_{Turn::none};
+  session::Experimenter nobody_;
+  ConsoleExperimenter console_{nobody_};  ///< whose requests nobody takes
   ParticipantWindow window_;
 };
 
@@ -178,8 +192,12 @@ void add_preview_command(CLI::App& program, Action& action) {
                       "Write the screen to this PNG file, or without --screen every screen to this "
                       "folder");
   command->add_flag("--mouse", arguments->mouse, "As with the device mouse");
+  command->add_flag("--console", arguments->console,
+                    "The experimenter's window too; with --png as console.png beside the others");
   arguments->window.window_px = {1280, 720};
-  add_window_options(*command, arguments->window.monitor, arguments->window.window_px);
+  add_window_options(*command, arguments->window.monitor, arguments->window.window_px,
+                     "Size WIDTHxHEIGHT of the window and of the pictures, pixels (default: "
+                     "1280x720; with --monitor, the whole monitor)");
   command->callback([=, &action] {
     if (command->count("--monitor") > 0 && command->count("--window") == 0) {
       arguments->window.window_px.reset();

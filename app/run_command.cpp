@@ -72,6 +72,7 @@ void add_session_options(CLI::App& command, RunOptions& options) {
       .add_option("--station", options.station,
                   "Name of this station, whose file is <study>.NAME.station")
       ->excludes(file);
+  add_yes_flag(command, options.yes);
 }
 
 void add_device_options(CLI::App& command, RunOptions& options) {

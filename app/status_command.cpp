@@ -6,6 +6,7 @@
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/utc.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/enrolment_balance.hpp"
 #include "protocols/collect/server_address.hpp"
@@ -17,6 +18,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -69,6 +71,43 @@ fs::path study_file_of(const fs::path& station_file, const std::string& station)
   return study;
 }
 
+/// The study of people who are simulated without a prepared study: the key beside their database
+/// has it.
+void take_simulated_key(const fs::path& database, const store::StudyCommitment& commitment,
+                        FilesBeside& beside) {
+  const fs::path path = key_path_for(database, {});
+  if (!commitment.simulated || !is_there(path) || design::is_protected(path)) return;
+  try {
+    const design::StudyKey key = design::load_study_key(path);
+    if (key.simulated && key.seal == commitment.seal) beside.design = key.study;
+  } catch (const Error&) {
+    // Another study's, or damaged: `report` says so when it is used.
+  }
+}
+
+/// The study file that a station's file beside it belongs to, if it can be read.
+void take_study_of_station(const std::string& station, FilesBeside& beside) {
+  const fs::path study = study_file_of(beside.station_file, station);
+  if (!is_there(study)) return;
+  try {
+    beside.design = design::load_study(study);
+    beside.study = study;
+  } catch (const Error&) {
+    // Edited since: `run` says so.
+  }
+}
+
+/// Calls `see` with each file of a station beside the database, and then in the current folder.
+template <typename See>
+void for_each_station_file(const fs::path& database, See see) {
+  for (const fs::path& folder : {database.parent_path(), fs::path(".")}) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored)) {
+      if (entry.path().extension() == ".station") see(entry.path().lexically_normal());
+    }
+  }
+}
+
 FilesBeside files_beside(const StatusArguments& arguments,
                          const store::StudyCommitment& commitment) {
   FilesBeside beside;
@@ -84,23 +123,41 @@ FilesBeside files_beside(const StatusArguments& arguments,
     take_station_file(pack_place_for(arguments.study, {}).station(station), commitment, beside);
     return beside;
   }
-  if (!commitment.station || commitment.simulated) return beside;
-  for (const fs::path& folder : {arguments.database.parent_path(), fs::path(".")}) {
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored)) {
-      if (!beside.station_file.empty() || entry.path().extension() != ".station") continue;
-      take_station_file(entry.path().lexically_normal(), commitment, beside);
-    }
+  for_each_station_file(arguments.database, [&](const fs::path& file) {
+    if (beside.station_file.empty()) take_station_file(file, commitment, beside);
+  });
+  if (beside.station_file.empty()) {
+    take_simulated_key(arguments.database, commitment, beside);
+  } else {
+    take_study_of_station(station, beside);
   }
-  if (beside.station_file.empty()) return beside;
-  const fs::path study = study_file_of(beside.station_file, station);
-  if (!is_there(study)) return beside;
+  return beside;
+}
+
+/// Where there is no database yet: the named study, or that of the only station's file.
+FilesBeside files_before(const StatusArguments& arguments) {
+  FilesBeside beside;
+  if (!arguments.study.empty()) {
+    beside.study = arguments.study;
+    beside.design = design::load_study(arguments.study);
+    return beside;
+  }
+  std::set<fs::path> files;
+  for_each_station_file(arguments.database, [&](const fs::path& file) {
+    files.insert(fs::weakly_canonical(file));
+    beside.station_file = file;
+  });
+  if (files.size() != 1) return {};
+  std::string station = design::kOnlyStation;
   try {
-    beside.design = design::load_study(study);
-    beside.study = study;
+    if (!design::is_protected(beside.station_file)) {
+      beside.station = design::load_station_key(beside.station_file).station;
+      station = beside.station->name;
+    }
   } catch (const Error&) {
-    // Edited since: `run` says so.
+    return {};  // damaged: `run` says so
   }
+  take_study_of_station(station, beside);
   return beside;
 }
 
@@ -129,74 +186,151 @@ std::vector<std::string> balance_of(const store::StudyStore& store) {
   return collect::imbalances(collect::enrolment_balance(sessions));
 }
 
-/// Who comes next: an open session's participant, one who is to come, or a new id.
-std::optional<std::string> next_participant(const analysis::StudyStatus& status) {
+/// A session to run next.
+struct NextSession {
+  std::string participant;
+  int visit = 1;
+  bool is_open = false;
+  std::string from{};  ///< from when it is possible, in words; empty: now
+};
+
+/// Whether as many have come as the study plans, so that nobody new is due.
+bool all_have_come(const analysis::StudyStatus& status) {
+  std::set<std::string> came;
+  for (const analysis::PersonStatus& one : status.people) {
+    const bool stands = one.state == "complete" || one.state == "open" || one.state == "stopped";
+    if (stands) came.insert(one.participant);
+  }
+  return status.planned > 0 && static_cast<int>(came.size()) >= status.planned;
+}
+
+/// Who comes next: an open session's participant, one who is to come, one whose next visit is due,
+/// or a new id.
+std::optional<NextSession> next_session(const analysis::StudyStatus& status) {
   std::vector<std::string> known;
   for (const analysis::PersonStatus& one : status.people) {
-    if (one.may_go_on || one.state == "to come") return one.participant;
+    if (one.may_go_on || one.state == "to come") {
+      return NextSession{one.participant, one.visit, one.may_go_on};
+    }
     if (!one.participant.empty()) known.push_back(one.participant);
   }
-  return next_id(known);
+  if (!status.visits_to_come.empty()) {
+    const analysis::VisitToCome& visit = status.visits_to_come.front();
+    const bool is_due = visit.is_due(utc_now());
+    if (is_due || all_have_come(status)) {
+      return NextSession{visit.participant, visit.visit, false,
+                         is_due ? "" : utc_words(*visit.from)};
+    }
+  }
+  const std::optional<std::string> id = next_id(known);
+  if (!id) return std::nullopt;
+  return NextSession{*id};
+}
+
+/// What a command line takes from a database: the names of its station and of its last device.
+struct DatabaseWords {
+  std::string station = design::kOnlyStation;
+  std::string device{};
+};
+
+DatabaseWords database_words(const store::StudyStore& store) {
+  DatabaseWords words;
+  words.station = store.commitment().station ? store.commitment().station->name : "";
+  const std::vector<store::SessionRow> rows = store.sessions();
+  if (!rows.empty()) words.device = rows.back().device;
+  return words;
 }
 
 std::string run_line(const StatusArguments& arguments, const FilesBeside& beside,
-                     const store::StudyStore& store, const std::string& participant, bool is_open) {
-  const store::StudyCommitment& commitment = store.commitment();
+                     const DatabaseWords& words, const NextSession& next, bool pilot) {
   const std::string study = beside.study.empty() ? "STUDY" : shell_word(beside.study.string());
-  std::string line = "touchtrial run " + study + " --participant " + shell_word(participant) +
+  std::string line = "touchtrial run " + study + " --participant " + shell_word(next.participant) +
                      " --db " + shell_word(arguments.database.string());
-  const std::string station = commitment.station ? commitment.station->name : "";
-  const bool is_usual = beside.study.empty() || beside.station_file.empty() ||
-                        beside.station_file.lexically_normal() ==
-                            pack_place_for(beside.study, {}).station(station).lexically_normal();
+  const bool is_usual =
+      beside.study.empty() || beside.station_file.empty() ||
+      beside.station_file.lexically_normal() ==
+          pack_place_for(beside.study, {}).station(words.station).lexically_normal();
   if (!is_usual) {
     line += " --station-file " + shell_word(beside.station_file.string());
-  } else if (station != design::kOnlyStation) {
-    line += " --station " + shell_word(station);
+  } else if (words.station != design::kOnlyStation) {
+    line += " --station " + shell_word(words.station);
   }
-  const std::vector<store::SessionRow> rows = store.sessions();
-  if (!rows.empty() && !rows.back().device.empty()) line += " --device " + rows.back().device;
-  if (commitment.pilot) line += " --pilot";
-  return line + (is_open ? " --on-existing resume" : "");
+  if (next.visit > 1) line += " --visit " + std::to_string(next.visit);
+  if (!words.device.empty()) line += " --device " + words.device;
+  if (pilot) line += " --pilot";
+  return line + (next.is_open ? " --on-existing resume" : "");
+}
+
+std::string what_comes(const NextSession& next) {
+  const std::string visit =
+      next.visit > 1 ? "visit " + std::to_string(next.visit) : std::string("session");
+  return (next.is_open ? "resume the " : "") + visit + " of " + next.participant +
+         (next.from.empty() ? "" : ", from " + next.from);
 }
 
 /// Nothing where sessions are recorded elsewhere, or by a program, or no more.
 std::vector<analysis::NextCommand> next_commands(const StatusArguments& arguments,
                                                  const FilesBeside& beside,
-                                                 const store::StudyStore& store,
+                                                 const DatabaseWords& words,
                                                  const analysis::StudyStatus& status) {
   const bool records = status.stations == 0 && !status.state.closed && !status.simulated &&
                        !collect::is_address(arguments.database.string());
   if (!records) return {};
-  const std::optional<std::string> id = next_participant(status);
-  if (!id) return {};
-  const auto person = std::ranges::find(status.people, *id, &analysis::PersonStatus::participant);
-  const bool is_known = person != status.people.end();
-  const bool is_open = std::ranges::any_of(status.people, [&](const analysis::PersonStatus& one) {
-    return one.participant == *id && one.may_go_on;
-  });
+  const std::optional<NextSession> session = next_session(status);
+  if (!session) return {};
+  const std::string& id = session->participant;
+  const bool has_consented =
+      std::ranges::any_of(status.people, [&](const analysis::PersonStatus& one) {
+        return one.participant == id && !one.consent.empty();
+      });
   std::vector<analysis::NextCommand> next;
-  if (!is_known || person->consent.empty()) {
+  if (!has_consented) {
     const std::string version = beside.design && !beside.design->session.consent_version.empty()
                                     ? beside.design->session.consent_version
                                     : "VERSION";
-    next.push_back({"consent of " + *id, "touchtrial consent " +
-                                             shell_word(arguments.database.string()) +
-                                             " --participant " + shell_word(*id) + " --version " +
-                                             shell_word(version) + " --details -"});
+    next.push_back({"consent of " + id, "touchtrial consent " +
+                                            shell_word(arguments.database.string()) +
+                                            " --participant " + shell_word(id) + " --version " +
+                                            shell_word(version) + " --details -"});
   }
-  next.push_back({is_open ? "resume the session of " + *id : "session of " + *id,
-                  run_line(arguments, beside, store, *id, is_open)});
+  next.push_back(
+      {what_comes(*session), run_line(arguments, beside, words, *session, status.pilot)});
   return next;
 }
 
+void print_status(const StatusArguments& arguments, const FilesBeside& beside,
+                  const DatabaseWords& words, const analysis::StudyStatus& status) {
+  const auto next = next_commands(arguments, beside, words, status);
+  print(arguments.json ? analysis::status_json(status, next) : analysis::status_text(status, next));
+}
+
+/// Before the first session: the consents so far, and the first command line.
+int show_before(const StatusArguments& arguments) {
+  const FilesBeside beside = files_before(arguments);
+  const analysis::StatusSources sources = sources_for(arguments, beside);
+  if (!beside.design && sources.consents.empty()) {
+    throw StoreError(one_line(arguments.database.string()) +
+                     ": there is neither such a database nor a consent or a study beside it; check "
+                     "the name, or name the study file with --study");
+  }
+  DatabaseWords words;
+  if (beside.station) words.station = beside.station->name;
+  print_status(
+      arguments, beside, words,
+      analysis::status_before(beside.design ? beside.design->name : "",
+                              beside.design ? beside.design->protocol_name() : "", sources));
+  return 0;
+}
+
 int show_status(const StatusArguments& arguments) {
+  if (!collect::is_address(arguments.database.string()) && !is_there(arguments.database)) {
+    return show_before(arguments);
+  }
   const store::StudyStore store = collect::open_study(arguments.database.string());
   const FilesBeside beside = files_beside(arguments, store.commitment());
   analysis::StudyStatus status = analysis::status_of(store, sources_for(arguments, beside));
   status.balance = balance_of(store);
-  const auto next = next_commands(arguments, beside, store, status);
-  print(arguments.json ? analysis::status_json(status, next) : analysis::status_text(status, next));
+  print_status(arguments, beside, database_words(store), status);
   return 0;
 }
 

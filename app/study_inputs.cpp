@@ -115,6 +115,7 @@ design::StudyKey key_of_database(const store::StudyStore& store,
                             one_line(collect::study_name(database.string())) + ": " + wrong.what());
   }
   if (!is_beside && !collect::is_address(database.string())) keep_place_of_key(database, path);
+  key.pack_folder = design::pack_in_reach(key, database);
   return key;
 }
 
@@ -222,6 +223,19 @@ void sign_with_files(store::StudyStore& store, const std::filesystem::path& data
   const Signer signer = signer_for(store, database, files);
   store.sign_with(signer);
   keep_heads(store, database, signer, {.accept_loss = files.accept_loss}, HeadUse::if_there);
+}
+
+store::StudyStore opened_to_record(const std::filesystem::path& database,
+                                   const SigningFiles& files) {
+  store::StudyStore store =
+      store::StudyStore::open(database, store::StudyStore::Access::read_write);
+  sign_with_files(store, database, files);
+  return store;
+}
+
+void print_head(const store::StudyStore& store, const std::filesystem::path& database) {
+  if (!is_there(store::head_path_for(database))) return;
+  print(head_words(store) + "; write it on the day sheet\n");
 }
 
 design::PackPlace pack_place_for(const std::filesystem::path& study_file,

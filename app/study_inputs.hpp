@@ -31,6 +31,7 @@ namespace touchtrial::app {
                                                const std::filesystem::path& given);
 
 /// Loads the key at key_in_use, checks that it belongs to the database, and remembers where it is.
+/// Its pack_folder is the one of design::pack_in_reach.
 /// \param database  a file, or the address of a study, which has no key beside it
 /// \throws FileError if the key is missing or damaged
 /// \throws VerificationError, naming both files, if the key is not the database's
@@ -77,6 +78,14 @@ struct SigningFiles {
 /// \throws as keep_heads
 void sign_with_files(store::StudyStore& store, const std::filesystem::path& database,
                      const SigningFiles& files);
+
+/// A database that is written to, and in which the files let somebody record.
+/// \throws as StudyStore::open and sign_with_files
+[[nodiscard]] store::StudyStore opened_to_record(const std::filesystem::path& database,
+                                                 const SigningFiles& files);
+
+/// Prints the new end of the file's chain, if the database has a head file: somebody recorded.
+void print_head(const store::StudyStore& store, const std::filesystem::path& database);
 
 /// The pack and key of a prepared study.
 /// \param pack  the pack's folder; empty: `<study>.pack` beside the study file

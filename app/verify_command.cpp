@@ -76,7 +76,8 @@ void add_verify_command(CLI::App& program, Action& action) {
   add_study_place_argument(*command, arguments->database);
   add_key_option(*command, arguments->key, "Key of the study (default: DB.key, if it exists)");
   command->add_option("--pack", arguments->pack,
-                      "Pack of the study (default: the one that the key names)");
+                      "Pack of the study (default: the one that the key names, or one of that "
+                      "name beside the database or here)");
   command->add_option(
       "--head", arguments->head,
       "A former head of the file's chain, of a day sheet for instance, which the chain must still "

@@ -96,6 +96,8 @@ Meanings of_sessions() {
       {"participant", {"The participant's id in the study"}},
       {"session", {"Number of the session in the study's database, from 1"}},
       {"enrolment", {"Number of enrolment, from 1; decides the order of presentation"}},
+      {"visit", {"Visit of the participant that the session is, from 1"}},
+      {"group", {"Group that the participant was dealt into"}},
       {"session_state",
        {"How the session ended",
         "",

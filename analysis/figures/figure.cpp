@@ -48,7 +48,7 @@ GnuplotProcess started(const Figure& figure, FigureFormat format) {
 std::string finished(GnuplotProcess& process, const Figure& figure, FigureFormat format) {
   std::string file = process.result();
   if (file.empty()) {
-    throw Error("figure " + figure.id + ": gnuplot drew nothing; try version 5.2 or later");
+    throw Error("figure " + figure.id + ": gnuplot drew nothing" + gnuplot_remedy());
   }
   return format == FigureFormat::svg ? accessible_svg(file, figure) : without_time(std::move(file));
 }

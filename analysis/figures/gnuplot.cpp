@@ -2,15 +2,21 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <system_error>
 #include <utility>
 
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 extern char** environ;
 
@@ -21,10 +27,20 @@ namespace {
 /// writing to it raises no signal when the reading program ends early.
 class ScratchFile {
  public:
-  ScratchFile() : file_(std::tmpfile()) {
+  // Not std::tmpfile, which does not ask TMPDIR for the folder.
+  ScratchFile() {
+    std::error_code error;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+    std::string name = (folder / "touchtrial-figure-XXXXXX").string();
+    const int descriptor = error ? -1 : ::mkstemp(name.data());
+    if (descriptor >= 0) {
+      ::unlink(name.c_str());
+      file_.reset(::fdopen(descriptor, "w+b"));
+    }
     if (!file_) {
       throw FileError("temporary folder: cannot be written (" +
-                      std::generic_category().message(errno) + "); make room or set TMPDIR");
+                      (error ? error.message() : std::generic_category().message(errno)) +
+                      "); make room or set TMPDIR");
     }
   }
   explicit ScratchFile(std::string_view content) : ScratchFile() {
@@ -73,12 +89,27 @@ class Streams {
   posix_spawn_file_actions_t actions_{};
 };
 
+/// How a program ended, as waitpid says it.
 int wait_for(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) return -1;
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return status;
+}
+
+constexpr std::array<int, 2> kLeastVersion = {5, 2};
+
+/// "5.0" of "gnuplot 5.0 patchlevel 5" if that is too old; empty otherwise.
+std::string version_if_old(const std::string& said) {
+  const std::size_t begin = said.find_first_of("0123456789");
+  if (begin == std::string::npos) return "";
+  const std::string version = said.substr(begin, said.find(' ', begin) - begin);
+  const std::size_t dot = std::min(version.find('.'), version.size() - 1);
+  const auto major = number_in<int>(version.substr(0, dot));
+  const auto minor = number_in<int>(version.substr(dot + 1));
+  if (!major || !minor) return "";
+  return std::array<int, 2>{*major, *minor} < kLeastVersion ? version : "";
 }
 
 /// The last line of gnuplot's complaint; the others echo the script.
@@ -101,7 +132,7 @@ struct GnuplotProcess::Run {
 };
 
 GnuplotProcess::GnuplotProcess(std::string argument, std::string_view script)
-    : run_(std::make_unique<Run>(script)) {
+    : run_(std::make_unique<Run>(script)), asks_version_(argument == "--version") {
   std::string name = "gnuplot";
   std::string defaults = "-d";
   std::array<char*, 4> arguments = {name.data(), defaults.data(), argument.data(), nullptr};
@@ -111,8 +142,10 @@ GnuplotProcess::GnuplotProcess(std::string argument, std::string_view script)
   const int failed =
       posix_spawnp(&child, name.c_str(), streams.actions(), nullptr, arguments.data(), environ);
   if (failed != 0) {
-    throw Error("gnuplot: cannot be started (" + std::generic_category().message(failed) +
-                "); install gnuplot-nox, for instance with scripts/install-dependencies");
+    throw Error(failed == ENOENT
+                    ? "gnuplot: is not installed; install gnuplot-nox"
+                    : "gnuplot: cannot be started (" + std::generic_category().message(failed) +
+                          "); see that `gnuplot --version` works");
   }
   run_->child = child;
 }
@@ -124,8 +157,14 @@ GnuplotProcess::~GnuplotProcess() {
 GnuplotProcess::GnuplotProcess(GnuplotProcess&&) noexcept = default;
 
 std::string GnuplotProcess::result() {
-  if (run_->child != 0 && wait_for(std::exchange(run_->child, 0)) != 0) {
-    throw Error("gnuplot: failed (" + gist_of(run_->err.content()) + "); try version 5.2 or later");
+  const int status = run_->child == 0 ? 0 : wait_for(std::exchange(run_->child, 0));
+  if (status != 0 && WIFSIGNALED(status)) {
+    throw Error(std::string("gnuplot: was ended (") + ::strsignal(WTERMSIG(status)) +
+                "); see that memory is free, and try again");
+  }
+  if (status != 0) {
+    throw Error("gnuplot: failed (" + gist_of(run_->err.content()) + ")" +
+                (asks_version_ ? "; install gnuplot-nox anew" : gnuplot_remedy()));
   }
   return run_->out.content();
 }
@@ -134,10 +173,17 @@ void require_gnuplot() {
   static_cast<void>(GnuplotProcess("--version", "").result());
 }
 
+std::string gnuplot_remedy() {
+  const std::string old = version_if_old(GnuplotProcess("--version", "").result());
+  if (!old.empty()) return "; it is version " + old + ", and 5.2 or later is needed";
+  return "; see that the temporary folder has room (TMPDIR names another), and that gnuplot draws "
+         "SVG, PDF and PNG by itself, as that of gnuplot-nox does";
+}
+
 void draw_with_gnuplot(const std::string& script, const std::filesystem::path& picture,
                        FileMode mode) {
   const std::string drawn = GnuplotProcess("", script).result();
-  if (drawn.empty()) throw Error("gnuplot: drew nothing; try version 5.2 or later");
+  if (drawn.empty()) throw Error("gnuplot: drew nothing" + gnuplot_remedy());
   replace_file(picture, drawn, mode);
 }
 

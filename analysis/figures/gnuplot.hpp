@@ -32,11 +32,17 @@ class GnuplotProcess {
  private:
   struct Run;
   std::unique_ptr<Run> run_;
+  bool asks_version_;
 };
 
 /// Called before long work that ends in a figure.
 /// \throws Error, with the remedy, if gnuplot is not installed or does not start
 void require_gnuplot();
+
+/// The end of a message that gnuplot drew no picture or not the wanted one: what may help, by the
+/// version that it says it has. Begins with "; ".
+/// \throws Error as require_gnuplot
+[[nodiscard]] std::string gnuplot_remedy();
 
 /// Runs a script and writes the picture that it prints to its standard output.
 /// \param script  sets a terminal, and no output file

@@ -84,7 +84,7 @@ std::string first_sentence(const std::string& text) {
 }
 
 [[noreturn]] void refuse_svg() {
-  throw Error("gnuplot: printed no SVG; try version 5.2 or later");
+  throw Error("gnuplot: printed no SVG" + gnuplot_remedy());
 }
 
 /// The value of an attribute of gnuplot's root element.

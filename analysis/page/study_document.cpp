@@ -69,8 +69,9 @@ Definitions header_of(const StudyHead& report, const Provenance& provenance, boo
   if (figures_missing) {
     header.entries.emplace_back(
         "figures",
-        "Figures were not drawn: gnuplot could not be used. Install gnuplot-nox and make the "
-        "report again; here each is described in words.");
+        "Figures were not drawn: gnuplot could not be used, for the reason that `touchtrial "
+        "report` "
+        "said. Make the report again where it can; here each is described in words.");
   }
   return header;
 }

@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/text.hpp"
+#include "protocols/design/prepare.hpp"
 #include "protocols/store/damage.hpp"
 #include "protocols/store/head_file.hpp"
 
@@ -73,15 +74,19 @@ bool was_made_anew(const store::StudyStore& store, const design::StudyKey& key,
   return is_of_other || pack.digest() != commitment.pack;
 }
 
-Opened<engine::Pack> find_pack(const store::StudyStore& store, const design::StudyKey& key) {
-  const std::string folder = one_line(key.pack_folder.string());
+Opened<engine::Pack> find_pack(const store::StudyStore& store, const design::StudyKey& key,
+                               const fs::path& database) {
+  const fs::path place = design::pack_in_reach(key, database);
+  const std::string folder = one_line(place.string());
   const auto leave = [](const std::string& why) {
     return Opened<engine::Pack>{std::nullopt, CheckState::not_checked,
                                 why + "; name the pack with --pack"};
   };
-  if (key.pack_folder.empty()) return leave("the key names no pack");
-  if (is_absent(key.pack_folder)) return leave("there is no " + folder);
-  Opened<engine::Pack> pack = opened<engine::Pack>([&] { return engine::Pack(key.pack_folder); });
+  if (place.empty()) return leave("the key names no pack");
+  if (is_absent(place)) {
+    return leave("there is no " + folder + ", nor this pack beside the database or here");
+  }
+  Opened<engine::Pack> pack = opened<engine::Pack>([&] { return engine::Pack(place); });
   try {
     if (pack.file && was_made_anew(store, key, *pack.file)) {
       return leave(folder + " was made anew for another study, or for this one after a change");
@@ -95,7 +100,7 @@ Opened<engine::Pack> find_pack(const store::StudyStore& store, const design::Stu
 Opened<engine::Pack> open_pack(const StudyFiles& files, const store::StudyStore& store,
                                const std::optional<design::StudyKey>& key) {
   if (!files.pack.empty()) return opened<engine::Pack>([&] { return engine::Pack(files.pack); });
-  if (key) return find_pack(store, *key);
+  if (key) return find_pack(store, *key, files.database);
   return {std::nullopt, CheckState::not_checked, "needs the key, or --pack"};
 }
 

@@ -19,7 +19,7 @@ struct StudyFiles {
   bool key_named = false;
   /// Head files beside `<database>.head`, which is read if it exists.
   std::vector<std::filesystem::path> heads{};
-  /// Empty: the pack that the key names, if it exists and belongs to this study.
+  /// Empty: the one of design::pack_in_reach, if it exists and belongs to this study.
   std::filesystem::path pack;
 };
 

@@ -1,18 +1,21 @@
 #include "app/run/participant_dialogue.hpp"
 
+#include "analysis/study_status.hpp"
 #include "app/console.hpp"
+#include "app/participant/words.hpp"
 #include "app/participant_ids.hpp"
 #include "app/run/session_bounds.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/text.hpp"
 #include "core/utc.hpp"
+#include "protocols/design/languages.hpp"
 #include "protocols/store/personal_data.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <span>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -25,7 +28,6 @@ namespace {
 constexpr std::array<std::string_view, 8> kAgeBands = {"under 18", "18-19", "20-29", "30-39",
                                                        "40-49",    "50-59", "60-69", "70 or more"};
 constexpr std::array<std::string_view, 2> kHands = {"right", "left"};
-constexpr std::array<std::string_view, 2> kYesNo = {"yes", "no"};
 
 }  // namespace
 
@@ -39,14 +41,43 @@ std::string proposed_participant(const std::vector<store::SessionRow>& sessions,
 
 namespace {
 
-design::Question choice_of(const std::string& id, const std::string& text,
-                           std::span<const std::string_view> options, bool required) {
-  design::Question question{id, design::QuestionKind::choice, {{"en", text}}, {}, required};
-  for (const std::string_view option : options) {
-    question.options.push_back({{"en", std::string(option)}});
+/// The texts of the dialogue in a study's language.
+class DialogueTexts {
+ public:
+  explicit DialogueTexts(const design::SessionPlan& plan)
+      : language_(plan.language), texts_(design::texts_of(plan)) {}
+
+  [[nodiscard]] std::string say(
+      const char* key, const std::vector<std::pair<std::string, std::string>>& values = {}) const {
+    return filled(texts_.at("dialogue").at(key), values);
   }
-  return question;
-}
+  [[nodiscard]] design::Translated translated(const std::string& text) const {
+    return {{language_, text}};
+  }
+  [[nodiscard]] design::Question choice(const std::string& id, const std::string& text,
+                                        const std::vector<std::string>& options,
+                                        bool required) const {
+    design::Question question{id, design::QuestionKind::choice, translated(text), {}, required};
+    for (const std::string& option : options) question.options.push_back(translated(option));
+    return question;
+  }
+  /// kAgeBands, as they are shown.
+  [[nodiscard]] std::vector<std::string> ages() const {
+    std::vector<std::string> bands(kAgeBands.begin(), kAgeBands.end());
+    bands.front() = say("age_under", {{"years", "18"}});
+    bands.back() = say("age_from", {{"years", "70"}});
+    return bands;
+  }
+  /// kHands, as they are shown.
+  [[nodiscard]] std::vector<std::string> hands() const {
+    const auto& words = texts_.at("handedness");
+    return {words.at("pen_right"), words.at("pen_left")};
+  }
+
+ private:
+  std::string language_;
+  design::Texts texts_;
+};
 
 /// The option that was chosen; empty if the question was left out.
 template <std::size_t count>
@@ -59,31 +90,29 @@ std::string option_in(const std::array<std::string_view, count>& options,
 }  // namespace
 
 ParticipantAnswers ask_participant(const AskQuestions& ask, const ParticipantQuestions& questions) {
+  const DialogueTexts texts(questions.session);
+  const std::string& version = questions.session.consent_version;
   ParticipantAnswers person;
   person.id = questions.proposed;
   const std::string consent =
-      questions.consent_version.empty()
-          ? "Experimenter: has the participant signed the consent form?"
-          : "Experimenter: has the participant signed the consent form, version " +
-                questions.consent_version + "?";
-  for (std::string why_not;;) {
-    const std::string id =
-        "Experimenter: the participant's id (not a name)" + (why_not.empty() ? "" : "\n" + why_not);
+      version.empty() ? texts.say("consent") : texts.say("consent_version", {{"consent", version}});
+  for (std::string remark = questions.note;;) {
+    const std::string id = texts.say("id") + (remark.empty() ? "" : "\n" + remark);
     const design::Questionnaire first{
         "participant",
-        {{"participant", design::QuestionKind::text, {{"en", id}}, {}, true},
-         choice_of("consent", consent, kYesNo, true)}};
+        {{"participant", design::QuestionKind::text, texts.translated(id), {}, true},
+         texts.choice("consent", consent, {texts.say("yes"), texts.say("no")}, true)}};
     const std::vector<std::string> answers = ask({&first, person.id});
     person.id = answers.at(0);
     person.has_consented = answers.at(1) == "0";
-    why_not = questions.why_not(person.id);
-    if (why_not.empty()) break;
+    remark = questions.why_not(person.id);
+    if (remark.empty()) break;
   }
   if (!person.has_consented) return person;
   const design::Questionnaire second{
       "person",
-      {choice_of("age", "Experimenter: how old is the participant?", kAgeBands, false),
-       choice_of("hand", "Experimenter: which hand holds the pen?", kHands, false)}};
+      {texts.choice("age", texts.say("age"), texts.ages(), false),
+       texts.choice("hand", texts.say("hand"), texts.hands(), false)}};
   const std::vector<std::string> answers = ask({&second});
   person.age_band = option_in(kAgeBands, answers.at(0));
   person.hand = option_in(kHands, answers.at(1));
@@ -122,26 +151,93 @@ std::string remark_on(const ParticipantAnswers& person) {
   return remark + (remark.empty() ? "" : ", ") + "pen in the " + person.hand + " hand";
 }
 
+/// Whom a database knows.
+struct KnownPeople {
+  std::vector<store::SessionRow> sessions{};
+  std::vector<analysis::VisitToCome> visits{};
+  std::vector<std::string> ids{};
+
+  explicit KnownPeople(const std::filesystem::path& database) : ids(known_ids(database)) {
+    if (!is_there(database)) return;
+    const auto store = store::StudyStore::open(database, store::StudyStore::Access::read_only);
+    sessions = store.sessions();
+    visits = analysis::visits_to_come(store);
+  }
+  [[nodiscard]] const analysis::VisitToCome* next_visit(const std::string& id) const {
+    const auto found = std::ranges::find(visits, id, &analysis::VisitToCome::participant);
+    return found == visits.end() ? nullptr : &*found;
+  }
+  /// Of the participant's last session; 0 if there is none.
+  [[nodiscard]] int last_visit(const std::string& id) const {
+    int last = 0;
+    for (const store::SessionRow& row : sessions) {
+      if (row.participant == id) last = std::max(last, row.visit);
+    }
+    return last;
+  }
+};
+
+/// The visit that the session will be: the one that the options name, or else the participant's
+/// next, or the one that is taken up or begun again.
+int visit_of(const RunOptions& options, const KnownPeople& people, const std::string& id) {
+  if (options.visit > 1) return options.visit;
+  if (const analysis::VisitToCome* const next = people.next_visit(id)) return next->visit;
+  return std::max(1, people.last_visit(id));
+}
+
+/// What ask_participant asks, and why an id may not be the one that is meant.
+ParticipantQuestions questions_for(const RunOptions& options, const design::StationKey& key,
+                                   const KnownPeople& people) {
+  const DialogueTexts texts(key.study.session);
+  const auto comes_for = [texts, of = std::to_string(key.study.visits.count)](
+                             const analysis::VisitToCome& next) {
+    return texts.say("next_visit",
+                     {{"id", next.participant}, {"visit", std::to_string(next.visit)}, {"of", of}});
+  };
+  ParticipantQuestions questions;
+  questions.session = key.study.session;
+  std::string said;  // the id that something was said about
+  if (options.visit == 1 && !people.visits.empty() && people.visits.front().is_due(utc_now())) {
+    said = people.visits.front().participant;
+    questions.proposed = said;
+    questions.note = comes_for(people.visits.front());
+  } else if (options.visit == 1) {
+    questions.proposed = proposed_participant(people.sessions, key.station);
+  }
+  questions.why_not = [&options, &people, texts, comes_for,
+                       said](const std::string& id) mutable -> std::string {
+    if (!store::is_participant_id(id)) return texts.say("id_rule");
+    const bool is_said = std::exchange(said, id) == id;
+    if (const analysis::VisitToCome* const next = people.next_visit(id)) {
+      if (options.visit > 1) return "";
+      // A mistyped id must not become somebody's next visit.
+      if (next->is_due(utc_now())) return is_said ? "" : comes_for(*next);
+      return texts.say(
+          "too_early",
+          {{"id", id}, {"visit", std::to_string(next->visit)}, {"time", utc_words(*next->from)}});
+    }
+    if (people.last_visit(id) > 0) {
+      const bool may_be = options.visit > 1 || options.on_existing != OnExisting::refuse;
+      return may_be ? "" : texts.say("has_session", {{"id", id}});
+    }
+    const auto meant = perhaps_meant(id, people.ids);
+    if (!meant || is_said) return "";
+    return texts.say("looks_like", {{"known", *meant}, {"id", id}});
+  };
+  return questions;
+}
+
 }  // namespace
 
 RunOptions with_participant(const RunOptions& options, const design::StationKey& key) {
-  std::vector<store::SessionRow> sessions;
-  if (is_there(options.database)) {
-    sessions =
-        store::StudyStore::open(options.database, store::StudyStore::Access::read_only).sessions();
-  }
-  ParticipantQuestions questions;
-  if (options.visit == 1) questions.proposed = proposed_participant(sessions, key.station);
-  questions.consent_version = key.study.session.consent_version;
-  questions.why_not = [&](const std::string& id) -> std::string {
-    if (!store::is_participant_id(id)) return "Use 1 to 32 of 0-9, A-Z, a-z, +, -, _.";
-    const bool has_come = std::ranges::count(sessions, id, &store::SessionRow::participant) > 0;
-    if (!has_come || options.visit > 1 || options.on_existing != OnExisting::refuse) return "";
-    return id + " has a session already.";
-  };
+  const KnownPeople people(options.database);
+  const ParticipantQuestions questions = questions_for(options, key, people);
+  const std::string& version = key.study.session.consent_version;
   ParticipantWindowOptions wanted;
   wanted.monitor = options.console_monitor > 0 ? options.console_monitor : options.monitor;
   wanted.size_px = options.window_px;
+  wanted.session.language = key.study.session.language;
+  wanted.session.texts = key.study.session.texts;
   ParticipantWindow window(wanted);
   ParticipantAnswers person;
   run_beside(window, [&] {
@@ -149,14 +245,15 @@ RunOptions with_participant(const RunOptions& options, const design::StationKey&
         [&](const session::QuestionStep& step) { return answers_in(window, step); }, questions);
   });
   if (person.has_consented) {
-    record(person, options, questions.consent_version);
-  } else if (!questions.consent_version.empty()) {
+    record(person, options, version);
+  } else if (!version.empty()) {
     throw UsageError(fmt::format(
         "run: participant {} has not signed the consent form, version {}; no session began",
-        person.id, questions.consent_version));
+        person.id, version));
   }
   RunOptions known = options;
   known.participant = person.id;
+  known.visit = visit_of(options, people, person.id);
   known.remark = remark_on(person);
   return known;
 }

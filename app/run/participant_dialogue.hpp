@@ -4,6 +4,7 @@
 
 #include "app/participant/participant_window.hpp"
 #include "app/run/run_session.hpp"
+#include "protocols/design/session_plan.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/study_store.hpp"
 
@@ -21,8 +22,9 @@ namespace touchtrial::app {
                                                const design::Station& station);
 
 struct ParticipantQuestions {
-  std::string proposed;         ///< id; may be empty
-  std::string consent_version;  ///< of the form; empty: the study names none
+  design::SessionPlan session{};  ///< the study's: language, texts and version of the form
+  std::string proposed{};         ///< id; may be empty
+  std::string note{};             ///< on the proposed id, as a sentence; may be empty
   /// Why a participant of this id cannot come, as a sentence; empty: they can.
   std::function<std::string(const std::string& id)> why_not;
 };
@@ -30,7 +32,7 @@ struct ParticipantQuestions {
 struct ParticipantAnswers {
   std::string id;
   bool has_consented = false;
-  std::string age_band{};  ///< for instance "20-29"; empty: not given
+  std::string age_band{};  ///< for instance "20-29", in English; empty: not given
   std::string hand{};      ///< that holds the pen, "right" or "left"; empty: not given
 };
 
@@ -38,13 +40,13 @@ struct ParticipantAnswers {
 using AskQuestions = std::function<std::vector<std::string>(const session::QuestionStep&)>;
 
 /// Asks for id and consent, again while a participant of that id cannot come; then, of whoever has
-/// consented, for age and hand. In English.
+/// consented, for age and hand. In the study's language: the participant may read along.
 [[nodiscard]] ParticipantAnswers ask_participant(const AskQuestions& ask,
                                                  const ParticipantQuestions& questions);
 
 /// Asks who comes, in a window of its own on the experimenter's monitor, or on the participant's if
 /// there is no other, and records the consent beside the database.
-/// \return the options with the participant's id and a remark
+/// \return the options with the participant's id, the visit that it is, and a remark
 /// \throws UsageError if the window is gone or a signal ends the program before there are answers,
 ///   or if the study names a consent form and the participant has not signed it
 /// \throws DeviceError as ParticipantWindow

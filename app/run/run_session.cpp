@@ -6,6 +6,7 @@
 #include "app/participant/page_layout.hpp"
 #include "app/participant/participant_window.hpp"
 #include "app/participant/window_subject.hpp"
+#include "app/participant_ids.hpp"
 #include "app/run/participant_dialogue.hpp"
 #include "app/run/run_study.hpp"
 #include "app/run/session_bounds.hpp"
@@ -141,7 +142,7 @@ std::vector<session::ExperimenterRequest> known_deviations(const RunOptions& opt
   if (!options.remark.empty()) {
     known.push_back({session::ExperimenterRequest::Kind::note, options.remark, ""});
   }
-  if (study.key_in_reach) {
+  if (!study.key_in_reach.empty()) {
     known.push_back({session::ExperimenterRequest::Kind::deviation,
                      "the investigator's key lies beside the study", "key-at-station"});
   }
@@ -192,6 +193,12 @@ void warn_of_unknown_size(const RunOptions& options, const design::Study& study,
       options.monitor > 1 ? " --monitor " + std::to_string(options.monitor) : "");
 }
 
+store::ScreenRecord record_of(const ScreenScale& screen) {
+  return {screen.mm_per_unit, screen.is_measured ? "measured"
+                              : screen.is_known  ? "stated"
+                                                 : "assumed"};
+}
+
 /// The experimenter must be able to consent to the force.
 void require_consent(const device::DeviceInfo& device) {
   if (device.visual || ::isatty(STDIN_FILENO) != 0) return;
@@ -233,6 +240,7 @@ class PersonsSession {
     if (options_.console_monitor > 0) wanted.console_monitor = options_.console_monitor;
     ParticipantWindow window(wanted);
     warn_of_unknown_size(options_, study_.key.study, window);
+    screen_ = record_of(window.screen());
     int code = 1;
     run_beside(window, [&] { code = run_before(window); });
     return code;
@@ -245,7 +253,14 @@ class PersonsSession {
         enter_session(options_, study_, database_, [&](store::SessionOpening& opening) {
           session::describe_station(opening, device_.info(), explorer.scheduling(),
                                     device::kServoRateHz, device_.certificate());
+          opening.station->screen = screen_;
         });
+    if (!study_.key_in_reach.empty()) {
+      spdlog::warn(
+          "{}: the investigator's key lies at this station, which is recorded as a deviation; move "
+          "it to another medium",
+          study_.key_in_reach.string());
+    }
     session::SteadySessionClock clock(entered.clock);
     SpokenAnswers spoken(window, terminal_);
     RunExperimenter experimenter(
@@ -279,6 +294,7 @@ class PersonsSession {
   SessionDevice device_;
   std::unique_ptr<session::Instruments> instruments_;
   ParticipantPractice practice_;
+  store::ScreenRecord screen_;
   std::optional<SessionSound> sound_;  ///< nothing with --no-sound: no sound card is opened
 };
 
@@ -381,8 +397,12 @@ class SimulatedSession {
 }  // namespace
 
 int run_study_session(const RunOptions& given) {
+  if (!given.participant.empty()) {
+    confirm_id("run", given.database, given.participant, given.yes);
+  }
   const EndingSignals signals;
   const RunStudy study = run_study_for(given);
+  confirm_enrolment(given, study.key);
   const RunOptions options = given.participant.empty() ? with_participant(given, study.key) : given;
   if (options.is_simulated()) return SimulatedSession(options, study).run();
   return PersonsSession(options, study).run();

@@ -32,6 +32,7 @@ struct RunOptions {
   HeadOptions heads;
   int enrolment = 0;      ///< 0: the station's next number
   int visit = 1;          ///< of the participant
+  bool yes = false;       ///< go on without asking about an unusual id or number
   std::string station{};  ///< of a study with several; empty: its only one
   /// A simulated participant instead of a person: a model file, or "default".
   std::optional<std::filesystem::path> subject;

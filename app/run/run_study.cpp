@@ -34,13 +34,8 @@ design::StationKey station_key_at(const RunOptions& options, const fs::path& fil
 }
 
 /// The investigator's key opens everything that a station should not know.
-bool has_key_in_reach(const RunOptions& options, const design::PackPlace& place) {
-  if (options.is_simulated() || !is_there(place.key)) return false;
-  spdlog::warn(
-      "{}: the investigator's key lies at this station, which is recorded as a deviation; move it "
-      "to another medium",
-      place.key.string());
-  return true;
+fs::path key_in_reach(const RunOptions& options, const design::PackPlace& place) {
+  return options.is_simulated() || !is_there(place.key) ? fs::path() : place.key;
 }
 
 void require_intact(const engine::Pack& pack, const design::StudyCodes& key) {
@@ -64,7 +59,7 @@ RunStudy simulated_study(const RunOptions& options, const design::Study& study) 
   prepare_simulated_pack(key);
   engine::Pack pack(key.pack_folder);
   design::StationKey station = design::station_key(key, design::kOnlyStation);
-  return {std::move(station), std::move(pack), false, std::move(key)};
+  return {std::move(station), std::move(pack), {}, std::move(key)};
 }
 
 [[noreturn]] void refuse(const RunOptions& options, const std::string& why) {
@@ -130,7 +125,7 @@ RunStudy run_study_for(const RunOptions& options) {
   engine::Pack pack(options.pack.empty() && is_there(key.pack_folder) ? key.pack_folder
                                                                       : place.pack);
   require_intact(pack, key);
-  return {std::move(key), std::move(pack), has_key_in_reach(options, place)};
+  return {std::move(key), std::move(pack), key_in_reach(options, place)};
 }
 
 namespace {

@@ -8,6 +8,7 @@
 #include "protocols/store/session_lock.hpp"
 #include "protocols/store/study_store.hpp"
 
+#include <filesystem>
 #include <optional>
 
 namespace touchtrial::app {
@@ -15,7 +16,8 @@ namespace touchtrial::app {
 struct RunStudy {
   design::StationKey key;
   engine::Pack pack;
-  bool key_in_reach = false;  ///< the investigator's key lies beside the pack
+  /// The investigator's key, if it lies beside the pack; else empty.
+  std::filesystem::path key_in_reach{};
   /// Of a simulated study that was not prepared: its key, for the database that is made.
   std::optional<design::StudyKey> own_key{};
 };

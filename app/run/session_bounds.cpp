@@ -371,6 +371,27 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
 
 }  // namespace
 
+void confirm_enrolment(const RunOptions& options, const design::StationKey& key) {
+  if (options.enrolment == 0 || key.station.name != design::kOnlyStation) return;
+  std::set<int> taken;
+  if (is_there(options.database)) {
+    taken = taken_numbers(
+        store::StudyStore::open(options.database, store::StudyStore::Access::read_only));
+  }
+  const int next = design::next_enrolment_of(key.station, taken);
+  const int planned = key.study.registration.participants;
+  if (options.enrolment <= std::max(planned, next)) return;
+  confirm(
+      fmt::format("run: --enrolment {} {}; the next number is {}, which a participant gets "
+                  "without --enrolment",
+                  options.enrolment,
+                  planned > 0
+                      ? fmt::format("is beyond the {} participants that the study plans", planned)
+                      : "leaves numbers out",
+                  next),
+      options.yes);
+}
+
 EnteredSession enter_session(const RunOptions& options, const RunStudy& study,
                              RunDatabase& database, const DescribeOpening& describe) {
   require_planned_visit(options, study);
@@ -452,7 +473,12 @@ std::optional<session::ExperimenterRequest> RunExperimenter::request() {
 
 void RunExperimenter::acknowledged(int trial) {
   inner_.acknowledged(trial);
-  print("trial " + std::to_string(trial) + " acknowledged\n");
+  try {
+    print("trial " + std::to_string(trial) + " acknowledged\n");
+  } catch (const ClosedPipe& closed) {
+    throw FileError(std::string(closed.what()) +
+                    "; the session stays open: go on with --on-existing resume");
+  }
 }
 
 namespace {
@@ -472,8 +498,9 @@ int conclude_session(const RunOptions& options, int session, const session::Sess
                      const store::StudyStore& store) {
   const bool is_complete =
       store.session_of(options.participant)->state == store::SessionState::completed;
-  print(summary(options, session, tally, is_complete, store) + head_words(store) +
-        "; write it on the day sheet\n");
+  // Nobody has a day sheet of simulated participants.
+  print(summary(options, session, tally, is_complete, store) +
+        (options.is_simulated() ? "" : head_words(store) + "; write it on the day sheet\n"));
   if (tally.left) {
     std::fprintf(stderr,
                  "touchtrial: %s; the session stays open: go on with the same command and "

@@ -32,6 +32,12 @@ struct EnteredSession {
 /// Fills in what a new session's first event says about device and station.
 using DescribeOpening = std::function<void(store::SessionOpening&)>;
 
+/// Asks at the terminal about an enrolment number that the options name and that lies beyond the
+/// participants that the study plans, or, if it states no plan, beyond the next number. The ranges
+/// of a divided study's stations are bounds of their own.
+/// \throws as confirm, and as StudyStore::open
+void confirm_enrolment(const RunOptions& options, const design::StationKey& key);
+
 /// Opens a new session for the participant, or handles the existing one as `options.on_existing`
 /// says. On return, the session's first or next event is stored. The database is made last.
 /// \throws StoreError if the participant has a session that may not be resumed (with its number,

@@ -385,6 +385,24 @@ PackPlace pack_place_at(const std::filesystem::path& pack_folder) {
   return {pack, key};
 }
 
+std::filesystem::path pack_in_reach(const StudyCodes& codes,
+                                    const std::filesystem::path& database) {
+  const std::filesystem::path& named = codes.pack_folder;
+  if (named.empty() || is_there(named)) return named;
+  for (const std::filesystem::path& folder :
+       {database.parent_path(), codes.study.folder, std::filesystem::path()}) {
+    std::filesystem::path place = folder / named.filename();
+    try {
+      if (is_there(place) && engine::Pack(place).manifest().study_id == codes.study_id) {
+        return place;
+      }
+    } catch (const FileError&) {
+      // No pack, or a damaged one; another place may have it.
+    }
+  }
+  return named;
+}
+
 namespace {
 
 [[noreturn]] void refuse_practice_image(const Study& study, std::size_t index,

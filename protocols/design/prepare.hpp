@@ -33,6 +33,13 @@ struct PackPlace {
 /// The given folder as the pack, and the same path with `.key` in place of `.pack` as the key.
 [[nodiscard]] PackPlace pack_place_at(const std::filesystem::path& pack_folder);
 
+/// Where a key's pack is: in the folder that the key names or, if that is gone (a key on another
+/// medium names its pack from there), in one of the same name with this study's pack: beside the
+/// database, beside the study file, or in the current folder.
+/// \return the folder that the key names if there is none; empty if it names none
+[[nodiscard]] std::filesystem::path pack_in_reach(const StudyCodes& codes,
+                                                  const std::filesystem::path& database);
+
 /// How one stimulus was prepared. Shown to those who prepare a study, never during the study.
 struct PreparedStimulus {
   std::string class_label;

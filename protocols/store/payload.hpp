@@ -122,6 +122,14 @@ struct UnblindingBody {
   std::string participant{};  ///< whose outcomes alone are looked at; empty: everybody's
 };
 
+/// `opened`, in real time before a window: the participant's screen.
+struct ScreenRecord {
+  double mm_per_px = 0.0;  ///< millimetres on the screen for one pixel, as windows count them
+  std::string source;      ///< "measured" (with a card), "stated" (by the monitor) or "assumed"
+
+  friend bool operator==(const ScreenRecord&, const ScreenRecord&) = default;
+};
+
 /// `opened`, in real time: the device that the hand was on. Says nothing about stimuli.
 struct StationRecord {
   std::string model;          ///< as the device reports it; may be empty
@@ -131,6 +139,7 @@ struct StationRecord {
   double rate_hz = 0.0;       ///< requested rate of the servo
   std::string scheduling;     ///< that the servo's thread obtained
   std::string calibration{};  ///< SHA-256 of the device's certificate, hexadecimal; empty: none
+  std::optional<ScreenRecord> screen{};  ///< only of sessions before a window
 
   friend bool operator==(const StationRecord&, const StationRecord&) = default;
 };

@@ -69,6 +69,12 @@ void members(Io& io, In<Io, StudyCommitment>& body) {
 }
 
 template <typename Io>
+void members(Io& io, In<Io, ScreenRecord>& body) {
+  io("mm_per_px", body.mm_per_px);
+  io("source", body.source);
+}
+
+template <typename Io>
 void members(Io& io, In<Io, StationRecord>& body) {
   io("model", body.model);
   io("firmware", body.firmware);
@@ -77,6 +83,7 @@ void members(Io& io, In<Io, StationRecord>& body) {
   io("rate_hz", body.rate_hz);
   io("scheduling", body.scheduling);
   io("calibration", body.calibration);
+  io.part("screen", body.screen);
 }
 
 template <typename Io>

@@ -140,13 +140,16 @@ class Import {
   Import(const ImportOptions& options, const ImportProgress& progress)
       : options_(completed(options)), progress_(progress) {}
 
+  /// Does all that reads.
+  void try_out() {
+    const PhotoFolder folder = surveyed();
+    const auto shares = plan_shares(classes_, options_);
+    for (std::size_t c = 0; c < classes_.size(); ++c) cut_class({}, c, shares[c]);
+  }
+
   ImportReport run() {
     check_import(options_);
-    PhotoFolder folder = list_photographs(options_.photographs);
-    check_classes(folder, options_);
-    total_ = 0;
-    for (const PhotoClass& one : folder.classes) total_ += 2 * static_cast<int>(one.files.size());
-    survey(folder);
+    PhotoFolder folder = surveyed();
     const auto shares = plan_shares(classes_, options_);
     DraftFolder draft(options_.pictures);
     for (std::size_t c = 0; c < classes_.size(); ++c) cut_class(draft.path(), c, shares[c]);
@@ -156,6 +159,15 @@ class Import {
   }
 
  private:
+  PhotoFolder surveyed() {
+    PhotoFolder folder = list_photographs(options_.photographs);
+    check_classes(folder, options_);
+    total_ = 0;
+    for (const PhotoClass& one : folder.classes) total_ += 2 * static_cast<int>(one.files.size());
+    survey(folder);
+    return folder;
+  }
+
   void survey(const PhotoFolder& folder) {
     Duplicates duplicates;
     for (const PhotoClass& one : folder.classes) {
@@ -202,6 +214,7 @@ class Import {
     }
   }
 
+  /// \param draft  empty: the crop is only looked at
   void write_crop(const fs::path& draft, const std::string& label, CropPlace place,
                   const GreyImage& crop) {
     number_of_label_ = label == last_label_ ? number_of_label_ + 1 : 1;
@@ -218,6 +231,7 @@ class Import {
                       ", y " + std::to_string(place.y) +
                       ", where nothing can be felt; trim the photograph, or remove it");
     }
+    if (draft.empty()) return;
     put_down(draft, picture, crop);
     record_.pictures.push_back(std::move(picture));
   }
@@ -286,6 +300,10 @@ class Import {
 
 fs::path default_pictures_folder(const fs::path& study) {
   return study.parent_path() / (study.stem().string() + ".pictures");
+}
+
+void try_photographs(const ImportOptions& options, const ImportProgress& progress) {
+  Import(options, progress).try_out();
 }
 
 ImportReport import_photographs(const ImportOptions& options, const ImportProgress& progress) {

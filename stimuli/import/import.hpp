@@ -1,6 +1,8 @@
 /// \file A folder of photographs made into the exemplars of a study. Manual: docs/own-images.md.
 #pragma once
 
+#include "core/errors.hpp"
+
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -63,13 +65,36 @@ struct ImportReport {
 /// Called after each photograph is read, for a progress bar; each is read twice.
 using ImportProgress = std::function<void(int done, int total)>;
 
+/// The photographs are too small or too few for the crops. The message names numbers that would do.
+class CropsDoNotFit : public FileError {
+ public:
+  CropsDoNotFit(const std::string& what, int crops, int size_px)
+      : FileError(what), crops_(crops), size_px_(size_px) {}
+
+  /// How many crops of the wanted size there are of each class; 0: none.
+  [[nodiscard]] int crops() const noexcept { return crops_; }
+  /// The largest side of as many crops as were wanted; 0: not even the smallest.
+  [[nodiscard]] int size_px() const noexcept { return size_px_; }
+
+ private:
+  int crops_;
+  int size_px_;
+};
+
+/// Reads the photographs and cuts the crops as import_photographs does, and writes nothing.
+/// \param options  with numbers in range; those of outputs and texts are ignored
+/// \throws CropsDoNotFit if photographs are too small or too few
+/// \throws FileError as import_photographs, of the photographs
+void try_photographs(const ImportOptions& options, const ImportProgress& progress = {});
+
 /// Reads the photographs, cuts the crops, and writes pictures, manifest.json and the study file.
 /// Writes nothing unless everything succeeds. The same photographs, options and seed give the same
 /// crops and study. Holds one photograph in memory at a time.
 /// \throws UsageError if options are out of range or contradict each other, or an output exists
 ///   already
-/// \throws FileError if the folder or a photograph cannot be used (too few, too small, equal,
-///   unreadable, with an impossible label), or an output cannot be written
+/// \throws CropsDoNotFit if photographs are too small or too few
+/// \throws FileError if the folder or a photograph cannot be used (equal, unreadable, with an
+///   impossible label), or an output cannot be written
 ImportReport import_photographs(const ImportOptions& options, const ImportProgress& progress = {});
 
 }  // namespace touchtrial::stimuli

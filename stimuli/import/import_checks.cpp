@@ -104,8 +104,9 @@ bool all_fit(const std::vector<SizedClass>& classes, int side_px, int crops) {
   });
 }
 
-/// The remedy with numbers: fewer crops of this size, or smaller crops.
-std::string what_would_do(const std::vector<SizedClass>& classes, const ImportOptions& options) {
+/// Refuses with the remedy in numbers: fewer crops of this size, or smaller crops.
+[[noreturn]] void refuse_crops(const std::string& what, const std::vector<SizedClass>& classes,
+                               const ImportOptions& options) {
   int crops = options.crops;
   while (crops > 0 && !all_fit(classes, options.size_px, crops)) --crops;
   int side_px = options.size_px;
@@ -113,7 +114,8 @@ std::string what_would_do(const std::vector<SizedClass>& classes, const ImportOp
   std::string remedy = "give ";
   if (crops > 0) remedy += "--crops " + std::to_string(crops) + ", ";
   if (side_px >= kMinCropSizePx) remedy += "--size " + std::to_string(side_px) + ", ";
-  return remedy + "or more or larger photographs";
+  throw CropsDoNotFit(what + "; " + remedy + "or more or larger photographs", crops,
+                      side_px >= kMinCropSizePx ? side_px : 0);
 }
 
 void check_photo_sizes(const SizedClass& one, const std::vector<SizedClass>& classes,
@@ -122,10 +124,11 @@ void check_photo_sizes(const SizedClass& one, const std::vector<SizedClass>& cla
     const PhotoSize& size = one.sizes[i];
     if (std::min(size.height_px, size.width_px) >= options.size_px) continue;
     const bool resampled = options.pixels_per_mm_of_files || options.pixels_per_mm.has_value();
-    throw FileError(one_line(one.files[i].string()) + ": has " + std::to_string(size.width_px) +
-                    " x " + std::to_string(size.height_px) + " pixels" +
-                    (resampled ? " after resampling" : "") + ", too few for a crop of " +
-                    times(options.size_px) + "; " + what_would_do(classes, options));
+    refuse_crops(one_line(one.files[i].string()) + ": has " + std::to_string(size.width_px) +
+                     " x " + std::to_string(size.height_px) + " pixels" +
+                     (resampled ? " after resampling" : "") + ", too few for a crop of " +
+                     times(options.size_px),
+                 classes, options);
   }
 }
 
@@ -230,11 +233,11 @@ std::vector<std::vector<int>> plan_shares(const std::vector<SizedClass>& classes
     const int room = std::accumulate(
         one.sizes.begin(), one.sizes.end(), 0,
         [&](int sum, PhotoSize size) { return sum + overlapping_crops(size, options.size_px); });
-    throw FileError(one_line(options.photographs.string()) + ": class \"" + one.label + "\" has " +
-                    std::to_string(one.files.size()) + " photograph(s), which give " +
-                    std::to_string(room) + " crop(s) of " + times(options.size_px) +
-                    " that share at most half their side, not " + std::to_string(options.crops) +
-                    "; " + what_would_do(classes, options));
+    refuse_crops(one_line(options.photographs.string()) + ": class \"" + one.label + "\" has " +
+                     std::to_string(one.files.size()) + " photograph(s), which give " +
+                     std::to_string(room) + " crop(s) of " + times(options.size_px) +
+                     " that share at most half their side, not " + std::to_string(options.crops),
+                 classes, options);
   }
   return shares;
 }

@@ -30,8 +30,7 @@ struct SizedClass {
 };
 
 /// The number of crops of each photograph of each class.
-/// \throws FileError if a photograph is smaller than a crop, or a class gives too few crops; the
-///   message names numbers that would do
+/// \throws CropsDoNotFit if a photograph is smaller than a crop, or a class gives too few crops
 [[nodiscard]] std::vector<std::vector<int>> plan_shares(const std::vector<SizedClass>& classes,
                                                         const ImportOptions& options);
 

@@ -1,6 +1,9 @@
 /// Studies with several visits and groups: who counts, the primary test, breakdowns, exports, and
 /// what is verified.
+#include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/csv_reading.hpp"
+#include "analysis/exports/dataset_rules.hpp"
+#include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/fake_study.hpp"
 #include "analysis/quality.hpp"
@@ -173,6 +176,35 @@ TEST_CASE("exports have columns of visits and groups, and others' exports do not
   FakeStudy usual(design::identification::classification());
   static_cast<void>(analysis::export_csv(usual.store(), std::nullopt, usual.folder() / "out"));
   CHECK(header_of(usual.folder() / "out" / "trials.csv").ends_with(",overruns"));
+}
+
+TEST_CASE("datasets for archives tell visits, and groups once outcomes are shown") {
+  FakeStudy study(
+      design::identification::classification(),
+      with(R"({"visits": {"count": 2}, "groups": {"labels": ["trained", "control"]}})"));
+  add_three(study);
+  const auto bids = study.folder() / "bids";
+  const auto psych = study.folder() / "psych";
+  const auto groups_in = [&] {
+    CHECK(bids_faults(bids).empty());
+    CHECK(psych_ds_faults(psych).empty());
+    CHECK_THAT(text_of(read_file(bids / "sub-P1/sub-P1_sessions.tsv")),
+               holds_text("\tvisit\tgroup\n"));
+    const std::string people = text_of(read_file(bids / "participants.tsv"));
+    CHECK_THAT(people, holds_text("\tvisit\tgroup"));
+    return people.find("trained") != std::string::npos ||
+           people.find("control") != std::string::npos;
+  };
+  const analysis::DatasetSource blind{study.store()};
+  static_cast<void>(analysis::export_bids(blind, {}, bids));
+  static_cast<void>(analysis::export_psych_ds(blind, {}, psych));
+  CHECK_FALSE(groups_in());
+  study.close_and_unblind();
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  const analysis::DatasetSource shown{study.store(), &outcomes, &study.key()};
+  static_cast<void>(analysis::export_bids(shown, {}, bids));
+  static_cast<void>(analysis::export_psych_ds(shown, {}, psych));
+  CHECK(groups_in());
 }
 
 TEST_CASE("before outcomes are shown nothing in the database has a group that is not open") {

@@ -146,6 +146,36 @@ TEST_CASE("the summary of a merge says what was collected, and where the key is"
         std::string::npos);
 }
 
+TEST_CASE("a merged study has the consents beside its stations, and nothing else of the people") {
+  const SimulatedStations study;
+  const auto consent = [&](const std::string& database, const std::string& participant,
+                           const std::string& version) {
+    return run_touchtrial(study.path(),
+                          {"consent", study.in(database), "--participant", participant, "--version",
+                           version, "--details", "-"},
+                          "age: 34\ncontact: ann@example.org\n")
+        .exit_code;
+  };
+  REQUIRE(consent("s1.db", "P001", "3") == 0);
+  REQUIRE(consent("s1.db", "P001", "4") == 0);
+  REQUIRE(consent("s3.db", "P003", "4") == 0);
+  const ProgramResult ran =
+      study.merge({"s1.db", "s3.db", "s1.db"}, {"-o", study.in("C.db"), "--json"});
+  REQUIRE(ran.exit_code == 0);
+  CHECK(json::parse(ran.output).at("consents") == 3);
+  REQUIRE(
+      study.run({"export", study.in("C.db"), "--format", "csv", "-o", study.in("out")}).exit_code ==
+      0);
+  CHECK(content(study.in("out/consents.csv")) ==
+        "participant,consent,consent_version,simulated\nP001,1,3,1\nP001,2,4,1\nP003,1,4,1\n");
+  const std::string kept = content(study.in("C.db.personal"));
+  CHECK(kept.find("P003") != std::string::npos);
+  CHECK(kept.find("ann@") == std::string::npos);
+  const json shown = json::parse(
+      study.run({"consent", study.in("C.db"), "--participant", "P003", "--show", "--json"}).output);
+  CHECK(shown["consents"][0]["age"].is_null());
+}
+
 TEST_CASE("a database that lacks what the head file beside it knows is not merged") {
   const StudyFolder study;
   const auto simulate = [&](const std::string& name, const std::string& participants,
@@ -190,7 +220,7 @@ TEST_CASE("the key of a study with people is not copied") {
     const ProgramResult ran =
         study.run({"run", study.in("cloths.json"), "--participant", participant, "--enrolment",
                    std::to_string(++number), "--db", study.in(participant + ".db"), "--subject",
-                   study.in("quick.json"), "--headless"});
+                   study.in("quick.json"), "--headless", "--yes"});
     INFO(ran.errors);
     REQUIRE(ran.exit_code == 0);
     fs::copy_file(study.in("cloths.key"), study.in(participant + ".db.key"));

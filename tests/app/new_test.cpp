@@ -96,17 +96,37 @@ TEST_CASE("every line of a new study has its comment, and its answers stand in i
 
 TEST_CASE("what no option answers is asked, and a wrong answer is asked for again") {
   const Desk desk;
-  // Name, protocol, pictures, people twice, worth, language, consent.
-  const ProgramResult made = desk.make("linen", {}, "linen\n\n\nmany\n12\n\nfr-klingon\nen\n\n");
+  // Name, protocol, pictures, people twice, worth, language, consent, visits, groups twice.
+  const ProgramResult made =
+      desk.make("linen", {}, "linen\n\n\nmany\n12\n\nfr-klingon\nen\n\n\none\n\n");
   INFO(made.errors);
   REQUIRE(made.exit_code == 0);
   CHECK_THAT(made.errors, holds_text("Number of participants [20]: "));
   CHECK_THAT(made.errors, holds_text("many: must be a number from 2 to 100000"));
   CHECK_THAT(made.errors, holds_text("fr-klingon: "));
+  CHECK_THAT(made.errors, holds_text("one: must be 2 to 16 names"));
+  CHECK_THAT(made.errors, !holds_text("Least days between"));
   const json study = desk.study("linen/linen.json");
   CHECK(study.at("registration").at("participants") == 12);
   CHECK(study.at("registration").at("smallest_effect") == 0.4);
   CHECK(study.at("session").at("consent_version") == "");
+  CHECK_FALSE(study.contains("visits"));
+  CHECK_FALSE(study.contains("groups"));
+}
+
+TEST_CASE("visits and groups that are wished for stand in a new study, and it runs") {
+  const Desk desk;
+  const ProgramResult made = desk.make(
+      "felt", {"--yes", "--visits", "2", "--between", "6.5", "--groups", "trained, control"});
+  INFO(made.errors);
+  REQUIRE(made.exit_code == 0);
+  const json study = desk.study("felt/felt.json");
+  CHECK(study.at("visits") == json({{"count", 2}, {"least_days", 6.5}}));
+  CHECK(study.at("groups").at("labels") == json({"trained", "control"}));
+  CHECK_THAT(study.at("registration").at("stopping_rule").get<std::string>(),
+             holds_text("have completed all 2 visits"));
+  CHECK(desk.run({"prepare", desk.in("felt/felt.json")}).exit_code == 0);
+  check_refused(desk.make("other", {"--yes", "--groups", "one,one"}), "--groups");
 }
 
 TEST_CASE("without answers, or in a folder with something in it, nothing is written") {
@@ -140,4 +160,48 @@ TEST_CASE("photographs become the classes, and practice has none of their labels
   CHECK_FALSE(study.contains("practice"));  // sand alone would be left
   CHECK(study.at("trials").at("practice") == 0);
   CHECK(desk.run({"prepare", desk.in("mine/mine.json")}).exit_code == 0);
+}
+
+TEST_CASE("photographs are tried when they are named, and what they lack is asked for") {
+  const Desk desk;
+  for (const std::string folder : {"album", "empty"}) fs::create_directory(desk.in(folder));
+  for (int i = 0; i < 3; ++i) {
+    engine::write_png(desk.folder.path() / "album" / ("cloth" + std::to_string(i) + ".png"),
+                      texture_number(i));
+  }
+  // 120 pixels are too few for a crop of 200.
+  const std::vector<std::string> size = {"--size", "200", "--crops", "1"};
+  std::vector<std::string> at_once = {"new", desk.in("deep/mine"), "--yes", "--pictures",
+                                      desk.in("album")};
+  at_once.insert(at_once.end(), size.begin(), size.end());
+  const ProgramResult refused = desk.run(at_once);
+  CHECK(refused.exit_code == 1);
+  CHECK(line_count(refused.errors) == 1);
+  CHECK_THAT(refused.errors,
+             holds_text("too few for a crop of 200 x 200") && holds_text("--size 120"));
+  CHECK_FALSE(is_there(desk.in("deep")));
+
+  // Name, protocol, pictures twice, size and crops, people, worth, language, consent, visits,
+  // groups.
+  std::vector<std::string> asked = {"new", desk.in("mine")};
+  asked.insert(asked.end(), size.begin(), size.end());
+  const ProgramResult made = desk.run(
+      asked, "mine\n\n" + desk.in("empty") + "\n" + desk.in("album") + "\n48\n1\n12\n\n\n\n\n\n");
+  INFO(made.errors);
+  REQUIRE(made.exit_code == 0);
+  CHECK_THAT(made.errors, holds_text("Side of a picture, pixels [120]: "));
+  const json study = desk.study("mine/mine.json");
+  CHECK(study.at("classes").size() == 3);
+  CHECK(study.at("registration").at("participants") == 12);
+}
+
+TEST_CASE("a new study that fails leaves no folder behind") {
+  const Desk desk;
+  // No file may have more than one block of 512 bytes: the first picture does not fit.
+  const ProgramResult limited = run_touchtrial_limited(
+      desk.folder.path(), "-f 1", {"new", desk.in("above/felt"), "--yes", "--size", "48"});
+  INFO(limited.errors);
+  CHECK(limited.exit_code == 1);
+  CHECK(line_count(limited.errors) == 1);
+  CHECK_FALSE(is_there(desk.in("above")));
 }

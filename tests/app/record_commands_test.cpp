@@ -199,6 +199,9 @@ TEST_CASE("every consent is kept and shown, and an id that may be mistyped is as
   CHECK(people[0]["consents"] == 2);
   CHECK(people[0]["version"] == "2");
   check_refused(consent({"--version", "2"}), 2, {"--participant"});
+  check_refused(
+      run_touchtrial(folder.path(), {"consent", (folder.path() / "none.db").string(), "--list"}), 1,
+      {"none.db: there is neither such a database nor a consent beside it"});
 }
 
 TEST_CASE("consent refuses personal details on the command line, and details that it cannot read") {
@@ -238,7 +241,7 @@ TEST_CASE("a limit on the size of files ends a command in one line, and the data
   CHECK(run_touchtrial(study.path(), note).exit_code == 0);
 }
 
-TEST_CASE("an output that nobody reads ends a command in one line") {
+TEST_CASE("an output that nobody reads ends a command without a word, as the shell expects") {
   const PeopleStudy study;
   const ProgramResult closed = run_program(
       "/bin/sh", study.path(),
@@ -246,8 +249,14 @@ TEST_CASE("an output that nobody reads ends a command in one line") {
        "{ while (echo x) 2>/dev/null; do :; done; \"$0\" verify \"$1\"; echo $? >&2; } | true",
        TOUCHTRIAL_PROGRAM, study.in("study.db")});
   INFO(closed.errors);
-  CHECK(closed.errors.find("standard output: cannot be written") != std::string::npos);
-  CHECK(closed.errors.ends_with("\n1\n"));
+  CHECK(closed.errors.find("touchtrial") == std::string::npos);
+  CHECK(closed.errors.ends_with("141\n"));  // 128 + SIGPIPE
+  const ProgramResult full = run_program("/bin/sh", study.path(),
+                                         {"-c", "\"$0\" verify \"$1\" > /dev/full; echo $? >&2",
+                                          TOUCHTRIAL_PROGRAM, study.in("study.db")});
+  INFO(full.errors);
+  CHECK(full.errors.find("standard output: cannot be written (No space left") != std::string::npos);
+  CHECK(full.errors.ends_with("\n1\n"));
 }
 
 }  // namespace
@@ -670,6 +679,20 @@ TEST_CASE("what is recorded is signed with a station's file or with a key, not w
                              {"late", "--key", study.in("study.db.key"), "--station-file",
                               study.in("cloths.station")}),
                 2, {"--key excludes --station-file"});
+}
+
+TEST_CASE("a second look at the same sessions is refused, and one at more is not") {
+  const PeopleStudy study;
+  const auto look = [&] {
+    return study.run({"unblind", study.in("study.db"), "--interim", "--reason", "look", "--yes"});
+  };
+  REQUIRE(look().exit_code == 0);
+  const std::size_t events = study.store().events(0).size();
+  check_refused(look(), 1, {"study.db", "nothing has been collected since the last look"});
+  CHECK(study.store().events(0).size() == events);
+  REQUIRE(study.session_of("P005").exit_code == 0);
+  CHECK(look().exit_code == 0);
+  check_verified(study);
 }
 
 TEST_CASE("migrate does not change a current database, and refuses an unknown one") {

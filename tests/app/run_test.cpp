@@ -87,6 +87,7 @@ TEST_CASE("run makes the database, acknowledges every response, and is refused a
   CHECK(acknowledged(first.output) == 6);
   CHECK(first.output.find("complete") != std::string::npos);
   CHECK(first.output.find("SIMULATED") != std::string::npos);
+  CHECK(first.output.find("day sheet") == std::string::npos);
   for (const std::string& label : kLabels) {
     CHECK(first.output.find(label) == std::string::npos);
     CHECK(first.errors.find(label) == std::string::npos);
@@ -96,6 +97,31 @@ TEST_CASE("run makes the database, acknowledges every response, and is refused a
   CHECK(again.errors.find("another participant") != std::string::npos);
   CHECK(run(study, "P02").exit_code == 0);
   check_balanced(study, 2);
+}
+
+TEST_CASE("run asks about an id like another's, and about a number beyond the plan") {
+  const StudyFolder study;
+  json file = study_of("classification");
+  file["registration"] = {{"participants", 8}, {"estimand", "mean-accuracy"}};
+  replace_file(study.path() / "cloths.json", file.dump());
+  const auto refused = [&](const std::string& participant, const std::vector<std::string>& more,
+                           const std::string& part) {
+    const ProgramResult result = run(study, participant, more);
+    INFO(result.errors);
+    CHECK(result.exit_code == 2);
+    CHECK(line_count(result.errors) == 1);
+    CHECK_THAT(result.errors, holds_text(part) && holds_text("--yes"));
+  };
+  refused("P02", {"--enrolment", "99999"}, "beyond the 8 participants that the study plans");
+  CHECK_FALSE(fs::exists(study.path() / "db"));
+  REQUIRE(run(study, "P02", {"--enrolment", "8"}).exit_code == 0);
+  for (const char* const id : {"p02", "P2", "P002"}) refused(id, {}, "P02 is known");
+  CHECK(run(study, "p02", {"--yes"}).exit_code == 0);
+  CHECK(run(study, "P03", {"--enrolment", "9", "--yes"}).exit_code == 0);
+  const StudyStore store = StudyStore::open(study.in("db"), StudyStore::Access::read_only);
+  std::vector<int> numbers;
+  for (const SessionRow& row : store.sessions()) numbers.push_back(row.enrolment);
+  CHECK(numbers == std::vector<int>{8, 1, 9});
 }
 
 TEST_CASE("a run that is refused leaves nothing, and the corrected command runs") {
@@ -121,6 +147,7 @@ TEST_CASE("a run that is refused leaves nothing, and the corrected command runs"
     INFO(result.errors);
     CHECK(result.exit_code != 0);
     CHECK(line_count(result.errors) >= 1);
+    CHECK_THAT(result.errors, !holds_text("lies at this station"));  // only a session records it
     CHECK_THAT(result.errors, holds_text(part));
     CHECK(files() == before);
   };

@@ -1,7 +1,9 @@
 // status: how collection stands, and the next participant's command.
 #include "app/study_folder.hpp"
+#include "core/cipher.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/personal_data.hpp"
+#include "protocols/store/session_recorder.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
 
@@ -11,7 +13,8 @@ namespace touchtrial {
 namespace {
 
 /// A database of people, without a session, as the first `run` makes it.
-void begin_database(const StudyFolder& folder, const std::string& station_file) {
+void begin_database(const StudyFolder& folder, const std::string& station_file,
+                    bool pilot = false) {
   const design::StationKey key = design::load_station_key(folder.path() / station_file);
   store::StudyCommitment commitment;
   commitment.study = key.study.name;
@@ -21,11 +24,47 @@ void begin_database(const StudyFolder& folder, const std::string& station_file) 
   commitment.configuration = key.configuration;
   commitment.scored_trials = key.study.scored_trials();
   commitment.positions = 3;
+  commitment.pilot = pilot;
   commitment.investigator = key.investigator_signature;
   commitment.station = {
       .name = key.station.name, .key = key.signer().public_half(), .certificate = key.certificate};
   static_cast<void>(store::StudyStore::create(folder.path() / "study.db", commitment,
                                               std::chrono::seconds(1), key.signer()));
+}
+
+/// A participant's complete session, opened so long ago.
+void add_session(const StudyFolder& folder, const std::string& participant, int enrolment,
+                 int visit, std::chrono::hours ago) {
+  const design::StationKey key = design::load_station_key(folder.path() / "cloths.station");
+  store::StudyStore store =
+      store::StudyStore::open(folder.path() / "study.db", store::StudyStore::Access::read_write);
+  store.sign_with(key.signer());
+  const int number = store.next_session();
+  SystemEntropy entropy;
+  const SecretKey own = entropy.secret("participant");
+  store::BufferedEvents buffer;
+  store::SessionRecorder recorder(number, own, buffer);
+  store::SessionOpening opening;
+  opening.participant = participant;
+  opening.enrolment = enrolment;
+  opening.visit = visit;
+  opening.study_id = key.study_id;
+  opening.seal = key.seal;
+  opening.device = "falcon";
+  opening.pilot = store.commitment().pilot;
+  recorder.opened({}, opening, "{}");
+  recorder.closed(std::chrono::seconds(1), true);
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  store.add_session(buffer, store::wrap_participant_key(key.investigator_box, number, own),
+                    std::chrono::duration_cast<std::chrono::nanoseconds>(now - ago));
+}
+
+/// A study of two visits, a week apart, with a plan.
+void write_visits(const StudyFolder& folder, int planned) {
+  json study = study_of("classification");
+  study["visits"] = {{"count", 2}, {"least_days", 7}};
+  study["registration"] = {{"participants", planned}};
+  replace_file(folder.path() / "cloths.json", study.dump());
 }
 
 json status_of(const StudyFolder& folder, const std::vector<std::string>& more = {}) {
@@ -83,6 +122,80 @@ TEST_CASE("status of a station of several names the station, and another study i
       folder.run({"status", folder.in("study.db"), "--study", folder.in("others.json")});
   CHECK(refused.exit_code == 2);
   CHECK(refused.errors.find("is the study others") != std::string::npos);
+}
+
+TEST_CASE("before the first session status lists the consents and has the first lines to copy") {
+  const StudyFolder folder;
+  const ProgramResult nothing = folder.run({"status", folder.in("study.db")});
+  CHECK(nothing.exit_code == 1);
+  CHECK(line_count(nothing.errors) == 1);
+  CHECK(nothing.errors.find("neither such a database nor a consent") != std::string::npos);
+  REQUIRE(folder.run({"prepare", folder.in("cloths.json")}).exit_code == 0);
+  const json first = status_of(folder);
+  CHECK(first["study"] == "cloths");
+  CHECK(first["state"] == "collecting");
+  CHECK(first["people"].empty());
+  CHECK(first["left"][0] == "there is no database yet: the first session makes it");
+  REQUIRE(first["next"].size() == 2);
+  CHECK(first["next"][1]["command"] == "touchtrial run " + folder.in("cloths.json") +
+                                           " --participant P01 --db " + folder.in("study.db"));
+  REQUIRE(
+      folder.run({"consent", folder.in("study.db"), "--participant", "P01", "--version", "2026-03"})
+          .exit_code == 0);
+  const json consented = status_of(folder);
+  CHECK(consented["people"][0]["participant"] == "P01");
+  CHECK(consented["people"][0]["consent"] == "2026-03");
+  REQUIRE(consented["next"].size() == 1);
+  CHECK(consented["next"][0]["what"] == "session of P01");
+  CHECK_FALSE(fs::exists(folder.path() / "study.db"));
+}
+
+TEST_CASE("a pilot is not counted against the plan") {
+  const StudyFolder folder;
+  write_visits(folder, 8);
+  REQUIRE(folder.run({"prepare", folder.in("cloths.json")}).exit_code == 0);
+  begin_database(folder, "cloths.station", true);
+  add_session(folder, "P01", 1, 1, std::chrono::hours(1));
+  const json status = status_of(folder);
+  CHECK(status["planned"].is_null());
+  CHECK(status["left"].dump().find("planned") == std::string::npos);
+}
+
+TEST_CASE("status proposes the visit that is due, and names it in the line to copy") {
+  const StudyFolder folder;
+  write_visits(folder, 2);
+  REQUIRE(folder.run({"prepare", folder.in("cloths.json")}).exit_code == 0);
+  begin_database(folder, "cloths.station");
+  add_session(folder, "P01", 1, 1, std::chrono::hours(24));
+  const json early = status_of(folder);
+  CHECK(early["visits"] == 2);
+  CHECK(early["complete"] == 0);
+  CHECK(early["people"][0]["visit"] == 1);
+  CHECK(early["visits_to_come"][0]["participant"] == "P01");
+  CHECK(early["visits_to_come"][0]["visit"] == 2);
+  CHECK(early["next"].back()["what"] == "session of P02");
+  add_session(folder, "P02", 2, 1, std::chrono::hours(8 * 24));
+  const json due = status_of(folder);
+  CHECK(due["next"].back()["what"] == "visit 2 of P02");
+  CHECK(due["next"].back()["command"] == "touchtrial run " + folder.in("cloths.json") +
+                                             " --participant P02 --db " + folder.in("study.db") +
+                                             " --visit 2 --device falcon");
+  add_session(folder, "P02", 2, 2, std::chrono::hours(0));
+  const json full = status_of(folder);  // as many as are planned have come
+  CHECK(full["complete"] == 1);
+  CHECK(full["next"].back()["what"].get<std::string>().starts_with("visit 2 of P01, from 20"));
+  const ProgramResult text = folder.run({"status", folder.in("study.db")});
+  CHECK(text.output.find("2 of 2") != std::string::npos);
+  CHECK(text.output.find("P01: visit 2 of 2 is to come, from 20") != std::string::npos);
+}
+
+TEST_CASE("the plan of a simulated study comes from the files beside its database") {
+  const StudyFolder folder;
+  json study = study_of("classification");
+  study["registration"] = {{"participants", 6}};
+  replace_file(folder.path() / "cloths.json", study.dump());
+  REQUIRE(folder.simulate("study.db", {"--keep-blind"}).exit_code == 0);
+  CHECK(status_of(folder)["planned"] == 6);
 }
 
 TEST_CASE("status of merged and of simulated studies has no line to copy") {

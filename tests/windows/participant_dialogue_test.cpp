@@ -1,6 +1,7 @@
 // Who comes: the questions before a session whose participant no option names.
 #include "app/run/participant_dialogue.hpp"
 
+#include "protocols/design/languages.hpp"
 #include "support/catch.hpp"
 #include "windows/virtual_screen.hpp"
 
@@ -38,11 +39,16 @@ TEST_CASE("the first of a station has the id of the plan, and others follow the 
 /// Asks with these replies.
 /// \param seen  gets what stood in the field of each first question
 app::ParticipantAnswers answers_to(Replies replies, const std::string& version,
-                                   std::vector<std::string>* seen = nullptr) {
-  const app::ParticipantQuestions questions{
-      "P07", version, [](const std::string& id) {
-        return id == "P06" ? std::string("P06 has a session already.") : std::string();
-      }};
+                                   std::vector<std::string>* seen = nullptr,
+                                   const std::string& language = "en") {
+  app::ParticipantQuestions questions;
+  questions.session.language = language;
+  questions.session.consent_version = version;
+  questions.proposed = "P07";
+  questions.note = "P07 is due for visit 2 of 2.";
+  questions.why_not = [](const std::string& id) {
+    return id == "P06" ? std::string("P06 has a session already.") : std::string();
+  };
   const app::ParticipantAnswers answers = app::ask_participant(
       [&](const session::QuestionStep& step) {
         REQUIRE_FALSE(replies.empty());
@@ -51,7 +57,7 @@ app::ParticipantAnswers answers_to(Replies replies, const std::string& version,
         REQUIRE(step.questionnaire->questions.size() == reply.size());
         if (seen != nullptr) {
           seen->push_back(std::string(step.typed) + "|" +
-                          step.questionnaire->questions.front().text.at("en"));
+                          step.questionnaire->questions.front().text.at(language));
         }
         return reply;
       },
@@ -77,8 +83,22 @@ TEST_CASE("a participant who cannot come is asked for again, with the reason") {
   CHECK(answers_to({{"P06", "0"}, {"P08", "0"}, {"", ""}}, "", &seen).id == "P08");
   REQUIRE(seen.size() == 3);
   CHECK(seen[0].starts_with("P07|"));
+  CHECK_THAT(seen[0], holds_text("P07 is due for visit 2 of 2."));
   CHECK(seen[1].starts_with("P06|"));
   CHECK_THAT(seen[1], holds_text("P06 has a session already."));
+}
+
+TEST_CASE("the dialogue is in the study's language, and what is recorded is not") {
+  for (const design::Language& language : design::languages()) {
+    std::vector<std::string> seen;
+    const app::ParticipantAnswers answers =
+        answers_to({{"P07", "0"}, {"7", "0"}}, "", &seen, language.code);
+    REQUIRE(seen.size() == 2);
+    CHECK_THAT(seen[0], holds_text(language.texts.at("dialogue").at("id")));
+    CHECK_THAT(seen[1], holds_text(language.texts.at("dialogue").at("age")));
+    CHECK(answers.age_band == "70 or more");
+    CHECK(answers.hand == "right");
+  }
 }
 
 /// Presses keys one after the other: '#' is Enter; a digit also types itself, as on a keyboard.
@@ -114,7 +134,7 @@ TEST_CASE("the experimenter answers in a window, where the proposed id stands al
             if (const auto reply = window.attend(asked)) return reply->answers;
           }
         },
-        {"P0", "2026-03", [](const std::string&) { return std::string(); }});
+        {.proposed = "P0", .why_not = [](const std::string&) { return std::string(); }});
   });
   CHECK(answers.id == "P08");
   CHECK(answers.has_consented);

@@ -444,6 +444,24 @@ TEST_CASE("a simulated participant answers with the window's keys") {
   });
 }
 
+TEST_CASE("where textures are made by several methods, the question is which picture fits best") {
+  const auto asked_with = [](bool several, const std::string& title) {
+    app::ParticipantWindowOptions wanted = options();
+    wanted.has_several_methods = several;
+    if (!title.empty()) wanted.session.texts["en"]["screens"]["answer_title"] = title;
+    Sitting sitting(wanted);
+    engine::ColourImage picture;
+    sitting.run([&] {
+      sitting.show(answer_step());
+      picture = sitting.window.picture();
+    });
+    return picture;
+  };
+  const engine::ColourImage fits = asked_with(true, "");
+  CHECK(fits == asked_with(false, "Which picture fits best?"));
+  CHECK(fits != asked_with(false, ""));
+}
+
 TEST_CASE("the window's title and the monitor's number are all that the system sees") {
   Sitting sitting;
   CHECK(sitting.screen->has_window(kTitle));

@@ -85,7 +85,9 @@ TEST_CASE("screens are drawn into files, one or all, each of them another pictur
   CHECK(answer.width() == 800);
   CHECK(answer.height() == 600);
   const fs::path all = drawer.folder.path() / "all";
-  REQUIRE(drawer.preview({"--png", all.string(), "--window", "640x480"}).exit_code == 0);
+  REQUIRE(drawer.preview({"--png", all.string(), "--window", "640x480", "--console"}).exit_code ==
+          0);
+  CHECK(is_there(all / "console.png"));
   std::set<Bytes> pictures;
   std::size_t files = 0;
   for (const auto& entry : fs::directory_iterator(all)) {

@@ -177,13 +177,18 @@ TEST_CASE("a person pilots a whole session of 25 trials from the keyboard, witho
   INFO(pilot.output());
   REQUIRE(code == 0);
   CHECK(pilot.meant().size() == 25);
+  CHECK_THAT(pilot.output(), holds_text("the investigator's key lies at this station"));
   CHECK(positions_as_answered(lab, "pilot.db") == pilot.meant());
-  const auto opened =
+  const analysis::SessionRecord session =
       analysis::load_collection(
           store::StudyStore::open(lab.in("pilot.db"), store::StudyStore::Access::read_only))
-          .sessions.at(0)
-          .opened_utc;
-  CHECK(opened.size() == std::string("2026-01-31T14:05:09Z").size());
+          .sessions.at(0);
+  CHECK(session.opened_utc.size() == std::string("2026-01-31T14:05:09Z").size());
+  REQUIRE(session.station);
+  REQUIRE(session.station->screen);
+  // The virtual screen states a size that follows from 96 pixels per inch, which tells nothing.
+  CHECK(session.station->screen->mm_per_px == Approx(25.4 / 96.0).epsilon(0.01));
+  CHECK(session.station->screen->source == "assumed");
   lab.verify("pilot.db");
   CHECK_FALSE(fs::exists(lab.in("played.raw")));
 }

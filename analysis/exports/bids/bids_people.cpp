@@ -176,6 +176,7 @@ std::vector<BidsSession> bids_sessions(const store::StudyStore& store) {
 }
 
 DataTable bids_participants(const DatasetSource& source, const std::vector<BidsSession>& sessions,
+                            const Collection& collection,
                             const std::vector<store::PersonalRecord>& consents) {
   std::map<int, Demographics> by_session;
   if (source.outcomes != nullptr) {
@@ -194,6 +195,7 @@ DataTable bids_participants(const DatasetSource& source, const std::vector<BidsS
       people.back().consent_version = one.consent_version;
     }
   }
+  add_visit_and_group(table, collection);
   for (const OptionalColumn& column : kOptionalColumns) add_if_known(table, column, people);
   return table;
 }
@@ -236,7 +238,8 @@ std::vector<BidsQuestionnaire> bids_questionnaires(const DatasetSource& study,
   return all;
 }
 
-DataTable bids_sessions_of(const std::string& subject, const std::vector<BidsSession>& sessions) {
+DataTable bids_sessions_of(const std::string& subject, const std::vector<BidsSession>& sessions,
+                           const Collection& collection) {
   DataTable table{{"session_id"}, {}};
   table.columns.insert(table.columns.end(), session_columns().begin(), session_columns().end());
   for (const BidsSession& session : sessions) {
@@ -245,6 +248,7 @@ DataTable bids_sessions_of(const std::string& subject, const std::vector<BidsSes
     row = {session.label};
     for (DataCell& cell : session_cells(session)) row.push_back(std::move(cell));
   }
+  add_visit_and_group(table, collection);
   return table;
 }
 

@@ -2,6 +2,7 @@
 /// exports.
 #pragma once
 
+#include "analysis/collection.hpp"
 #include "analysis/exports/data_table.hpp"
 #include "analysis/exports/dataset.hpp"
 
@@ -45,12 +46,15 @@ struct BidsQuestionnaire {
 /// participants.tsv: one row for each participant, with the data of the participant's last session.
 /// Age (in bands), sex and handedness come from sealed questionnaires after unblinding; a column is
 /// missing if nobody has a value. Of the personal data it has the last version of the consent form.
+/// In studies with visits or groups it has those of the collection (add_visit_and_group).
 [[nodiscard]] DataTable bids_participants(const DatasetSource& source,
                                           const std::vector<BidsSession>& sessions,
+                                          const Collection& collection,
                                           const std::vector<store::PersonalRecord>& consents);
 
 /// sub-*_sessions.tsv of one subject.
 [[nodiscard]] DataTable bids_sessions_of(const std::string& subject,
-                                         const std::vector<BidsSession>& sessions);
+                                         const std::vector<BidsSession>& sessions,
+                                         const Collection& collection);
 
 }  // namespace touchtrial::analysis

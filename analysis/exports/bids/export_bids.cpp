@@ -164,13 +164,15 @@ void require_unblinded(const DatasetSource& study, const DatasetOptions& options
 void add_people(Files& files, const DatasetSource& study, const DatasetOptions& options,
                 const std::vector<BidsSession>& sessions) {
   const bool simulated = study.store.commitment().simulated;
-  const DataTable people = bids_participants(study, sessions, options.consents);
+  const Collection collection =
+      study.outcomes != nullptr ? study.outcomes->collection : load_collection(study.store);
+  const DataTable people = bids_participants(study, sessions, collection, options.consents);
   files.push_back(text_file("participants.tsv", tsv_text(people)));
   files.push_back(text_file("participants.json", columns_json(people.columns, simulated)));
   std::set<std::string> done;
   for (const BidsSession& session : sessions) {
     if (session.label.empty() || !done.insert(session.subject).second) continue;
-    const DataTable table = bids_sessions_of(session.subject, sessions);
+    const DataTable table = bids_sessions_of(session.subject, sessions, collection);
     const std::string name = session.subject + "/" + session.subject + "_sessions";
     files.push_back(text_file(name + ".tsv", tsv_text(table)));
     files.push_back(text_file(name + ".json", columns_json(table.columns, simulated)));

@@ -6,6 +6,7 @@
 #include "analysis/verification/study_files.hpp"
 #include "attacks/forger.hpp"
 #include "support/catch.hpp"
+#include "support/temp_folder.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -244,6 +245,25 @@ TEST_CASE("verify_files makes a damaged key and a missing pack findings") {
   CHECK(check_of(damaged, "chain").state == analysis::CheckState::passed);
   CHECK(check_of(damaged, "key").state == analysis::CheckState::failed);
   CHECK(check_of(damaged, "seal").state == analysis::CheckState::not_checked);
+}
+
+TEST_CASE("verify_files finds the pack beside the database when the key lies elsewhere") {
+  FakeStudy study(design::identification::classification(), {.with_pack = true});
+  const TempFolder stick;
+  design::StudyKey key = study.key();
+  key.pack_folder = stick.path() / study.pack_folder().filename();
+  const auto key_path = stick.path() / "study.key";
+  design::save_study_key(key_path, key);
+  const analysis::StudyFiles files{
+      .database = study.database(), .key = key_path, .key_named = true, .pack = {}};
+  CHECK(check_of(analysis::verify_files(files, {}), "pack").state == analysis::CheckState::passed);
+  // Another study's pack of that name is not taken for this one's.
+  engine::PackManifest manifest = engine::Pack(study.pack_folder()).manifest();
+  manifest.study_id = std::string(32, '0');
+  engine::write_manifest(study.pack_folder(), manifest);
+  const analysis::Verification other = analysis::verify_files(files, {});
+  CHECK(check_of(other, "pack").state == analysis::CheckState::not_checked);
+  CHECK(contains(check_of(other, "pack").detail, "nor this pack beside the database"));
 }
 
 TEST_CASE("verify_files compares a rebuilt pack with the study only if the pack is named") {

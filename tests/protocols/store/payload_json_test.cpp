@@ -92,6 +92,9 @@ TEST_CASE("members for sessions in real time are written for those alone, and re
                                   .scheduling = "fifo 80",
                                   .calibration = std::string(64, 'a')};
   REQUIRE(opening_from_json(to_json(opening)).station == opening.station);
+  REQUIRE(to_json(opening).find("screen") == std::string::npos);
+  opening.station->screen = ScreenRecord{.mm_per_px = 0.2768, .source = "measured"};
+  REQUIRE(opening_from_json(to_json(opening)).station == opening.station);
 
   TraceBody trace{
       .trial = 1, .samples = 5, .rate_hz = 1000.0, .overruns = 2, .valid = true, .trace = {}};

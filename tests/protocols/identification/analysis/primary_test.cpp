@@ -199,9 +199,15 @@ TEST_CASE("an effect may be excluded, reached or open") {
   };
   CHECK(verdict(0.6, {0.5, 0.7}, 0.001) == Verdict::supported);
   CHECK_THAT(result.because, holds_text("lies above 40.0%"));
+  CHECK(result.because.starts_with("p < 0.05. "));
+  CHECK(verdict(0.6, {0.5, 0.7}, 0.05) == Verdict::supported);
+  CHECK(result.because.starts_with("p = 0.05, the level itself. "));
+  CHECK(verdict(0.6, {0.5, 0.7}, 0.04999) == Verdict::supported);
+  CHECK(result.because.starts_with("p = 0.04999000 < 0.05. "));
   CHECK(verdict(0.25, {0.21, 0.29}, 0.01) == Verdict::supported);
   CHECK_THAT(result.because, holds_text("lies below"));
   CHECK(verdict(0.3, {0.15, 0.45}, 0.2) == Verdict::undecided);
+  CHECK(result.because.starts_with("p > 0.05. "));
   CHECK(verdict(0.2, {0.15, 0.25}, 0.5) == Verdict::not_supported);
   result.sides = analysis::Sides::two;
   CHECK(verdict(0.1, {0.05, 0.15}, 0.001) == Verdict::not_supported);

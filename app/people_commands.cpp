@@ -1,6 +1,4 @@
-// Commands that record something beside the sessions: exclude, replace, withdraw, note, close and
-// unblind; and migrate, which brings an older database up to date.
-#include "analysis/looks.hpp"
+// Commands that record a decision about one participant: exclude, replace, withdraw and note.
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
@@ -20,41 +18,11 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-store::StudyStore opened(const fs::path& database) {
-  return store::StudyStore::open(database, store::StudyStore::Access::read_write);
-}
-
-/// The database, ready to be recorded in.
-store::StudyStore opened(const fs::path& database, const SigningFiles& files) {
-  store::StudyStore store = opened(database);
-  sign_with_files(store, database, files);
-  return store;
-}
-
-/// What was recorded is the new end of the file's chain.
-void print_head(const store::StudyStore& store, const fs::path& database) {
-  if (!is_there(store::head_path_for(database))) return;
-  print(head_words(store) + "; write it on the day sheet\n");
-}
-
-void add_signing_options(CLI::App& command, SigningFiles& files) {
-  CLI::Option* key =
-      add_key_option(command, files.key, "The investigator's key, in place of a station's file");
-  command
-      .add_option("--station-file", files.station,
-                  "This station's file (default: the one beside the database, or here)")
-      ->excludes(key);
-  add_accept_loss_option(command, files.accept_loss);
-}
-
-// Participants.
 
 struct PeopleArguments {
   fs::path database;
@@ -94,7 +62,7 @@ int session_of(const store::StudyStore& store, const PeopleArguments& arguments)
 }
 
 int exclude(const PeopleArguments& arguments) {
-  store::StudyStore store = opened(arguments.database, arguments.files);
+  store::StudyStore store = opened_to_record(arguments.database, arguments.files);
   // Of several visits, all that were not excluded already.
   std::vector<int> sessions = {session_of(store, arguments)};
   for (const store::SessionRow& row : sessions_of(store, arguments)) {
@@ -118,7 +86,7 @@ int exclude(const PeopleArguments& arguments) {
 }
 
 int replace(const PeopleArguments& arguments) {
-  store::StudyStore store = opened(arguments.database, arguments.files);
+  store::StudyStore store = opened_to_record(arguments.database, arguments.files);
   const store::SessionRow row = sessions_of(store, arguments).back();
   store.replace(row.session, arguments.with, utc_now(), arguments.reason);
   print(place_of(arguments) + ": replaced; " + arguments.with + " inherits enrolment " +
@@ -141,7 +109,7 @@ void check_code(const PeopleArguments& arguments) {
 
 int note(const PeopleArguments& arguments) {
   check_code(arguments);
-  store::StudyStore store = opened(arguments.database, arguments.files);
+  store::StudyStore store = opened_to_record(arguments.database, arguments.files);
   store.note(session_of(store, arguments), utc_now(), arguments.deviation, arguments.text);
   print(place_of(arguments) + ": noted\n");
   print_head(store, arguments.database);
@@ -220,7 +188,7 @@ std::string destroy_keys(store::StudyStore& store, const std::vector<int>& sessi
 }
 
 int keep_data(const PeopleArguments& arguments) {
-  store::StudyStore store = opened(arguments.database, arguments.files);
+  store::StudyStore store = opened_to_record(arguments.database, arguments.files);
   static_cast<void>(sessions_of(store, arguments));  // throws if there are none
   const std::vector<int> sessions = those_with(
       store, arguments.participant, [](const store::SessionRow& row) { return !row.withdrawn; });
@@ -240,7 +208,7 @@ int keep_data(const PeopleArguments& arguments) {
 }
 
 int erase_safety(const PeopleArguments& arguments) {
-  store::StudyStore store = opened(arguments.database, arguments.files);
+  store::StudyStore store = opened_to_record(arguments.database, arguments.files);
   std::vector<int> sessions;
   for (const store::SessionRow& row : sessions_of(store, arguments)) {
     if (store.wrapped_keys(row.session).safety) sessions.push_back(row.session);
@@ -263,7 +231,7 @@ int erase(const PeopleArguments& arguments) {
   std::error_code none;
   const auto log_size = fs::file_size(arguments.database.string() + "-wal", none);
   const bool had_log = !none && log_size > 0;  // an earlier withdrawal may have left its key there
-  store::StudyStore store = opened(arguments.database, arguments.files);
+  store::StudyStore store = opened_to_record(arguments.database, arguments.files);
   const bool has_session = !store.sessions_of(arguments.participant).empty();
   const std::vector<int> sessions = not_erased(store, arguments.participant);
   confirm_erasure(store, sessions, arguments);
@@ -314,139 +282,6 @@ int withdraw(const PeopleArguments& arguments) {
   return arguments.erase ? erase(arguments) : keep_data(arguments);
 }
 
-// The study.
-
-struct UnblindArguments {
-  fs::path database;
-  SigningFiles files;
-  std::string participant;
-  std::string reason;
-  bool interim = false;
-  bool unregistered = false;
-  bool yes = false;
-};
-
-/// The participants whose sessions are open and could be continued; empty if there are none.
-std::string left_open(const store::StudyStore& store) {
-  std::string participants;
-  for (const store::SessionRow& row : store.sessions()) {
-    if (!row.may_go_on()) continue;
-    participants += (participants.empty() ? "" : ", ") + row.participant;
-  }
-  return participants;
-}
-
-struct CloseArguments {
-  fs::path database;
-  SigningFiles files;
-  bool yes = false;
-};
-
-int close(const CloseArguments& arguments) {
-  const fs::path& database = arguments.database;
-  store::StudyStore store = opened(database, arguments.files);
-  const std::string open = left_open(store);
-  if (!store.state().closed) {
-    confirm(fmt::format("{}: takes no session any more, for good; it has {}{}", database.string(),
-                        store.sessions().size(),
-                        open.empty() ? ", and none is open"
-                                     : ", and those of these participants are open and cannot be "
-                                       "continued: " +
-                                           open),
-            arguments.yes);
-  }
-  store.close_study(utc_now());
-  if (!open.empty()) {
-    spdlog::warn("{}", one_line(database.string() +
-                                ": the sessions of these participants are open, and can no longer "
-                                "be continued: " +
-                                open));
-  }
-  print(database.string() + ": collection is closed\n");
-  print_head(store, database);
-  return 0;
-}
-
-/// Whether the look is to be at the registered question alone.
-/// \throws StoreError if the registration has looks, and none of them is at this many participants
-bool is_registered_look(const store::StudyStore& store, const UnblindArguments& arguments) {
-  if (!arguments.interim || arguments.unregistered || store.state().closed) return false;
-  const design::StudyKey key = key_of_database(store, arguments.database, arguments.files.key);
-  const auto& analysis = key.study.registration.analysis;
-  if (!analysis || analysis->looks.empty()) return false;
-  const analysis::LookRecord looked = analysis::look_record(store, key);
-  if (looked.may_look) return true;
-  std::vector<std::string> registered;
-  for (const int look : analysis->looks) registered.push_back(std::to_string(look));
-  const std::string why =
-      key.stations.size() > 1
-          ? "a study of several stations has no registered looks, because one at a merged file "
-            "would not be in the next merge"
-          : counted(looked.participants, "participant") +
-                (looked.participants == 1 ? " is" : " are") + " complete, and the registered " +
-                (registered.size() == 1 ? "look is at " : "looks are at ") +
-                listed(registered, " and ");
-  throw StoreError(one_line(arguments.database.string() + ": " + why +
-                            "; wait, or look at everything with --unregistered, which the report "
-                            "lists as a departure from the plan"));
-}
-
-/// Asks before outcomes are seen, which nobody can forget. The store refuses what may not be.
-/// \param registered  the look is at the registered question alone
-void confirm_look(const store::StudyStore& store, const UnblindArguments& arguments,
-                  bool registered) {
-  const bool one = !arguments.participant.empty();
-  if (!one && store.state().closed == arguments.interim) return;
-  const std::string who = one ? "participant " + arguments.participant
-                          : arguments.interim
-                              ? "every session that has ended"
-                              : fmt::format("all {} sessions", store.sessions().size());
-  const std::string what =
-      registered ? "the answer to the registered question, from " : "the outcomes of ";
-  const std::string when = !one && arguments.interim ? ", while collection goes on" : "";
-  confirm(arguments.database.string() + ": this lets " + what + who + " be seen" + when +
-              "; it is recorded and cannot be taken back; whoever sees them is no longer blind, "
-              "and later exclusions say that outcomes had been seen",
-          arguments.yes);
-}
-
-int unblind(const UnblindArguments& arguments) {
-  store::StudyStore store = opened(arguments.database);
-  // Outcomes cannot be shown without the key: it signs that they are looked at.
-  sign_with_files(store, arguments.database,
-                  {.key = key_path_for(arguments.database, arguments.files.key),
-                   .station = {},
-                   .accept_loss = arguments.files.accept_loss});
-  const bool registered = arguments.participant.empty() && is_registered_look(store, arguments);
-  confirm_look(store, arguments, registered);
-  if (!arguments.participant.empty()) {
-    store.look_at(arguments.participant, utc_now(), arguments.reason);
-    print(arguments.database.string() + ": the look at participant " + arguments.participant +
-          " is recorded; `touchtrial export --participant " + arguments.participant +
-          " --key KEY` shows the outcomes\n");
-    print_head(store, arguments.database);
-    return 0;
-  }
-  const std::string database = arguments.database.string();
-  if (registered) {
-    store.look_at_question(utc_now(), arguments.reason);
-    print(database +
-          ": unblinded for a registered look; `touchtrial report` shows the answer to the "
-          "registered question, and nothing else\n");
-  } else {
-    store.unblind(utc_now(), arguments.reason, arguments.interim);
-    print(database + ": unblinded" + (arguments.interim ? " for an interim look\n" : "\n"));
-  }
-  print_head(store, arguments.database);
-  return 0;
-}
-
-int migrate(const fs::path& database) {
-  static_cast<void>(opened(database));
-  print(database.string() + ": is up to date\n");
-  return 0;
-}
-
 struct PeopleCommand {
   CLI::App* command;
   std::shared_ptr<PeopleArguments> arguments;
@@ -466,6 +301,8 @@ PeopleCommand people_command(CLI::App& program, Action& action, const char* name
 void add_reason(CLI::App& command, std::string& reason) {
   command.add_option("--reason", reason, "Why; recorded")->required();
 }
+
+}  // namespace
 
 void add_people_commands(CLI::App& program, Action& action) {
   const PeopleCommand excluded = people_command(program, action, "exclude",
@@ -504,57 +341,6 @@ void add_people_commands(CLI::App& program, Action& action) {
   noted.command->add_flag("--own-code", noted.arguments->own_code,
                           "The deviation's code is the study's own");
   noted.command->add_option("TEXT", noted.arguments->text, "What happened")->required();
-}
-
-void add_close_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<CloseArguments>();
-  CLI::App* command = program.add_subcommand("close", "End collection: no session can be added");
-  add_database_argument(*command, arguments->database);
-  add_signing_options(*command, arguments->files);
-  add_yes_flag(*command, arguments->yes);
-  command->callback([=, &action] { action = [=] { return close(*arguments); }; });
-}
-
-void add_unblind_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<UnblindArguments>();
-  CLI::App* command = program.add_subcommand(
-      "unblind", "Record that outcomes are looked at; report then shows them");
-  add_database_argument(*command, arguments->database);
-  add_reason(*command, arguments->reason);
-  CLI::Option* interim =
-      command->add_flag("--interim", arguments->interim,
-                        "Look at the sessions that have ended, before collection is closed; at a "
-                        "registered look, at the registered question alone");
-  command
-      ->add_flag("--unregistered", arguments->unregistered,
-                 "With --interim: look at everything, whatever looks were registered; the report "
-                 "lists it as a departure from the plan")
-      ->needs(interim);
-  command
-      ->add_option("--participant", arguments->participant,
-                   "Look at this participant's outcomes alone, at any time")
-      ->excludes(interim);
-  add_key_option(*command, arguments->files.key);
-  add_accept_loss_option(*command, arguments->files.accept_loss);
-  add_yes_flag(*command, arguments->yes);
-  command->callback([=, &action] { action = [=] { return unblind(*arguments); }; });
-}
-
-void add_migrate_command(CLI::App& program, Action& action) {
-  auto database = std::make_shared<fs::path>();
-  CLI::App* command = program.add_subcommand(
-      "migrate", "Bring an older database up to date; copy it first (there is none yet)");
-  add_database_argument(*command, *database);
-  command->callback([=, &action] { action = [=] { return migrate(*database); }; });
-}
-
-}  // namespace
-
-void add_record_commands(CLI::App& program, Action& action) {
-  add_people_commands(program, action);
-  add_close_command(program, action);
-  add_unblind_command(program, action);
-  add_migrate_command(program, action);
 }
 
 }  // namespace touchtrial::app
