@@ -2,6 +2,7 @@
 
 #include "analysis/collection_records.hpp"
 #include "analysis/sealed_sessions.hpp"
+#include "protocols/design/deviation_codes.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
@@ -62,6 +63,18 @@ std::optional<CollectionDates> dates_of(const std::vector<SessionRecord>& sessio
     dates = {std::min(dates->first, day), std::max(dates->last, day)};
   }
   return dates;
+}
+
+bool ran_unverified(const SessionRecord& session) {
+  return (session.station && session.station->calibration == design::kUnverifiedDevice) ||
+         std::ranges::find(session.deviations, design::kUnverifiedDeviceCode, &Deviation::code) !=
+             session.deviations.end();
+}
+
+bool any_ran_unverified(const std::vector<SessionRecord>& sessions) {
+  return std::ranges::any_of(sessions, [](const SessionRecord& session) {
+    return !session.row.erased && ran_unverified(session);
+  });
 }
 
 Collection load_collection(const store::StudyStore& store, const SessionKeys& keys) {

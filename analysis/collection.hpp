@@ -92,6 +92,11 @@ struct SessionRecord {
   std::optional<int> order_block{};
 };
 
+/// Whether a session ran on a device with force that had no valid certificate.
+[[nodiscard]] bool ran_unverified(const SessionRecord& session);
+/// The same of any session whose data are not erased.
+[[nodiscard]] bool any_ran_unverified(const std::vector<SessionRecord>& sessions);
+
 /// The timing of the servo in one trial in real time.
 struct ServoTrial {
   int session = 0;

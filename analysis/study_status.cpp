@@ -6,6 +6,7 @@
 #include "analysis/text_table.hpp"
 #include "core/text.hpp"
 #include "core/utc.hpp"
+#include "protocols/design/deviation_codes.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
@@ -53,6 +54,7 @@ PersonStatus of_session(const SessionRecord& record, const store::StudyCommitmen
   if (std::ranges::count(record.deviations, "no-certificate", &Deviation::code) > 0) {
     one.certificate.clear();
   }
+  if (ran_unverified(record)) one.certificate = design::kUnverifiedDevice;
   const auto consent = consents.find(row.participant);
   if (consent != consents.end()) one.consent = consent->second;
   return one;
@@ -186,6 +188,12 @@ void add_about_people(const StudyStatus& status, const StatusSources& sources,
         "consented to another version than " + sources.consent_version +
             ", which the study asks for");
   }
+  say(ids_of(status,
+             [](const PersonStatus& one) {
+               return one.counts && one.was_felt && one.certificate == design::kUnverifiedDevice;
+             }),
+      std::string(design::kUnverifiedDevice) +
+          ": the session had no valid certificate of the device");
   say(ids_of(status,
              [](const PersonStatus& one) {
                return one.counts && one.was_felt && one.certificate.empty();
@@ -363,7 +371,9 @@ std::string people_text(const StudyStatus& status) {
                                    one.session == 0 ? "-" : std::to_string(one.answered),
                                    minute_of(one.opened_utc),
                                    shown_or_dash(one.consent),
-                                   shown_or_dash(one.certificate.substr(0, kDigits)),
+                                   shown_or_dash(one.certificate == design::kUnverifiedDevice
+                                                     ? one.certificate
+                                                     : one.certificate.substr(0, kDigits)),
                                    shown_or_dash(one.device)};
     if (has_visits) {
       cells.insert(cells.begin() + kVisit, fmt::format("{} of {}", one.visit, status.visits));

@@ -59,8 +59,9 @@ struct PersonStatus {
   std::string ended_utc;   ///< likewise; empty if it has not ended
   std::string consent;     ///< the last version; empty: none is recorded
   std::string device;
-  bool was_felt = false;    ///< in real time on a device, not seen on a screen
-  std::string certificate;  ///< SHA-256 of the device's calibration certificate; empty: none
+  bool was_felt = false;  ///< in real time on a device, not seen on a screen
+  /// SHA-256 of the device's certificate, "UNVERIFIED DEVICE", or empty: none.
+  std::string certificate;
   std::string in_place_of;  ///< of one to come: whose place is kept for the participant
   std::string group;        ///< only where groups are open
 };

@@ -12,6 +12,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <iostream>
+#include <string>
 #include <thread>
 
 #include <fmt/format.h>
@@ -134,7 +136,13 @@ void AttendedRun::wait_until_ready(double limit_s) {
   if (readiness == device::DeviceReadiness::ready) return;
   const std::string name = device_.info().name;
   const std::string advice = readiness_in_words(readiness);
-  std::fprintf(stderr, "%s: %s\n", name.c_str(), advice.c_str());
+  const bool asks = readiness == device::DeviceReadiness::needs_reset;
+  const char* const key = keys_ ? "; then press h" : "; then press Enter";
+  std::fprintf(stderr, "%s: %s%s\n", name.c_str(), advice.c_str(), asks ? key : "");
+  if (asks && !keys_) {
+    std::string line;
+    if (std::getline(std::cin, line)) device_.calibrate();
+  }
   NoForce nothing;
   const auto report = run([](std::int64_t) { return "homing"; }, nothing, limit_s,
                           [&] { return device_.readiness() == device::DeviceReadiness::ready; });
@@ -167,6 +175,8 @@ void AttendedRun::take_keys() {
     } else if (*key == ' ') {
       stop_ = AttendedStop::comfort;
       control_.comfort_stop();
+    } else if (*key == 'h') {
+      device_.calibrate();
     } else if (chooses_strength_) {
       take_strength(*key);
     }

@@ -87,7 +87,8 @@ class AttendedRun {
                                          device::SampleSink* sink = nullptr);
 
   /// Tells the person what to do and runs without force until the device is ready. Returns at once
-  /// if it is ready already.
+  /// if it is ready already. A person who has put the arm at its reset position says so by the key
+  /// h, or by a line of standard input if no keys are read.
   /// \throws DeviceError if it is not ready after `limit_s`, or a fault occurs
   void wait_until_ready(double limit_s);
 

@@ -60,8 +60,9 @@ void add_screen_command(CLI::App& program, Action& action);
 /// The commands of "device".
 void add_device_test_command(CLI::App& device, Action& action);
 void add_device_fit_command(CLI::App& device, Action& action);
-void add_device_calibrate_command(CLI::App& device, Action& action);
+void add_device_accept_command(CLI::App& device, Action& action);
 void add_device_monitor_command(CLI::App& device, Action& action);
+void add_device_conform_command(CLI::App& device, Action& action);
 
 /// \name Files
 /// Every variable must live as long as the command.

@@ -1,7 +1,10 @@
-// device: force-feedback devices; device list: what is plugged in.
+// device: force-feedback devices; device list: what is plugged in; device initialise: lets a device
+// find its axes; device models: what the program can rehearse on.
 #include "analysis/text_table.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "core/errors.hpp"
+#include "device/model/device_model.hpp"
 #include "device/registry.hpp"
 
 #include <algorithm>
@@ -11,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace touchtrial::app {
@@ -45,7 +49,7 @@ std::string line_of(const Row& row, const std::array<std::size_t, kColumns>& wid
   return line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
 }
 
-/// One row for each device; what it lacks is in lines below its row.
+/// One row for each device; what it lacks, and what a study must know, is in lines below its row.
 std::string listing_text(const std::vector<device::DeviceListing>& listings) {
   const Row header = {"driver", "state", "model", "serial", "where"};
   std::array<std::size_t, kColumns> widths{};
@@ -60,6 +64,7 @@ std::string listing_text(const std::vector<device::DeviceListing>& listings) {
   for (const device::DeviceListing& listing : listings) {
     text += line_of(row_of(listing), widths);
     for (const std::string& missing : listing.missing) text += analysis::wrapped("  - ", missing);
+    for (const std::string& note : listing.notes) text += analysis::wrapped("  ", note);
   }
   return text;
 }
@@ -74,7 +79,8 @@ std::string listing_json(const std::vector<device::DeviceListing>& listings) {
                        {"where", listing.where},
                        {"present", listing.present},
                        {"ready", is_ready(listing)},
-                       {"missing", listing.missing}});
+                       {"missing", listing.missing},
+                       {"notes", listing.notes}});
   }
   return json_text(ordered_json{{"devices", devices}});
 }
@@ -94,17 +100,104 @@ void add_device_list_command(CLI::App& device, Action& action) {
   command->callback([=, &action] { action = [=] { return list(*arguments); }; });
 }
 
+struct InitialiseArguments {
+  std::string driver;
+  std::filesystem::path settings;
+  bool yes = false;
+};
+
+int initialise(const InitialiseArguments& arguments) {
+  const device::DeviceDriver& driver = device::device_driver(arguments.driver);
+  if (!driver.initialise) {
+    throw UsageError(driver.name +
+                     ": cannot move itself to its axes' origins; touchtrial device test " +
+                     driver.name + " says what a person has to do");
+  }
+  confirm(driver.name +
+              ": the arm will move by itself, with force, through its whole range; take "
+              "your hands and everything else away from it",
+          arguments.yes);
+  print(driver.name + " " + driver.initialise(device::device_settings_for(arguments.settings)) +
+        "\n");
+  return 0;
+}
+
+void add_device_initialise_command(CLI::App& device, Action& action) {
+  auto arguments = std::make_shared<InitialiseArguments>();
+  CLI::App* command = device.add_subcommand(
+      "initialise", "Let a device find its axes by moving itself; asks before it moves");
+  add_driver_argument(*command, "NAME", arguments->driver);
+  add_settings_option(*command, arguments->settings);
+  add_yes_flag(*command, arguments->yes);
+  command->callback([=, &action] { action = [=] { return initialise(*arguments); }; });
+}
+
+/// A model's number: "-" where the stage is left out or the number is not known, "?" behind a
+/// guess.
+std::string number_of(const device::DeviceModel& model, const std::string& key, double number) {
+  if (number == 0.0) return "-";
+  const auto known = model.provenance.find(key);
+  const bool guessed =
+      known != model.provenance.end() && known->second.confidence == device::Confidence::guess;
+  return fmt::format("{:g}{}", number, guessed ? "?" : "");
+}
+
+std::string models_text() {
+  analysis::TextTable table(
+      {"model", "device", "mass kg", "friction N", "step mm", "peak N", "continuous N", "delay"},
+      {0, 1});
+  for (const device::DeviceModel& m : device::shipped_device_models()) {
+    table.add({m.name, m.title, number_of(m, "mass_kg", m.mass_kg),
+               number_of(m, "coulomb_n", m.coulomb_n),
+               number_of(m, "position_step_mm", m.position_step_mm),
+               number_of(m, "max_force_n", m.max_force_n),
+               number_of(m, "continuous_force_n", m.continuous_force_n),
+               number_of(m, "delay_ticks", m.delay_ticks)});
+  }
+  return table.text() + "\n" +
+         analysis::wrapped("",
+                           "?: a guess. The delay is in ticks of 1 ms. No number was measured on a "
+                           "device; --json has the source of each.");
+}
+
+std::string models_json() {
+  using nlohmann::ordered_json;
+  ordered_json models = ordered_json::array();
+  for (const device::DeviceModel& model : device::shipped_device_models()) {
+    models.push_back(ordered_json::parse(device::device_model_json(model)));
+  }
+  return json_text(ordered_json{{"models", models}});
+}
+
+void add_device_models_command(CLI::App& device, Action& action) {
+  auto json = std::make_shared<bool>(false);
+  CLI::App* command = device.add_subcommand(
+      "models", "List the device models that the program ships, which rehearsals run on");
+  add_json_flag(*command, *json);
+  command->callback([=, &action] {
+    action = [=] {
+      print(*json ? models_json() : models_text());
+      return 0;
+    };
+  });
+}
+
 }  // namespace
 
 void add_device_command(CLI::App& program, Action& action) {
   CLI::App* device = program.add_subcommand(
-      "device", "Force-feedback devices: list, test, calibrate and monitor them; fit a study");
+      "device",
+      "Force-feedback devices: list, test, calibrate and monitor them; fit a study; check a "
+      "driver");
   device->require_subcommand(1);
   add_device_list_command(*device, action);
+  add_device_initialise_command(*device, action);
   add_device_test_command(*device, action);
   add_device_fit_command(*device, action);
-  add_device_calibrate_command(*device, action);
+  add_device_accept_command(*device, action);
   add_device_monitor_command(*device, action);
+  add_device_models_command(*device, action);
+  add_device_conform_command(*device, action);
 }
 
 }  // namespace touchtrial::app

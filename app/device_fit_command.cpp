@@ -1,7 +1,11 @@
-// device fit: whether a study's plane fits the devices of a driver, even if none is at hand.
+// device fit: whether a study's plane and its stiffness fit the devices of a driver, even if none
+// is at hand.
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/device_words.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
+#include "device/acceptance/certificate.hpp"
 #include "device/registry.hpp"
 #include "device/workspace_fit.hpp"
 #include "engine/image_file.hpp"
@@ -16,6 +20,7 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
 namespace {
@@ -37,6 +42,8 @@ struct StudyFit {
   std::optional<device::Workspace> workspace;
   WorkspaceSource source = WorkspaceSource::none;
   device::WorkspaceFit fit;
+  device::RenderedStiffness rendered;
+  device::DeviceInfo limits;  ///< of the device that was read; without limits if none was
 };
 
 const char* word_for(device::PlaneOrientation orientation) {
@@ -115,12 +122,22 @@ StudyFit fit_of(const design::Study& study, const std::string& driver,
   fit.workspace = known.nominal_workspace;
   if (fit.workspace) fit.source = WorkspaceSource::maker;
   if (!known.workspace_is_known) {
-    fit.workspace = known.open(settings)->info().workspace;
+    fit.limits = known.open(settings)->info();
+    fit.workspace = fit.limits.workspace;
     fit.source = WorkspaceSource::device;
   }
+  fit.rendered = rendered_stiffness(study.rendering);
   fit.plane = common_plane_of(study);
   fit.fit = device::fit_plane(fit.plane, fit.workspace, settings.use_of(driver), orientation);
   return fit;
+}
+
+/// Empty unless the device says what it renders.
+std::string stiffness_text(const StudyFit& fit) {
+  const std::string limits = device::rendering_limits_text(fit.limits);
+  if (limits.empty()) return "";
+  return fmt::format("stiffness {:g} N/mm of the wall, {:g} N/mm of the texture: {} {}\n",
+                     fit.rendered.wall_n_per_mm, fit.rendered.texture_n_per_mm, fit.driver, limits);
 }
 
 std::string fit_text(const StudyFit& fit) {
@@ -128,7 +145,7 @@ std::string fit_text(const StudyFit& fit) {
       fmt::format("{}: plane {:.1f} x {:.1f} mm ({} x {} px of {} mm)\n{}: ", fit.study,
                   fit.plane.width_mm(), fit.plane.height_mm(), fit.plane.width_px,
                   fit.plane.height_px, fit.plane.pitch_mm, fit.driver);
-  text += workspace_text(fit);
+  text += workspace_text(fit) + stiffness_text(fit);
   if (!fit.fit.fits) return text;
   if (!fit.fit.placement) return text + "fits\n";
   const Vec3 origin = fit.fit.placement->origin_mm;
@@ -139,6 +156,19 @@ std::string fit_text(const StudyFit& fit) {
                     device::kWorkspaceMarginMm);
 }
 
+/// \param limit  0: not known
+ordered_json limit_json(double limit) {
+  return limit > 0.0 ? ordered_json(limit) : ordered_json(nullptr);
+}
+
+ordered_json stiffness_json(const StudyFit& fit) {
+  return {{"wall_n_per_mm", fit.rendered.wall_n_per_mm},
+          {"texture_n_per_mm", fit.rendered.texture_n_per_mm},
+          {"damping_n_s_per_mm", fit.rendered.damping_n_s_per_mm},
+          {"limit_n_per_mm", limit_json(fit.limits.max_stiffness_n_per_mm)},
+          {"damping_limit_n_s_per_mm", limit_json(fit.limits.max_damping_n_s_per_mm)}};
+}
+
 /// The format is documented in docs/devices/README.md.
 std::string fit_json(const StudyFit& fit) {
   ordered_json object = {{"study", fit.study},
@@ -147,6 +177,7 @@ std::string fit_json(const StudyFit& fit) {
                          {"margin_mm", device::kWorkspaceMarginMm},
                          {"plane", plane_json(fit.plane)},
                          {"workspace", workspace_json(fit)},
+                         {"stiffness", stiffness_json(fit)},
                          {"orientation", nullptr},
                          {"origin_mm", nullptr},
                          {"crop", nullptr}};
@@ -163,6 +194,7 @@ struct DeviceFitArguments {
   std::string driver;
   std::optional<device::PlaneOrientation> orientation;
   fs::path settings;
+  fs::path certificate;  ///< empty: NAME-certificate.json, if it is there
   bool json = false;
 };
 
@@ -174,6 +206,14 @@ int fit(const DeviceFitArguments& arguments) {
   if (!fit.fit.fits) {
     throw DeviceError(device::misfit_text(arguments.driver, fit.plane, *fit.workspace, fit.fit));
   }
+  const fs::path usual = arguments.driver + "-certificate.json";
+  if (!arguments.certificate.empty() || is_there(usual)) {
+    const fs::path& file = arguments.certificate.empty() ? usual : arguments.certificate;
+    device::require_stable(device::read_certificate(file).certificate,
+                           study.rendering.stiffness_n_per_mm);
+  }
+  const std::string warning = device::check_stiffness(fit.rendered, fit.limits);
+  if (!warning.empty()) spdlog::warn("{}", warning);
   return 0;
 }
 
@@ -186,7 +226,8 @@ void add_device_fit_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<DeviceFitArguments>();
   CLI::App* command = device.add_subcommand(
       "fit",
-      "Check whether a study's plane fits a device's workspace; if not, give the crop that does");
+      "Check whether a study's plane fits a device's workspace, and its stiffness the device's "
+      "limits; if the plane does not, give the crop that does");
   add_study_argument(*command, arguments->study);
   add_driver_argument(*command, "--device", arguments->driver);
   command
@@ -197,6 +238,9 @@ void add_device_fit_command(CLI::App& device, Action& action) {
           "horizontal")
       ->check(CLI::IsMember({"horizontal", "vertical"}));
   add_settings_option(*command, arguments->settings);
+  command->add_option("--certificate", arguments->certificate,
+                      "Certificate whose stiffest wall the study must keep to (default: "
+                      "NAME-certificate.json, if it is there)");
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return fit(*arguments); }; });
 }

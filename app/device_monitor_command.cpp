@@ -92,6 +92,7 @@ class Monitor {
     pointer_.publish({requests.pointer_mm, requests.pressed, false, 0});
     if (requests.stop) run_.comfort_stop();
     if (requests.resume) run_.start();
+    if (requests.calibrate) device_->calibrate();
     if (requests.wall) run_.wall().put(*requests.wall);
   }
 
@@ -101,6 +102,8 @@ class Monitor {
     picture.newest = run_.newest();
     picture.running = run_.running();
     picture.wall_on = run_.wall().is_on();
+    picture.wall_n_per_mm = run_.wall().stiffness_n_per_mm();
+    picture.needs_reset = device_->readiness() == device::DeviceReadiness::needs_reset;
     picture.rate_hz = arguments_.rate_hz;
     picture.history = &history_;
     const bool ready = picture.newest.tick == 0 || picture.newest.sample.ready;

@@ -81,6 +81,13 @@ std::string run_text(const device::ServoReport& run, bool quit) {
       is_fault ? ", " + fault_names(run) : "");
 }
 
+/// For devices that report it.
+std::string delivered_text(const device::ServoReport& run) {
+  if (run.delivered_share == 0.0) return "";
+  return fmt::format("device:  says that it exerted {:.0f} % of the commanded force\n",
+                     100.0 * run.delivered_share);
+}
+
 std::string scheduling_text(const device::SchedulingObtained& had) {
   const std::string got = had.policy == device::SchedulingPolicy::fifo
                               ? fmt::format("real time, priority {}", had.priority)
@@ -106,6 +113,7 @@ nlohmann::ordered_json run_json(const device::ServoReport& run) {
           {"limited_ticks", run.limited_ticks},
           {"contact_s", seconds_of(run.contact_ticks, run)},
           {"force_limit_n", run.force_limit_n},
+          {"delivered_share", run.delivered_share},
           {"lateness_us",
            {{"p50", run.lateness.p50_us},
             {"p99", run.lateness.p99_us},
@@ -121,7 +129,7 @@ std::string test_text(const DeviceTest& test) {
                      scheduling_text(test.scheduling);
   if (!test.run) return text + "ended:   stopped before the test began\n";
   for (const TestPhase& phase : test.phases) text += phase_text(phase, *test.run);
-  text += run_text(*test.run, test.quit);
+  text += delivered_text(*test.run) + run_text(*test.run, test.quit);
   if (!test.fault_record.empty()) {
     text += "flight record of the fault: " + test.fault_record.string() + "\n";
   }
@@ -171,7 +179,8 @@ class DeviceForTest {
   DeviceForTest(const TestArguments& arguments, const device::DeviceSettings& settings)
       : use_(settings.use_of(arguments.driver)),
         opened_(arguments.driver, settings, {kFreeSideMm, kFreeSideMm}),
-        texture_(opened_.device().info().workspace ? kPlacedSidePx : kFreeSidePx) {
+        texture_(opened_.device().info().workspace ? kPlacedSidePx : kFreeSidePx,
+                 opened_.device().info().max_stiffness_n_per_mm) {
     const device::WorkspaceFit fit =
         device::fit_plane(texture_.plane(), opened_.device().info().workspace, use_);
     if (fit.placement) placed_.emplace(opened_.device(), *fit.placement);

@@ -61,12 +61,24 @@ std::string readiness_in_words(device::DeviceReadiness readiness) {
       return "move the handle slowly through its whole range until every axis is homed";
     case device::DeviceReadiness::needs_inkwell:
       return "put the stylus into its inkwell, wait, and take it out again";
+    case device::DeviceReadiness::needs_reset:
+      return "put the arm at its reset position, with all its links at right angles, and hold it "
+             "still";
     case device::DeviceReadiness::needs_calibration:
-      return "run the vendor's own calibration";
+      return "calibrate it as its page in docs/devices says: the rest position, or the vendor's "
+             "own "
+             "calibration";
+    case device::DeviceReadiness::needs_force_on:
+      return "press the force button at the device, so that its light is on";
     case device::DeviceReadiness::ready:
       break;
   }
   return "";
+}
+
+device::RenderedStiffness rendered_stiffness(const engine::RenderingOptions& rendering) {
+  return {rendering.stiffness_n_per_mm, rendering.texture_stiffness_n_per_mm,
+          rendering.damping_n_s_per_mm};
 }
 
 }  // namespace touchtrial::app

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "device/servo/servo.hpp"
+#include "device/workspace_fit.hpp"
+#include "engine/rendering/rendering_options.hpp"
 
 #include <string>
 
@@ -15,5 +17,9 @@ namespace touchtrial::app {
 
 /// What the person has to do before force may be sent; empty if nothing.
 [[nodiscard]] std::string readiness_in_words(device::DeviceReadiness readiness);
+
+/// \return what a study renders, for device::check_stiffness
+[[nodiscard]] device::RenderedStiffness rendered_stiffness(
+    const engine::RenderingOptions& rendering);
 
 }  // namespace touchtrial::app

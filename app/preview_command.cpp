@@ -94,7 +94,11 @@ class Preview {
 
   /// Shows a screen as it is after a plane, so that nothing of the one before is left.
   void present(const PreviewScreen& screen) {
-    console_.show({.participant = "P07", .stage = screen.name, .device = "preview"});
+    session::SessionStatus status;
+    status.participant = "P07";
+    status.stage = screen.name;
+    status.device = "preview";
+    console_.show(status);
     window_.see_pictures(preview_labels(study_, screen));
     static_cast<void>(window_.attend(session::ReadyStep{1, 1, screen.practice}));
     window_.show_exploring(plane_);

@@ -79,7 +79,14 @@ void add_device_options(CLI::App& command, RunOptions& options) {
   command.add_option("--device", options.device, "Driver, as touchtrial device list names it");
   add_settings_option(command, options.settings);
   command.add_option("--certificate", options.certificate,
-                     "Calibration of the device (default: NAME-certificate.json, if it exists)");
+                     "Certificate of the device's acceptance (default: NAME-certificate.json)");
+  command.add_flag(
+      "--allow-unverified", options.allow_unverified,
+      "Run a device with force without a valid certificate; everything is then stamped "
+      "UNVERIFIED DEVICE");
+  command.add_flag("--allow-late", options.allow_late,
+                   "Run a device with force although the system refuses real-time scheduling; "
+                   "recorded");
   command.add_flag("--console", options.console, "Open a window for the experimenter too");
   command
       .add_option("--console-monitor", options.console_monitor,

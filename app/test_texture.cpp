@@ -1,5 +1,6 @@
 #include "app/test_texture.hpp"
 
+#include "device/workspace_fit.hpp"
 #include "engine/extraction.hpp"
 #include "engine/rendering/gains.hpp"
 #include "stimuli/generator.hpp"
@@ -14,9 +15,19 @@ engine::TextureField bark(int side_px, const engine::RenderingOptions& options) 
   return engine::make_texture_field(engine::extract_texture<double>(image, {}).texture, options);
 }
 
+engine::RenderingOptions options_below(double max_stiffness_n_per_mm) {
+  engine::RenderingOptions options;
+  for (double* const stiffness :
+       {&options.stiffness_n_per_mm, &options.texture_stiffness_n_per_mm}) {
+    *stiffness = device::within_share(*stiffness, max_stiffness_n_per_mm);
+  }
+  return options;
+}
+
 }  // namespace
 
-TestTexture::TestTexture(int side_px) : field_(bark(side_px, options_)) {
+TestTexture::TestTexture(int side_px, double max_stiffness_n_per_mm)
+    : options_(options_below(max_stiffness_n_per_mm)), field_(bark(side_px, options_)) {
   const std::array fields = {field_.view()};
   gains_ = engine::choose_gains(fields, options_).of_field.front();
 }

@@ -12,7 +12,8 @@ namespace touchtrial::app {
 class TestTexture {
  public:
   /// \param side_px  side of the square plane, at the default pitch; >= 16
-  explicit TestTexture(int side_px);
+  /// \param max_stiffness_n_per_mm  of the device, which wall and texture stay below; 0: not known
+  explicit TestTexture(int side_px, double max_stiffness_n_per_mm = 0.0);
 
   [[nodiscard]] PlaneGeometry plane() const noexcept { return field_.view().geometry; }
   /// Models refer to this object, which must outlive them.

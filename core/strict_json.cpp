@@ -256,6 +256,11 @@ std::int64_t JsonValue::integer(std::int64_t low, std::int64_t high) const {
   return *whole;
 }
 
+std::string JsonValue::any_object() const {
+  if (!node_->value->is_object()) refuse_type("an object");
+  return node_->value->dump();
+}
+
 std::vector<JsonValue> JsonValue::items(std::size_t fewest, std::size_t most) const {
   if (!node_->value->is_array()) refuse_type("a list");
   if (node_->value->size() < fewest || node_->value->size() > most) {

@@ -64,6 +64,8 @@ class JsonValue {
   /// An object; a key that is not among these is refused.
   [[nodiscard]] JsonObject object(std::span<const std::string_view> known) const;
   [[nodiscard]] JsonObject object(std::initializer_list<std::string_view> known) const;
+  /// An object whose keys somebody else knows, as JSON on one line, without comments.
+  [[nodiscard]] std::string any_object() const;
   /// The index of a text in `names`; any other text is refused.
   [[nodiscard]] std::size_t choice(std::span<const std::string_view> names) const;
 

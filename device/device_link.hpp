@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 namespace touchtrial::device {
@@ -44,6 +45,10 @@ class DeviceLink {
   [[nodiscard]] DeviceFault fault() const noexcept {
     return fault_.load(std::memory_order_acquire);
   }
+  /// \return whether `halt` or `fail` holds back every force
+  [[nodiscard]] bool is_stopped() const noexcept {
+    return halted_.load(std::memory_order_acquire) || fault() != DeviceFault::none;
+  }
   /// Latches the first fault: the force is zero from now on. A link that failed is opened anew.
   void fail(DeviceFault fault) noexcept {
     DeviceFault none = DeviceFault::none;
@@ -61,7 +66,7 @@ class DeviceLink {
   /// \return the force to send now, device frame, N: the servo's newest, or zero if there is none,
   ///   if it is too old, or after `halt` or `fail`
   [[nodiscard]] Vec3 force_to_send(Time now) noexcept { return live_force(now).value_or(Vec3{}); }
-  /// The same for drivers that add to a force: nothing in place of such a zero.
+  /// The same for drivers that must know whether a servo renders: nothing in place of such a zero.
   [[nodiscard]] std::optional<Vec3> live_force(Time now) noexcept {
     const TimedForce& newest = forces_.get();
     const bool usable = newest.any && now - newest.written_at <= kForceLifetime &&
@@ -88,6 +93,30 @@ class DeviceLink {
   std::uint64_t published_ = 0;
   std::atomic<bool> halted_{false};
   std::atomic<DeviceFault> fault_{DeviceFault::none};
+};
+
+/// Time and rest of a driver's own thread, so that tests own them.
+class LinkPace {
+ public:
+  using Time = DeviceLink::Time;
+  virtual ~LinkPace() = default;
+  /// The monotonic time. May be called from any thread.
+  [[nodiscard]] virtual Time now() noexcept = 0;
+  /// The driver's thread rests here until its next exchange is due.
+  virtual void rest_until(Time time) noexcept = 0;
+  /// The driver's thread has waited this long for an answer that did not come. A clock that does
+  /// not go by itself moves on.
+  virtual void waited(Time /*time*/) noexcept {}
+  /// Ends the rest for good: the device is being closed, or the driver's thread has ended. May be
+  /// called from any thread.
+  virtual void end() noexcept {}
+};
+
+/// Real time.
+class RealLinkPace final : public LinkPace {
+ public:
+  [[nodiscard]] Time now() noexcept override { return monotonic_now(); }
+  void rest_until(Time time) noexcept override { sleep_until(time); }
 };
 
 /// A device behind a DeviceLink whose times are those of `monotonic_now`.

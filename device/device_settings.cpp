@@ -18,6 +18,8 @@ constexpr NumberRange kBiasN{.low = -1.0, .high = 1.0};
 constexpr NumberRange kPlaceMm{.low = -1000.0, .high = 1000.0};
 constexpr NumberRange kLengthMm{.low = 1.0, .high = 2000.0};
 constexpr NumberRange kMassKg{.low = 0.0, .high = 10.0};
+constexpr std::int64_t kMostMotorValue = 10'000;
+constexpr NumberRange kPeakS{.low = 0.0, .high = 600.0, .open_low = true};
 constexpr std::int64_t kMostDevices = 64;
 constexpr std::int64_t kFastestRateHz = 10'000;
 constexpr std::int64_t kSlowestRateHz = 500;
@@ -28,6 +30,7 @@ constexpr std::int64_t kFastestBaud = 1'000'000;
 constexpr std::int64_t kWidestTrial = 4;
 constexpr std::array kMarkerFormats = {Named<MarkerFormat>{"byte", MarkerFormat::byte},
                                        Named<MarkerFormat>{"text", MarkerFormat::text}};
+constexpr std::int64_t kLastPort = 65535;
 constexpr std::array kOrientations = {
     Named<PlaneOrientation>{"horizontal", PlaneOrientation::horizontal},
     Named<PlaneOrientation>{"vertical", PlaneOrientation::vertical}};
@@ -121,7 +124,8 @@ Vec3 read_gravity_bias(const JsonValue& place) {
 
 DeviceUse read_falcon(const JsonValue& place, const fs::path& folder, DeviceSettings& settings) {
   const JsonObject object =
-      place.object({"firmware", "serial", "gravity_bias_n", "led_order", "limits", "placement"});
+      place.object({"firmware", "serial", "gravity_bias_n", "led_order", "motor_peak",
+                    "motor_continuous", "motor_peak_s", "limits", "placement"});
   FalconSettings& falcon = settings.falcon;
   read_path(object, "firmware", folder, falcon.firmware);
   read_text(object, "serial", falcon.serial);
@@ -129,6 +133,13 @@ DeviceUse read_falcon(const JsonValue& place, const fs::path& folder, DeviceSett
     falcon.gravity_bias_n = read_gravity_bias(*bias);
   }
   if (const auto order = object.find("led_order")) falcon.led_order = read_led_order(*order);
+  if (const auto value = object.find("motor_peak")) {
+    falcon.motor_peak = static_cast<int>(value->integer(1, kMostMotorValue));
+  }
+  if (const auto value = object.find("motor_continuous")) {
+    falcon.motor_continuous = static_cast<int>(value->integer(1, kMostMotorValue));
+  }
+  if (const auto time = object.find("motor_peak_s")) falcon.motor_peak_s = time->number(kPeakS);
   return read_use(object);
 }
 
@@ -162,6 +173,34 @@ DeviceUse read_dhd(const JsonValue& place, const fs::path& folder, DeviceSetting
     dhd.continuous_force_n = force->number(kForceOrNoneN);
   }
   if (const auto size = object.find("workspace_mm")) dhd.workspace_mm = read_vec3(*size, kLengthMm);
+  return read_use(object);
+}
+
+DeviceUse read_plugin(const JsonValue& place, const fs::path& folder, DeviceSettings& settings) {
+  const JsonObject object = place.object({"library", "settings", "limits", "placement"});
+  read_library(object, folder, settings.plugin.library);
+  if (const auto own = object.find("settings")) settings.plugin.settings = own->any_object();
+  return read_use(object);
+}
+
+void read_port(const JsonObject& object, std::string_view key, int& port) {
+  if (const auto member = object.find(key)) {
+    port = static_cast<int>(member->integer(1, kLastPort));
+  }
+}
+
+DeviceUse read_inverse3(const JsonValue& place, const fs::path&, DeviceSettings& settings) {
+  const JsonObject object = place.object(
+      {"host", "port", "events_port", "device_id", "max_force_n", "limits", "placement"});
+  Inverse3Settings& inverse3 = settings.inverse3;
+  read_text(object, "host", inverse3.host);
+  if (inverse3.host.empty()) {
+    object.find("host")->refuse("is empty; give the host's name, or leave the key out");
+  }
+  read_port(object, "port", inverse3.port);
+  read_port(object, "events_port", inverse3.events_port);
+  read_text(object, "device_id", inverse3.device_id);
+  if (const auto force = object.find("max_force_n")) inverse3.max_force_n = force->number(kForceN);
   return read_use(object);
 }
 
@@ -210,9 +249,12 @@ InstrumentSettings read_instruments(const JsonValue& place, const fs::path& fold
 
 /// Drivers with settings of their own; the others have only limits.
 using ReadDriver = DeviceUse (*)(const JsonValue&, const fs::path&, DeviceSettings&);
-constexpr std::array kReaders = {
-    Named<ReadDriver>{"falcon", read_falcon}, Named<ReadDriver>{"openhaptics", read_openhaptics},
-    Named<ReadDriver>{"dhd", read_dhd}, Named<ReadDriver>{"replay", read_replay}};
+constexpr std::array kReaders = {Named<ReadDriver>{"falcon", read_falcon},
+                                 Named<ReadDriver>{"openhaptics", read_openhaptics},
+                                 Named<ReadDriver>{"dhd", read_dhd},
+                                 Named<ReadDriver>{"plugin", read_plugin},
+                                 Named<ReadDriver>{"inverse3", read_inverse3},
+                                 Named<ReadDriver>{"replay", read_replay}};
 
 DeviceUse read_driver(const std::string& driver, const JsonValue& place, const fs::path& folder,
                       DeviceSettings& settings) {

@@ -19,8 +19,14 @@ namespace touchtrial::device {
 struct FalconSettings {
   std::filesystem::path firmware;  ///< the vendor's image; needed unless it is already loaded
   std::string serial;              ///< of the device to use; empty: the only one
-  Vec3 gravity_bias_n;             ///< added to every force, device frame; norm <= 1
-  std::array<int, 3> led_order = {0, 1, 2};  ///< bits of red, green, blue, on which sources differ
+  Vec3 gravity_bias_n;             ///< the device's support force, device frame; norm <= 1
+  std::array<int, 3> led_order = {2, 0, 1};  ///< bits of red, green and blue
+  /// Limits of each motor, in motor values (10,000 for 1 N m): the greatest, that which it holds
+  /// for ever, and how long a cold motor may have the greatest, s. Guesses, until a lab measures
+  /// its device (docs/devices/falcon.md).
+  int motor_peak = 4095;
+  int motor_continuous = 1365;
+  double motor_peak_s = 20.0;
 };
 
 struct OpenHapticsSettings {
@@ -30,15 +36,31 @@ struct OpenHapticsSettings {
 };
 
 struct DhdSettings {
+  /// A file, a folder, or a name; this one stands for every version of libdrd.so and libdhd.so.
   std::filesystem::path library = "libdhd.so";
   int index = 0;  ///< among the connected devices, >= 0
   bool gravity_compensation = true;
-  double effector_mass_kg = 0.0;    ///< 0: as the device knows it
-  double max_force_n = 8.0;         ///< which the library does not tell; > 0
-  double continuous_force_n = 0.0;  ///< 0: no limit is known
-  /// Width, height and depth of the ellipsoid that the device reaches, which the library does not
-  /// report either; each > 0. The default is that of an omega.3.
-  Vec3 workspace_mm = {160.0, 160.0, 110.0};
+  double effector_mass_kg = 0.0;  ///< 0: as the device knows it
+  /// \name What the library does not tell; nothing: by the device's model
+  ///@{
+  std::optional<double> max_force_n;         ///< > 0
+  std::optional<double> continuous_force_n;  ///< 0: no limit is known
+  /// Width, height and depth of the ellipsoid that the device reaches; each > 0.
+  std::optional<Vec3> workspace_mm;
+  ///@}
+};
+
+struct PluginSettings {
+  std::filesystem::path library;  ///< needed
+  std::string settings = "{}";    ///< a JSON object, which the plug-in alone understands
+};
+
+struct Inverse3Settings {
+  std::string host = "localhost";  ///< where Haply's Inverse service runs
+  int port = 10001;                ///< of its simulation channel, 1 to 65535
+  int events_port = 10020;         ///< of its events channel, 1 to 65535
+  std::string device_id;           ///< of the device to use; empty: the only one
+  double max_force_n = 5.0;        ///< along each axis, which nobody publishes; > 0
 };
 
 struct ReplaySettings {
@@ -75,6 +97,8 @@ struct DeviceSettings {
   FalconSettings falcon;
   OpenHapticsSettings openhaptics;
   DhdSettings dhd;
+  PluginSettings plugin;
+  Inverse3Settings inverse3;
   ReplaySettings replay;
   InstrumentSettings instruments;
   std::map<std::string, DeviceUse> uses;  ///< by driver; those that the file mentions

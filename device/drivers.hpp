@@ -20,6 +20,13 @@ namespace touchtrial::device {
 /// force.
 [[nodiscard]] DeviceDriver dhd_driver();
 
+/// `list` asks the Inverse service for its devices, over HTTP and with a short time limit.
+[[nodiscard]] DeviceDriver inverse3_driver();
+
+/// `list` loads the library of the settings, opens its device for a moment and closes it again,
+/// without force.
+[[nodiscard]] DeviceDriver plugin_driver();
+
 /// `list` finds a mouse where the environment names a display (DISPLAY, WAYLAND_DISPLAY). `open`
 /// throws DeviceError, as a window belongs to the application: its OpenedDevice (app/windows) makes
 /// the window and the MouseDevice, and opens every other driver too.
@@ -35,8 +42,8 @@ namespace touchtrial::device {
 
 /// \return all of them, in the order in which the program lists them
 [[nodiscard]] inline std::vector<DeviceDriver> all_drivers() {
-  return {falcon_driver(), openhaptics_driver(), dhd_driver(),
-          mouse_driver(),  simulated_driver(),   replay_driver()};
+  return {falcon_driver(), openhaptics_driver(), dhd_driver(),       inverse3_driver(),
+          plugin_driver(), mouse_driver(),       simulated_driver(), replay_driver()};
 }
 
 }  // namespace touchtrial::device

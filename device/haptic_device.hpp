@@ -21,6 +21,10 @@ struct DeviceSample {
   std::uint64_t sequence = 0;
   std::uint32_t buttons = 0;  ///< bit i is button i, set while it is down
   bool ready = true;          ///< homed and calibrated: the position is valid and force may be sent
+  /// The motors could not give all of the newest force: a limit of their own shortened it.
+  bool limited = false;
+  /// The force that the device says it exerted when it took this reading, N; nothing: it says none.
+  std::optional<Vec3> delivered_n = std::nullopt;
 };
 
 /// The outcome of talking to a device inside the servo, where nothing may throw.
@@ -41,7 +45,9 @@ enum class DeviceReadiness {
   ready,
   needs_homing,       ///< move the handle through its whole range until every axis is homed
   needs_inkwell,      ///< put the stylus into its inkwell
+  needs_reset,        ///< put the arm at its reset position, then call HapticDevice::calibrate
   needs_calibration,  ///< run the vendor's own calibration
+  needs_force_on,     ///< press the device's own button that switches force on
 };
 
 enum class WorkspaceShape {
@@ -73,6 +79,8 @@ struct DeviceInfo {
   bool visual = false;
   /// The largest stiffness of a wall that it renders stably, as the maker states it; 0: not known.
   double max_stiffness_n_per_mm = 0.0;
+  /// The largest damping that it renders stably, N s/mm, likewise.
+  double max_damping_n_s_per_mm = 0.0;
 };
 
 /// A force-feedback device. The constructor opens it and throws DeviceError if it cannot; the
@@ -95,6 +103,12 @@ class HapticDevice {
   /// \param force_n  N, checked and limited by the servo
   [[nodiscard]] virtual DeviceStatus write(Vec3 force_n) noexcept = 0;
 
+  /// The force that carries what the hand would otherwise hold, the handle's and the arm's weight,
+  /// N, in the frame of the samples. The servo calls it after `read`, on its thread, and adds it to
+  /// the computed force before the safety chain, so that every limit judges the sum. A driver must
+  /// not add any force to what `write` is given.
+  [[nodiscard]] virtual Vec3 support_force_n(const DeviceSample& /*sample*/) noexcept { return {}; }
+
   /// Zero force at once and until `rearm`, whatever `write` is given. Safe in a signal handler.
   virtual void halt() noexcept = 0;
   /// Lets forces pass again after `halt`; a person decides it.
@@ -104,6 +118,9 @@ class HapticDevice {
   [[nodiscard]] virtual DeviceReadiness readiness() const noexcept {
     return DeviceReadiness::ready;
   }
+  /// A person says that the arm is at its reset position (DeviceReadiness::needs_reset): wherever
+  /// it is now becomes that place. Does nothing while the device needs anything else, or nothing.
+  virtual void calibrate() noexcept {}
 };
 
 }  // namespace touchtrial::device

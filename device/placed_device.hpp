@@ -45,15 +45,26 @@ class PlacedDevice final : public HapticDevice {
     sample.position_mm =
         to_plane_direction(sample.position_mm - placement_.origin_mm, placement_.orientation);
     sample.velocity_mm_s = to_plane_direction(sample.velocity_mm_s, placement_.orientation);
+    if (sample.delivered_n) {
+      sample.delivered_n = to_plane_direction(*sample.delivered_n, placement_.orientation);
+    }
     return status;
   }
   [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
     return device_.write(to_device_direction(force_n, placement_.orientation));
   }
+  [[nodiscard]] Vec3 support_force_n(const DeviceSample& sample) noexcept override {
+    DeviceSample own = sample;
+    own.position_mm =
+        placement_.origin_mm + to_device_direction(sample.position_mm, placement_.orientation);
+    own.velocity_mm_s = to_device_direction(sample.velocity_mm_s, placement_.orientation);
+    return to_plane_direction(device_.support_force_n(own), placement_.orientation);
+  }
   void halt() noexcept override { device_.halt(); }
   void rearm() noexcept override { device_.rearm(); }
   [[nodiscard]] DeviceFault fault() const noexcept override { return device_.fault(); }
   [[nodiscard]] DeviceReadiness readiness() const noexcept override { return device_.readiness(); }
+  void calibrate() noexcept override { device_.calibrate(); }
 
  private:
   HapticDevice& device_;

@@ -22,6 +22,8 @@ struct DeviceListing {
   /// What keeps it from use (permission, firmware, library), a line each with its remedy; empty:
   /// `open_device` will open it.
   std::vector<std::string> missing;
+  /// What a study has to know of the device, a line each.
+  std::vector<std::string> notes{};
 };
 
 /// What one driver offers the registry.
@@ -35,6 +37,10 @@ struct DeviceDriver {
   std::optional<Workspace> nominal_workspace = std::nullopt;
   /// False if models differ and only the device itself knows its workspace.
   bool workspace_is_known = true;
+  /// Lets the device find its axes by moving itself, which only a person may ask for who keeps
+  /// clear of it; returns what it did, for instance "is initialised". Throws DeviceError with the
+  /// remedy. Null: a person moves the device, see HapticDevice::readiness.
+  std::function<std::string(const DeviceSettings&)> initialise = nullptr;
 };
 
 /// \return all drivers, in the order in which the program lists them

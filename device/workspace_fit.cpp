@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -73,6 +74,20 @@ std::string rounded_text(double number) {
   return number_text(std::round(number * 10.0) / 10.0);
 }
 
+/// Without the digits that a number in single precision does not have.
+std::string short_text(double number) {
+  constexpr double kDigits = 1e6;
+  return number_text(std::round(number * kDigits) / kDigits);
+}
+
+/// A number of the study's "rendering" beside the device's limit of it, 0: not known.
+struct Limited {
+  const char* key;
+  const char* unit;
+  double value;
+  double limit;
+};
+
 std::string size_text(const PlaneGeometry& plane) {
   return rounded_text(plane.width_mm()) + " x " + rounded_text(plane.height_mm()) + " mm (" +
          std::to_string(plane.width_px) + " x " + std::to_string(plane.height_px) + " px)";
@@ -114,6 +129,47 @@ std::string misfit_text(const std::string& device, const PlaneGeometry& plane,
   return one_line(device + ": the plane of " + size_text(plane) +
                   " does not fit its workspace of " + workspace_text(workspace) + " with " +
                   number_text(kWorkspaceMarginMm) + " mm around it; " + offer);
+}
+
+std::string rendering_limits_text(const DeviceInfo& device) {
+  std::string text;
+  if (device.max_stiffness_n_per_mm > 0.0) {
+    text += "a stiffness of at most " + short_text(device.max_stiffness_n_per_mm) + " N/mm";
+  }
+  if (device.max_damping_n_s_per_mm > 0.0) {
+    text += (text.empty() ? "" : " and ") + std::string("a damping of at most ") +
+            short_text(device.max_damping_n_s_per_mm) + " N s/mm";
+  }
+  return text.empty() ? "" : "renders " + text + ", as it reports";
+}
+
+std::string check_stiffness(const RenderedStiffness& rendered, const DeviceInfo& device) {
+  const std::array limited = {
+      Limited{"stiffness_n_per_mm", "N/mm", rendered.wall_n_per_mm, device.max_stiffness_n_per_mm},
+      Limited{"texture_stiffness_n_per_mm", "N/mm", rendered.texture_n_per_mm,
+              device.max_stiffness_n_per_mm},
+      Limited{"damping_n_s_per_mm", "N s/mm", rendered.damping_n_s_per_mm,
+              device.max_damping_n_s_per_mm}};
+  std::string warning;
+  for (const Limited& one : limited) {
+    if (one.limit <= 0.0 || one.value <= kStiffnessShare * one.limit) continue;
+    const std::string words =
+        "rendering." + std::string(one.key) + " of " + short_text(one.value) + " " + one.unit;
+    // Libraries give their limits in single precision.
+    if (one.value > one.limit * (1.0 + 1e-6)) {
+      throw DeviceError(one_line(device.name + ": the study's " + words +
+                                 " is beyond the device's own limit of " + short_text(one.limit) +
+                                 ", where it may begin to oscillate; lower it in the study file "
+                                 "before the study begins, or use a stiffer device"));
+    }
+    if (warning.empty()) {
+      warning = one_line(device.name + ": the study's " + words +
+                         " is at the device's own limit of " + short_text(one.limit) +
+                         " and may vibrate; feel it with touchtrial device test, or plan at most " +
+                         short_text(kStiffnessShare * one.limit));
+    }
+  }
+  return warning;
 }
 
 std::optional<PlanePlacement> placement_of(const PlaneGeometry& plane, const DeviceInfo& device,

@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "device/falcon/falcon_kinematics.hpp"
 #include "device/falcon/falcon_packet.hpp"
+#include "device/inverse3/service_messages.hpp"
 #include "engine/image_file.hpp"
 #include "protocols/design/key_protection.hpp"
 #include "protocols/design/recovery_sheet.hpp"
@@ -206,6 +207,30 @@ void read_as_falcon(ByteView bytes) {
   require(
       stream.discarded_bytes() + stream.replies() * device::falcon::kPacketSize <= payload.size(),
       "no byte belongs to two things");
+}
+
+void read_as_inverse3(ByteView bytes) {
+  namespace service = device::inverse3;
+  const std::string text(bytes.begin(), bytes.end());
+  const auto accept_or_call_bad = [&](auto read) {
+    try {
+      read();
+    } catch (const service::BadMessage&) {
+      // As documented.
+    }
+  };
+  accept_or_call_bad([&] {
+    for (const service::DeviceReport& report : service::report_in(text).devices) {
+      require(is_finite(report.position_m) && is_finite(report.velocity_m_s) &&
+                  is_finite(report.delivered_n.value_or(Vec3{})),
+              "an accepted state is finite");
+      require(!report.id.empty(), "a device has a name");
+    }
+  });
+  accept_or_call_bad([&] { static_cast<void>(service::version_in(text)); });
+  accept_or_call_bad([&] { static_cast<void>(service::sessions_in(text)); });
+  accept_or_call_bad(
+      [&] { require(!service::event_in(text).name.empty(), "an event has a name"); });
 }
 
 }  // namespace touchtrial::fuzz

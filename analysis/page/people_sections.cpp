@@ -5,6 +5,7 @@
 #include "analysis/text_figures.hpp"
 #include "core/text.hpp"
 #include "core/utc.hpp"
+#include "protocols/design/deviation_codes.hpp"
 
 #include <algorithm>
 #include <map>
@@ -58,9 +59,11 @@ std::string devices_of(const std::vector<SessionRecord>& sessions) {
     if (!one.device_serial.empty()) name += ", serial " + one.device_serial;
     if (one.station && !one.station->firmware.empty())
       name += ", firmware " + one.station->firmware;
-    if (one.station) {
+    if (ran_unverified(one)) {
+      name += std::string(", ") + design::kUnverifiedDevice;
+    } else if (one.station) {
       name += one.station->calibration.empty()
-                  ? ", without a calibration certificate"
+                  ? ", without a certificate"
                   : ", certificate " + one.station->calibration.substr(0, 12);
     }
     ++devices[name];

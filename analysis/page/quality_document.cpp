@@ -4,6 +4,7 @@
 #include "analysis/statistics/confusion.hpp"
 #include "analysis/text_figures.hpp"
 #include "core/text.hpp"
+#include "protocols/design/deviation_codes.hpp"
 
 #include <fmt/format.h>
 
@@ -144,6 +145,10 @@ Document quality_document(const QualityReport& report, const Collection& collect
   document.stamp = report.simulated ? "SIMULATED" : "";
   if (report.pilot) document.stamp += document.stamp.empty() ? "PILOT" : ", PILOT";
   document.banners = banners_of(report);
+  if (provenance.unverified) {
+    document.stamp += std::string(document.stamp.empty() ? "" : ", ") + design::kUnverifiedDevice;
+    document.banners.push_back(unverified_banner());
+  }
   document.header = evidence_header(provenance);
   document.header.entries.insert(document.header.entries.begin(),
                                  {{"protocol", report.protocol},

@@ -5,6 +5,7 @@
 #include "analysis/text_figures.hpp"
 #include "core/text.hpp"
 #include "core/version.hpp"
+#include "protocols/design/deviation_codes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -46,6 +47,7 @@ std::vector<std::string> banners_of(const StudyHead& report, const Provenance& p
   if (report.pilot) {
     banners.emplace_back("PILOT: not to be pooled with the study's data, nor reported as it.");
   }
+  if (provenance.unverified) banners.push_back(unverified_banner());
   if (provenance.state.question) {
     banners.emplace_back(
         "INTERIM LOOK at the registered question: it alone is shown, and it alone may decide "
@@ -84,7 +86,13 @@ Provenance provenance_of(const store::StudyStore& store, const std::string& data
           to_hex(store.commitment().seal),
           store.file_head(),
           store.state(),
-          prescription_from_json(store.commitment().configuration).draft};
+          prescription_from_json(store.commitment().configuration).draft,
+          !store.commitment().simulated && any_ran_unverified(load_collection(store).sessions)};
+}
+
+std::string unverified_banner() {
+  return std::string(design::kUnverifiedDevice) +
+         ": sessions ran on a device without a valid acceptance. Nobody knows what was felt.";
 }
 
 Definitions evidence_header(const Provenance& provenance) {
@@ -102,7 +110,8 @@ Definitions evidence_header(const Provenance& provenance) {
 }
 
 std::string further_stamp(bool pilot, const Provenance& provenance) {
-  return joined(pilot ? "PILOT" : "", is_interim(provenance) ? "INTERIM LOOK" : "");
+  return joined(joined(pilot ? "PILOT" : "", is_interim(provenance) ? "INTERIM LOOK" : ""),
+                provenance.unverified ? design::kUnverifiedDevice : "");
 }
 
 Section warnings_section(const std::vector<std::string>& warnings) {

@@ -17,13 +17,18 @@ struct Provenance {
   std::string seal;             ///< commitment made before trial 1, hexadecimal
   store::ChainHead head;        ///< head of the file's chain
   store::StudyState state;
-  std::string texts{};  ///< what has to be said of the participants' texts; may be empty
+  std::string texts{};      ///< what has to be said of the participants' texts; may be empty
+  bool unverified = false;  ///< as any_ran_unverified
 };
 
 /// \param database  file name to show
 [[nodiscard]] Provenance provenance_of(const store::StudyStore& store, const std::string& database);
 
-/// The stamp that follows SIMULATED on every table and figure: PILOT, INTERIM LOOK, both, or empty.
+/// The warning of a report with sessions on a device without a valid certificate.
+[[nodiscard]] std::string unverified_banner();
+
+/// The stamp that follows SIMULATED on every table and figure: those of PILOT, INTERIM LOOK and
+/// UNVERIFIED DEVICE that hold, or empty.
 [[nodiscard]] std::string further_stamp(bool pilot, const Provenance& provenance);
 
 /// Pictures for a report. The id of a picture tells to which section it belongs (docs/report.md).

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -115,10 +116,43 @@ void fact(const char* name, const std::string& value) {
   ImGui::TextWrapped("%s", value.c_str());
 }
 
+/// The three levels side by side, with the present one marked; all grey while there is none.
+void level(const char* name, std::optional<session::HandLevel> now) {
+  using session::HandLevel;
+  ImGui::TableNextColumn();
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0.0F, 2.0F});
+  grey(name);
+  ImGui::PopStyleVar();
+  const float pad = 0.35F * ImGui::GetFontSize();
+  ImDrawList* const drawing = ImGui::GetWindowDrawList();
+  ImVec2 at = ImGui::GetCursorScreenPos();
+  at.x -= pad;  // the words are in line with those below
+  for (const HandLevel one : {HandLevel::low, HandLevel::right, HandLevel::high}) {
+    const char* const word = level_word(one);
+    const ImVec2 size = ImGui::CalcTextSize(word);
+    const bool is_now = one == now;
+    if (is_now) {
+      drawing->AddRectFilled({at.x, at.y - 1.0F},
+                             {at.x + size.x + 2.0F * pad, at.y + size.y + 1.0F}, kBlue, 0.5F * pad);
+    }
+    drawing->AddText({at.x + pad, at.y}, is_now ? kWhite : kGrey, word);
+    at.x += size.x + 2.0F * pad;
+  }
+  ImGui::Dummy({0.0F, ImGui::GetTextLineHeight()});
+}
+
+std::optional<session::HandLevel> level_of(const std::optional<session::HandLevels>& hand,
+                                           session::HandLevel session::HandLevels::*which) {
+  if (!hand) return std::nullopt;
+  return (*hand).*which;
+}
+
 void draw_facts(const session::SessionStatus& status) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(status.elapsed).count();
   const bool is_measured = status.rate_hz > 0.0;
   if (!ImGui::BeginTable("facts", 3)) return;
+  level("force", level_of(status.hand, &session::HandLevels::force));
+  level("speed", level_of(status.hand, &session::HandLevels::speed));
   fact("elapsed", fmt::format("{}:{:02}", seconds / 60, seconds % 60));
   fact("interruptions", std::to_string(status.interruptions));
   fact("device", status.device.empty() ? "-" : status.device);

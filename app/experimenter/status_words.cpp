@@ -13,6 +13,18 @@ bool begins_character(char byte) {
 
 }  // namespace
 
+const char* level_word(session::HandLevel level) noexcept {
+  switch (level) {
+    case session::HandLevel::low:
+      return "low";
+    case session::HandLevel::right:
+      return "right";
+    case session::HandLevel::high:
+      break;
+  }
+  return "high";
+}
+
 std::string stop_advice(const session::SessionStatus& status) {
   if (!status.participant_stopped) return "";
   return std::string("Ask how they are, and type a reason as a deviation (code ") +
@@ -36,7 +48,10 @@ std::string status_line(const session::SessionStatus& status) {
   std::string line = progress_words(status);
   line += fmt::format("  {}:{:02}", seconds / 60, seconds % 60);
   if (!status.device.empty()) line += "  " + status.device;
-  if (status.rate_hz > 0.0) {
+  if (status.hand) {
+    line += fmt::format("  force {}  speed {}", level_word(status.hand->force),
+                        level_word(status.hand->speed));
+  } else if (status.rate_hz > 0.0) {
     line += fmt::format("  {:.0f}/s  late {:.0f} us  overruns {}", status.rate_hz,
                         status.lateness_p99_us, status.overruns);
   }

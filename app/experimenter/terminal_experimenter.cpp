@@ -81,6 +81,8 @@ void TerminalExperimenter::take(char key) {
     spoken_->take(key);
   } else if (key == 'g') {
     arm_asked_ = is_ready_shown_;
+  } else if (key == 'h' && !need_.empty()) {
+    at_reset_ = true;
   } else {
     typing_.take(key);
   }
@@ -176,6 +178,7 @@ session::Attendant::Says TerminalExperimenter::attend(const std::string& need) {
   const Says says = said(need.empty());
   is_ready_shown_ = says == Says::wait && need.empty();
   arm_asked_ = false;
+  at_reset_ = false;
   need_.clear();
   if (says != Says::wait) return says;
   need_ = need.empty() ? "ready: g switches the force on, once the hand is at the pen"
@@ -193,7 +196,8 @@ session::Attendant::Says TerminalExperimenter::said(bool is_ready) {
     add(*request);
   }
   if (stops) return Says::stop;
-  return arm_asked_ && is_ready ? Says::arm : Says::wait;
+  if (is_ready) return arm_asked_ ? Says::arm : Says::wait;
+  return at_reset_ ? Says::at_reset : Says::wait;
 }
 
 void TerminalExperimenter::forget_spoken_answer() {

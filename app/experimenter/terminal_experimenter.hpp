@@ -54,7 +54,8 @@ class TerminalExperimenter final : public session::Experimenter,
   /// Returns an empty list at once if nobody types.
   [[nodiscard]] std::optional<std::vector<session::Tick>> day_sheet(
       const std::vector<session::DaySheetItem>& items) override;
-  /// Key g arms if it is pressed after the line that says so; a stops after a question.
+  /// Key g arms and h says that the arm is at its reset position, if it is pressed after the line
+  /// that says so; a stops after a question.
   [[nodiscard]] Says attend(const std::string& need) override;
   [[nodiscard]] std::optional<SpokenAnswer> spoken_answer(
       const session::AnswerStep& step, const std::vector<std::string>& labels) override;
@@ -80,7 +81,8 @@ class TerminalExperimenter final : public session::Experimenter,
   std::optional<AnswerTyping> spoken_;
   bool is_ready_shown_ = false;  ///< the line asks for the key that switches the force on
   bool arm_asked_ = false;
-  std::string need_;  ///< what the device waits for, while it waits
+  bool at_reset_ = false;  ///< the arm is where the line asks for it
+  std::string need_;       ///< what the device waits for, while it waits
   std::string status_;
   std::string item_;  ///< the item of the day sheet that was shown last
   std::string shown_;

@@ -7,6 +7,7 @@
 #include "device/servo/sample_ring.hpp"
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_thread.hpp"
+#include "device/workspace_fit.hpp"
 
 #include <algorithm>
 #include <array>
@@ -76,11 +77,15 @@ class MonitorHistory {
 /// within 100 ms.
 class TestWall final : public device::ForceSource {
  public:
-  static constexpr double kStiffness_n_per_mm = 0.4;
+  static constexpr double kStiffnessNPerMm = 0.4;  ///< or less, as the device's limit wants
   static constexpr double kMaxForceN = 1.0;
 
   /// \param rate_hz  the servo's rate, > 0
-  explicit TestWall(double rate_hz) noexcept : share_of_tick_(10.0 / rate_hz) {}
+  /// \param max_stiffness_n_per_mm  of the device, which the wall stays below; 0: not known
+  explicit TestWall(double rate_hz, double max_stiffness_n_per_mm = 0.0) noexcept
+      : share_of_tick_(10.0 / rate_hz),
+        stiffness_n_per_mm_(device::within_share(kStiffnessNPerMm, max_stiffness_n_per_mm)) {}
+  [[nodiscard]] double stiffness_n_per_mm() const noexcept { return stiffness_n_per_mm_; }
 
   /// \name Any thread
   ///@{
@@ -99,12 +104,13 @@ class TestWall final : public device::ForceSource {
     // A wall that is switched off still acts while its force falls.
     if (met != met_.load(std::memory_order_relaxed)) met_.store(met, std::memory_order_release);
     share_ = std::clamp(share_ + (met ? share_of_tick_ : -share_of_tick_), 0.0, 1.0);
-    const double force_n = std::clamp(kStiffness_n_per_mm * depth_mm, 0.0, kMaxForceN);
+    const double force_n = std::clamp(stiffness_n_per_mm_ * depth_mm, 0.0, kMaxForceN);
     return {0.0, 0.0, share_ * force_n};
   }
 
  private:
   double share_of_tick_;
+  double stiffness_n_per_mm_;
   double share_ = 0.0;
   std::atomic<bool> on_{false};
   std::atomic<bool> met_{false};

@@ -160,8 +160,13 @@ void draw_controls(const MonitorPicture& picture, float width, float density,
   ImGui::PopStyleColor(2);
   ImGui::SameLine();
   requests.resume = draw_button("Resume", !picture.running, half, height);
+  if (picture.needs_reset) {
+    requests.calibrate = draw_button("The arm is at its reset position", true, width, height);
+  }
   bool wall = picture.wall_on;
-  if (ImGui::Checkbox("wall: z = 0, 0.4 N/mm, at most 1 N", &wall)) requests.wall = wall;
+  const std::string label =
+      fmt::format("wall: z = 0, {:.2g} N/mm, at most 1 N", picture.wall_n_per_mm);
+  if (ImGui::Checkbox(label.c_str(), &wall)) requests.wall = wall;
 }
 
 std::string buttons_of(std::uint32_t buttons) {

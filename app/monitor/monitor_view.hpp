@@ -39,12 +39,15 @@ struct MonitorPicture {
   double rate_hz = 1000.0;  ///< requested
   bool running = false;
   bool wall_on = false;
+  double wall_n_per_mm = TestWall::kStiffnessNPerMm;
+  bool needs_reset = false;  ///< DeviceReadiness::needs_reset
 };
 
 /// The person's input since the last picture.
 struct MonitorRequests {
   bool stop = false;
   bool resume = false;
+  bool calibrate = false;  ///< the arm is at its reset position
   std::optional<bool> wall;
   Vec2 pointer_mm;  ///< the pointer's position on the plane, for the device "mouse"
   bool pressed = false;

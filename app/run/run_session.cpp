@@ -1,5 +1,6 @@
 #include "app/run/run_session.hpp"
 
+#include "app/device_words.hpp"
 #include "app/experimenter/console_experimenter.hpp"
 #include "app/experimenter/terminal_experimenter.hpp"
 #include "app/experimenter/typing.hpp"
@@ -18,6 +19,7 @@
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
 #include "device/simulated/simulated_hand.hpp"
+#include "device/workspace_fit.hpp"
 #include "engine/image_file.hpp"
 #include "protocols/design/languages.hpp"
 #include "protocols/design/practice.hpp"
@@ -193,6 +195,13 @@ void warn_of_unknown_size(const RunOptions& options, const design::Study& study,
       options.monitor > 1 ? " --monitor " + std::to_string(options.monitor) : "");
 }
 
+/// \throws as device::check_stiffness
+void warn_of_stiffness(const engine::RenderingOptions& rendering,
+                       const device::DeviceInfo& device) {
+  const std::string warning = device::check_stiffness(rendered_stiffness(rendering), device);
+  if (!warning.empty()) spdlog::warn("{}", warning);
+}
+
 store::ScreenRecord record_of(const ScreenScale& screen) {
   return {screen.mm_per_unit, screen.is_measured ? "measured"
                               : screen.is_known  ? "stated"
@@ -221,6 +230,8 @@ class PersonsSession {
         practice_(study, source_.plane()) {
     require_blind(options, device_.info());
     require_consent(device_.info());
+    device_.require_stable_wall(study.key.study.rendering.stiffness_n_per_mm);
+    warn_of_stiffness(study.key.study.rendering, device_.info());
     if (options.sound) {
       sound_.emplace(masking_of(study.key.study, device_.info()), study.key.study.seed);
       if (!sound_->trouble().empty()) spdlog::warn("{}", sound_->trouble());
@@ -278,7 +289,7 @@ class PersonsSession {
                                                 .texts = texts,
                                                 .practice = practice_.textures_for(entered.draw),
                                                 .participant_name = options_.participant,
-                                                .device_name = device_.driver(),
+                                                .device_name = device_.shown_name(),
                                                 .limits = device_.limits(),
                                                 .instruments = instruments_.get()});
     terminal_.end_line();

@@ -26,7 +26,9 @@ struct RunOptions {
   std::filesystem::path station_file;  ///< empty: beside the pack
   std::string device;                  ///< driver; empty: the simulated device for a subject
   std::filesystem::path settings;
-  std::filesystem::path certificate;  ///< empty: NAME-certificate.json, if it exists
+  std::filesystem::path certificate;  ///< empty: NAME-certificate.json
+  bool allow_unverified = false;      ///< run a device with force without a valid certificate
+  bool allow_late = false;            ///< run a device with force without real-time scheduling
   bool pilot = false;
   OnExisting on_existing = OnExisting::refuse;
   HeadOptions heads;

@@ -1,11 +1,13 @@
 /// \file The device of a session with a person: its choice, the plane's placement on it, its
-/// calibration, and the consent to its force.
+/// acceptance, and the consent to its force.
 #pragma once
 
 #include "app/run/run_session.hpp"
 #include "core/plane_geometry.hpp"
+#include "device/acceptance/certificate.hpp"
 #include "device/device_settings.hpp"
 #include "device/mouse/pointer_exchange.hpp"
+#include "device/platform/realtime.hpp"
 #include "device/servo/servo_clock.hpp"
 #include "protocols/session/device_station.hpp"
 #include "protocols/session/experimenter.hpp"
@@ -17,6 +19,15 @@
 
 namespace touchtrial::app {
 
+/// Whether a session may run with this scheduling of its servo. A servo without real-time
+/// scheduling is late by tens of milliseconds, in which a force stays as it was.
+/// \param is_late_allowed  by the experimenter
+/// \return what the session's record must say; nothing if the servo is punctual, or no force is felt
+/// \throws DeviceError with the lines that mend it if force would be felt from a late servo
+[[nodiscard]] std::optional<session::ExperimenterRequest> lateness_to_record(
+    const device::DeviceInfo& device, const device::SchedulingObtained& scheduling,
+    bool is_late_allowed);
+
 /// The constructor opens the device, so that its properties are known before the session is opened.
 /// Constructed on the main thread; then it belongs to the session's thread.
 class SessionDevice {
@@ -24,7 +35,8 @@ class SessionDevice {
   /// \param attendant  asked for consent to force, except for the mouse, which has none
   /// \throws UsageError if no device is named and not exactly one is plugged in
   /// \throws DeviceError with the remedy if the device cannot be opened, if its workspace does not
-  ///   hold the plane, or if its certificate is not valid
+  ///   hold the plane, or if a device with force has no valid certificate and the options do not
+  ///   allow that; also as lateness_to_record
   /// \throws as read_certificate
   SessionDevice(const RunOptions& options, const PlaneGeometry& plane,
                 session::Attendant& attendant);
@@ -34,11 +46,16 @@ class SessionDevice {
   [[nodiscard]] device::HapticDevice& device() { return station_->device(); }
   [[nodiscard]] const device::DeviceInfo& info() const noexcept { return info_; }
   [[nodiscard]] const std::string& driver() const noexcept { return driver_; }
-  [[nodiscard]] device::LabLimits limits() const { return settings_.use_of(driver_).limits; }
   [[nodiscard]] const device::InstrumentSettings& instruments() const noexcept {
     return settings_.instruments;
   }
-  /// SHA-256 of the certificate, hexadecimal; empty without a certificate.
+  /// The lab's limits, and less force where the device delivers more than it is told.
+  [[nodiscard]] device::LabLimits limits() const;
+  /// \throws DeviceError as device::require_stable, if there is a certificate
+  void require_stable_wall(double stiffness_n_per_mm) const;
+  /// The driver's name, stamped if there is no valid certificate.
+  [[nodiscard]] std::string shown_name() const;
+  /// As StationRecord::calibration.
   [[nodiscard]] const std::string& certificate() const noexcept { return certificate_; }
   /// What the session's record must say about the device.
   [[nodiscard]] const std::vector<session::ExperimenterRequest>& to_record() const noexcept {
@@ -58,6 +75,7 @@ class SessionDevice {
 
   [[nodiscard]] std::unique_ptr<device::HapticDevice> open();
   void check_certificate(const RunOptions& options);
+  [[nodiscard]] std::string read_accepted(const RunOptions& options);
 
   device::DeviceSettings settings_;
   std::string driver_;
@@ -67,6 +85,7 @@ class SessionDevice {
   std::unique_ptr<device::HapticDevice> first_;  ///< until the station takes it
   device::DeviceInfo info_;
   std::string certificate_;
+  std::optional<device::Certificate> accepted_;
   std::vector<session::ExperimenterRequest> to_record_;
   std::optional<session::DeviceStation> station_;
 };

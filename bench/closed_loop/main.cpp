@@ -1,8 +1,7 @@
 // Sweeps of the closed loop of hand and plane: prints tables and draws pictures into a folder.
 #include "analysis/figures/gnuplot.hpp"
-#include "bench/closed_loop/sampled_wall.hpp"
 #include "bench/closed_loop/texture_loop.hpp"
-#include "bench/gnuplot_terminal.hpp"
+#include "bench/closed_loop/wall_sweeps.hpp"
 #include "engine/extraction.hpp"
 #include "engine/image_file.hpp"
 
@@ -20,84 +19,9 @@
 namespace touchtrial::bench {
 namespace {
 
-constexpr std::array kRatesHz = {1000.0, 2000.0, 4000.0, 10'000.0};
-constexpr std::array kStiffnessNPerMm = {0.1, 0.2, 0.4, 0.8, 1.6, 3.2};
-constexpr std::array kWallDampingNSPerM = {-0.8, -0.4, -0.2, 0.0, 0.2, 0.4, 0.8};
 constexpr std::array kTextureNPerMm = {0.1, 0.2, 0.4, 0.8, 1.2, 1.6, 3.2, 6.4, 12.8};
 constexpr double kUsualMmPerS = 100.0;
 constexpr std::array kTextures = {"bark", "cloth", "pebbles", "straw", "brick"};
-constexpr std::array kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7"};
-/// K T^2 / m of a mass that moves slowly between two samples.
-constexpr double kHeaviness = 0.01;
-
-std::string head(bool png, int width, int height) {
-  return gnuplot_terminal(png, width, height) +
-         "set encoding utf8\nset border 3 lw 1.2\nset tics nomirror out scale 0.6\n"
-         "set grid lc rgb '#e4e4e4' lw 1\nset key left top Left reverse samplen 2 spacing 1.25\n";
-}
-
-/// For each rate and stiffness, the bound and the results of two methods in the time domain.
-std::string sweep_wall() {
-  std::string data;
-  std::puts("rate_hz  K N/mm  bound N s/m  by energy  by a mass at rest");
-  for (std::size_t r = 0; r < kRatesHz.size(); ++r) {
-    data += fmt::format("$wall{} << EOD\n", r);
-    for (const double stiffness : kStiffnessNPerMm) {
-      const SampledWall wall{1000.0 * stiffness, 0.0, 1.0 / kRatesHz[r]};
-      const double mass_kg = wall.stiffness_n_per_m * wall.period_s * wall.period_s / kHeaviness;
-      const double bound = passivity_bound(wall);
-      const double energy = damping_by_energy(wall);
-      const double rest = damping_for_rest(wall, mass_kg);
-      data += fmt::format("{} {} {} {}\n", stiffness, bound, energy, rest);
-      fmt::print("{:7} {:7} {:12.5f} {:10.5f} {:10.5f}\n", kRatesHz[r], stiffness, bound, energy,
-                 rest);
-    }
-    data += "EOD\n";
-  }
-  return data;
-}
-
-std::string draw_wall(bool png) {
-  std::string script = head(png, 900, 440) + sweep_wall() +
-                       "set logscale xy\nset xlabel 'stiffness K of the wall, N/mm'\n"
-                       "set ylabel 'physical damping needed, N s/m'\nset xrange [0.085:3.8]\n"
-                       "set xtics (0.1, 0.2, 0.4, 0.8, 1.6, 3.2)\nset yrange [0.003:4]\n"
-                       "set key outside right top\nplot ";
-  for (std::size_t r = 0; r < kRatesHz.size(); ++r) {
-    script += fmt::format(
-        "{0}$wall{1} using 1:2 with lines lw 1.8 lc rgb '{2}' title '{3} kHz: K T/2', "
-        "$wall{1} using 1:4 with points pt 7 ps 0.9 lc rgb '{2}' notitle, "
-        "$wall{1} using 1:3 with points pt 4 ps 1.7 lw 1.4 lc rgb '{2}' notitle",
-        r == 0 ? "" : ", ", r, kColours[r], kRatesHz[r] / 1000.0);
-  }
-  return script +
-         ", NaN with points pt 7 lc rgb '#444444' title 'a mass comes to rest', "
-         "NaN with points pt 4 ps 1.7 lc rgb '#444444' title 'worst motion gives no energy'\n";
-}
-
-std::string sweep_wall_damping() {
-  std::string data = "$damped << EOD\n";
-  std::puts("\nB N s/m  bound N s/m  by frequency  by energy   (K = 0.4 N/mm, 1 kHz)");
-  for (const double damping : kWallDampingNSPerM) {
-    const SampledWall wall{400.0, damping, 0.001};
-    data += fmt::format("{} {} {} {}\n", damping, passivity_bound(wall), damping_by_frequency(wall),
-                        damping_by_energy(wall));
-    fmt::print("{:7} {:12.5f} {:13.5f} {:10.5f}\n", damping, passivity_bound(wall),
-               damping_by_frequency(wall), damping_by_energy(wall));
-  }
-  return data + "EOD\n";
-}
-
-std::string draw_wall_damping(bool png) {
-  return head(png, 760, 420) + sweep_wall_damping() +
-         "set xlabel 'damping B of the wall, N s/m (negative: it drives)'\n"
-         "set ylabel 'physical damping needed, N s/m'\nset xrange [-0.9:0.9]\nset yrange "
-         "[0:1.2]\nset key center top\n"
-         "plot 0.2 + abs(x) with lines lw 1.8 lc rgb '#0072b2' title 'K T/2 + |B|', "
-         "$damped using 1:3 with points pt 7 lc rgb '#d55e00' title 'frequency condition', "
-         "$damped using 1:4 with points pt 4 ps 1.7 lw 1.4 lc rgb '#444444' "
-         "title 'worst motion gives no energy'\n";
-}
 
 struct Worst {
   double slow_mm_s = 0.0;     ///< vibration of a slow stroke, median over textures
@@ -165,7 +89,7 @@ std::string both_models(int median_column, int largest_column) {
 }
 
 std::string draw_texture(bool png, const std::vector<Plane<double>>& textures) {
-  return head(png, 1040, 440) + sweep_texture(textures) +
+  return picture_head(png, 1040, 440) + sweep_texture(textures) +
          "set multiplot layout 1,2\nset logscale x\nset xrange [0.085:15]\n"
          "set xlabel 'stiffness budget of the texture, N/mm'\n"
          "set xtics (0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8)\n"
@@ -203,8 +127,12 @@ std::vector<Plane<double>> textures_of(const std::filesystem::path& stimuli) {
 void run(const std::filesystem::path& stimuli, const std::filesystem::path& out, bool png) {
   analysis::require_gnuplot();
   const std::string ending = png ? ".png" : ".svg";
-  analysis::draw_with_gnuplot(draw_wall(png), out / ("passivity-stiffness" + ending));
-  analysis::draw_with_gnuplot(draw_wall_damping(png), out / ("passivity-damping" + ending));
+  for (const WallPicture& picture : wall_pictures(png)) {
+    analysis::draw_with_gnuplot(picture.script, out / (picture.name + ending));
+    std::fflush(stdout);
+  }
+  print_quantised_walls();
+  print_device_models();
   std::fflush(stdout);
   analysis::draw_with_gnuplot(draw_texture(png, textures_of(stimuli)), out / ("chatter" + ending));
 }

@@ -1,10 +1,18 @@
 #include "device/dhd/dhd_device.hpp"
 
 #include "core/errors.hpp"
+#include "core/strict_json.hpp"
 #include "device/dhd/dhd_loop.hpp"
+#include "device/dhd/dhd_models.hpp"
 #include "device/drivers.hpp"
+#include "device/only_user.hpp"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <locale>
 #include <sstream>
 #include <string>
@@ -13,43 +21,22 @@ namespace touchtrial::device {
 namespace dhd {
 namespace {
 
-/// The remedy for a library that cannot be used.
-constexpr const char* kRemedy =
-    "install Force Dimension's SDK, or name the library in the device settings at dhd.library";
+/// A mass further from the device's own than this is a slip of the pen: 0.2 kg push 2 N.
+constexpr double kMostMassChangeKg = 0.2;
+/// While the vendor's library moves the arm by itself: 32 ms.
+constexpr unsigned char kSlowestWatchdog = 255;
+/// A weight of more than this share of the peak force is nonsense.
+constexpr double kMostWeightShare = 0.5;
 
-/// The loaded library, without a device.
-class Library {
- public:
-  /// \throws DeviceError with the remedy if it cannot be used
-  explicit Library(const std::filesystem::path& file)
-      : library_(file, Unload::never, kRemedy), api_(load_api(library_)) {}
+constexpr const char* kCalibrate =
+    "waits for its calibration: put the end-effector at its rest position (omega: the pole into "
+    "the pit; delta: sweep each axis from end to end) until the status light stops blinking, or "
+    "run touchtrial device initialise dhd, which moves the arm";
 
-  [[nodiscard]] const Api& api() const noexcept { return api_; }
-  /// \return the number of connected devices, >= 0
-  [[nodiscard]] int device_count() const noexcept { return std::max(0, api_.get_device_count()); }
-  /// \return the library's own words for its last failure
-  [[nodiscard]] std::string last_error() const {
-    const char* words = api_.error_get_last_str();
-    return words == nullptr ? "no reason given" : words;
-  }
-
- private:
-  DynamicLibrary library_;
-  Api api_;
-};
-
-char open_device_of(const Library& library, int index) {
-  const int count = library.device_count();
-  if (index < 0 || index >= count) {
-    throw DeviceError(
-        "dhd: there is no device " + std::to_string(index) + " (" + std::to_string(count) +
-        " connected, numbered from 0); switch it on, plug it in, give the user access "
-        "to its USB node (udev), and close other programs that use it");
-  }
-  const int device = library.api().open_id(static_cast<char>(index));
-  if (device >= 0) return static_cast<char>(device);
-  throw DeviceError(one_line("dhd: device " + std::to_string(index) + " does not open: " +
-                             library.last_error() + "; close other programs that use it"));
+/// \return whether this program has the device open; a second opening would take it from the first
+std::atomic<bool>& in_use(int index) {
+  static std::array<std::atomic<bool>, 64> of_index{};
+  return of_index[static_cast<std::size_t>(std::clamp(index, 0, 63))];
 }
 
 std::string version_text(double version) {
@@ -59,35 +46,72 @@ std::string version_text(double version) {
   return text.str();
 }
 
-/// An open device, without force until `configure`. The destructor switches force off and closes
-/// the device. Belongs to the thread that opens it.
+/// An open device, without force until `configure`. The destructor switches force off, puts back
+/// what was set, and closes the device. Belongs to the thread that opens it.
 class Session {
  public:
   /// \throws DeviceError with the remedy if the library cannot be used or the device not opened
   explicit Session(const DhdSettings& settings)
       : settings_(settings),
         library_(settings.library),
-        device_(open_device_of(library_, settings.index)) {}
+        only_user_(in_use(settings.index), "dhd: this program has device " +
+                                               std::to_string(settings.index) +
+                                               " open already; close that one first"),
+        device_(opened(settings.index)) {
+    if (api().get_system_type != nullptr) model_ = model_of(api().get_system_type(device_));
+    own_mass_kg_ = mass_of_device_kg();
+  }
   ~Session() {
     (void)api().enable_force(0, device_);
-    (void)api().close(device_);
+    if (watchdog_) set_watchdog(*watchdog_);
+    if (own_mass_kg_ && is_mass_changed_) {
+      (void)api().set_effector_mass(*own_mass_kg_, device_);
+    }
+    (void)(api().has_drd() ? api().drd_close(device_) : api().close(device_));
   }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
   [[nodiscard]] const Api& api() const noexcept { return library_.api(); }
   [[nodiscard]] char device() const noexcept { return device_; }
+  [[nodiscard]] const Library& library() const noexcept { return library_; }
 
+  /// \throws DeviceError if a setting is needed for this model, or beyond what the model can
   [[nodiscard]] DeviceInfo info() const {
+    DeviceInfo info = identity();
+    info.max_force_n =
+        force_n(settings_.max_force_n, model_ ? model_->force_n : 0.0, "max_force_n");
+    info.continuous_force_n =
+        settings_.continuous_force_n.value_or(model_ ? model_->continuous_force_n : 0.0);
+    if (model_) info.max_stiffness_n_per_mm = model_->stiffness_n_per_mm;
+    if (!model_ && !settings_.workspace_mm) refuse_unknown(info.model, "workspace_mm");
+    const Vec3 reach_mm =
+        0.5 * settings_.workspace_mm.value_or(model_ ? model_->workspace_mm : Vec3{});
+    info.workspace = Workspace{-1.0 * reach_mm, reach_mm, WorkspaceShape::ellipsoid};
+    return info;
+  }
+  /// \throws DeviceError if the settings' mass cannot be true
+  void check_mass() const {
+    const double mass_kg = settings_.effector_mass_kg;
+    const double change_kg = std::abs(mass_kg - own_mass_kg_.value_or(0.0));
+    if (mass_kg == 0.0 || change_kg <= kMostMassChangeKg) return;
+    const double push_n = std::round(10.0 * kStandardGravityMS2 * change_kg) / 10.0;
+    throw DeviceError(
+        "dhd: dhd.effector_mass_kg is " + number_text(mass_kg) + ", but the device " +
+        (own_mass_kg_ ? "says " + number_text(*own_mass_kg_) : "does not say its own") +
+        ", and the difference would push with " + number_text(push_n) +
+        " N; weigh the end-effector again: a change of more than " +
+        number_text(kMostMassChangeKg) + " kg is refused");
+  }
+  /// Name, serial number and so on, which need no settings.
+  [[nodiscard]] DeviceInfo identity() const {
     DeviceInfo info;
     info.name = "dhd";
-    info.max_force_n = settings_.max_force_n;
-    info.continuous_force_n = settings_.continuous_force_n;
     info.max_rate_hz = kPollRateHz;
-    const Vec3 reach_mm = 0.5 * settings_.workspace_mm;
-    info.workspace = Workspace{-1.0 * reach_mm, reach_mm, WorkspaceShape::ellipsoid};
     const char* name = api().get_system_name ? api().get_system_name(device_) : nullptr;
-    info.model = name == nullptr ? "Force Dimension device" : one_line(name);
+    info.model = name != nullptr ? one_line(name)
+                 : model_        ? model_->name
+                                 : "Force Dimension device";
     unsigned short serial = 0;
     if (api().get_serial_number && api().get_serial_number(&serial, device_) >= 0) {
       info.serial = std::to_string(serial);
@@ -99,27 +123,117 @@ class Session {
     return info;
   }
 
-  /// Sets effector mass, gravity compensation and time guard, and switches force on.
+  [[nodiscard]] bool is_calibrated() const {
+    Status status{};
+    expect(api().get_status(status.data(), device_), "the status");
+    return dhd::is_calibrated(api(), status, device_);
+  }
+
+  /// Sets mass, limits and watches, with force off.
+  /// \param limit_n  > 0
   /// \throws DeviceError naming what failed
-  void configure() {
-    if (settings_.effector_mass_kg > 0.0) {
-      expect(api().set_effector_mass(settings_.effector_mass_kg, device_), "dhd.effector_mass_kg");
-    }
-    expect(api().set_gravity_compensation(settings_.gravity_compensation ? 1 : 0, device_),
-           "dhd.gravity_compensation");
+  void configure(double limit_n) {
+    expect(api().enable_force(0, device_), "switching force off");
+    set_mass();
+    switch_gravity_off();
     set_time_guard();
+    // A second line, which old firmware may not have.
+    if (api().set_max_force != nullptr) (void)api().set_max_force(limit_n, device_);
+    keep_watchdog(kWatchdog);
     expect(api().set_force(0.0, 0.0, 0.0, device_), "zero force");
-    expect(api().enable_force(1, device_), "switching force on");
+  }
+
+  /// Lets the device switch force off if no command came for so many times 125 us. Firmware before
+  /// version 3 has no watchdog; then only our own zeros are left.
+  void keep_watchdog(unsigned char value) {
+    if (api().set_watchdog == nullptr) return;
+    unsigned char before = 0;
+    if (api().get_watchdog != nullptr) {
+      (void)as_expert(api(), [&] { return api().get_watchdog(&before, device_); });
+    }
+    if (set_watchdog(value) >= 0) watchdog_ = before;
+  }
+
+  /// \return the weight to carry; nothing if the settings want none
+  /// \throws DeviceError if what the library says of a calibrated device is no weight
+  [[nodiscard]] std::optional<Gravity> gravity(const DeviceInfo& info) const {
+    if (!settings_.gravity_compensation) return std::nullopt;
+    const double mass_kg =
+        settings_.effector_mass_kg > 0.0 ? settings_.effector_mass_kg : own_mass_kg_.value_or(0.0);
+    const Gravity weight(api(), device_, mass_kg, kMostWeightShare * info.max_force_n);
+    if (is_calibrated() && !weight.force_n()) {
+      throw DeviceError(
+          "dhd: the library's model of the weight gives no force that could be one; calibrate the "
+          "device again, or set dhd.gravity_compensation to false");
+    }
+    return weight;
   }
 
  private:
-  /// Versions with an expert mode refuse the time guard outside it. It is left at once, as its
-  /// other functions switch safety off.
+  [[nodiscard]] char opened(int index) const {
+    const int count = library_.device_count();
+    if (index < 0 || index >= count) {
+      throw DeviceError(
+          "dhd: there is no device " + std::to_string(index) + " (" + std::to_string(count) +
+          " connected, numbered from 0); switch it on, plug it in, give the user access "
+          "to its USB node (scripts/install-udev-rules), and close other programs that use it");
+    }
+    const auto id = static_cast<char>(index);
+    const int device = api().has_drd() ? api().drd_open_id(id) : api().open_id(id);
+    if (device >= 0) return static_cast<char>(device);
+    throw DeviceError(one_line(
+        "dhd: device " + std::to_string(index) + " does not open: " + library_.last_error() +
+        "; close other programs that use it, and give the user access to its "
+        "USB node (scripts/install-udev-rules)"));
+  }
+
+  [[nodiscard]] double force_n(const std::optional<double>& set_n, double most_n,
+                               const std::string& key) const {
+    if (!set_n && most_n == 0.0) refuse_unknown(identity().model, key);
+    if (set_n && most_n > 0.0 && *set_n > most_n) {
+      throw DeviceError("dhd: dhd." + key + " is " + number_text(*set_n) + " N, more than the " +
+                        number_text(most_n) + " N of a device of this model (" + model_->name +
+                        "); set it to what the data sheet says, or leave it out");
+    }
+    return set_n.value_or(most_n);
+  }
+  [[noreturn]] static void refuse_unknown(const std::string& model, const std::string& key) {
+    throw DeviceError(one_line("dhd: the size and the strength of this device (" + model +
+                               ") are not known; take them from its data sheet and set dhd." + key +
+                               " (dhd.max_force_n, dhd.continuous_force_n, dhd.workspace_mm)"));
+  }
+
+  [[nodiscard]] std::optional<double> mass_of_device_kg() const {
+    double mass_kg = 0.0;
+    const bool known = api().get_effector_mass != nullptr &&
+                       api().get_effector_mass(&mass_kg, device_) >= 0 && std::isfinite(mass_kg);
+    return known ? std::optional(mass_kg) : std::nullopt;
+  }
+
+  void set_mass() {
+    // Where the library cannot take it, our own term does.
+    if (settings_.effector_mass_kg == 0.0 || api().set_effector_mass == nullptr) return;
+    expect(api().set_effector_mass(settings_.effector_mass_kg, device_), "dhd.effector_mass_kg");
+    is_mass_changed_ = true;
+  }
+
+  void switch_gravity_off() const {
+    expect(api().set_gravity_compensation(0, device_), "switching the library's gravity off");
+    Status status{};
+    expect(api().get_status(status.data(), device_), "the status");
+    if (status[kGravity] == 0) return;
+    throw DeviceError(
+        "dhd: the library goes on adding its gravity compensation to every force, behind our "
+        "limits; install a newer version of Force Dimension's SDK");
+  }
+
   void set_time_guard() const {
-    if (api().enable_expert_mode) (void)api().enable_expert_mode();
-    const int result = api().set_time_guard(kRecommendedTimeGuard, device_);
-    if (api().disable_expert_mode) (void)api().disable_expert_mode();
-    expect(result, "the time guard");
+    expect(as_expert(api(), [&] { return api().set_time_guard(kRecommendedTimeGuard, device_); }),
+           "the time guard");
+  }
+
+  int set_watchdog(unsigned char value) const noexcept {
+    return as_expert(api(), [&]() noexcept { return api().set_watchdog(value, device_); });
   }
 
   void expect(int result, const std::string& what) const {
@@ -130,7 +244,12 @@ class Session {
 
   DhdSettings settings_;
   Library library_;
+  OnlyUser only_user_;
   char device_;
+  std::optional<Model> model_;
+  std::optional<double> own_mass_kg_;
+  bool is_mass_changed_ = false;
+  std::optional<unsigned char> watchdog_;  ///< before ours; nothing: there is none
 };
 
 DeviceListing empty_listing(const DhdSettings& settings) {
@@ -146,11 +265,16 @@ DeviceListing listing_of(DhdSettings settings, int index) {
   listing.where += ", device " + std::to_string(index);
   listing.present = true;
   try {
-    const DeviceInfo info = Session(settings).info();
-    listing.model = info.model;
-    listing.serial = info.serial;
+    const Session session(settings);
+    const DeviceInfo identity = session.identity();
+    listing.model = identity.model;
+    listing.serial = identity.serial;
+    listing.where = session.library().file().string() + ", device " + std::to_string(index);
+    if (!session.is_calibrated()) listing.missing.emplace_back(kCalibrate);
+    (void)session.info();
+    session.check_mass();
   } catch (const DeviceError& error) {
-    listing.missing = {error.what()};
+    listing.missing.emplace_back(error.what());
   }
   return listing;
 }
@@ -158,12 +282,15 @@ DeviceListing listing_of(DhdSettings settings, int index) {
 std::vector<DeviceListing> list_dhd(const DeviceSettings& settings) {
   DeviceListing nothing = empty_listing(settings.dhd);
   try {
-    expect_loading_survived(settings.dhd.library, kRemedy);
-    const int count = Library(settings.dhd.library).device_count();
+    const Library library(settings.dhd.library);
+    nothing.where = library.file().string();
+    const int count = library.device_count();
     std::vector<DeviceListing> found;
     for (int i = 0; i < count; ++i) found.push_back(listing_of(settings.dhd, i));
     if (count > 0) return found;
-    nothing.missing = {"no device is connected; switch it on and plug it in"};
+    nothing.missing = {
+        "no device is connected; switch it on, plug it in, and give the user access to its USB "
+        "node (scripts/install-udev-rules)"};
   } catch (const DeviceError& error) {
     nothing.missing = {error.what()};
   }
@@ -171,8 +298,30 @@ std::vector<DeviceListing> list_dhd(const DeviceSettings& settings) {
 }
 
 std::unique_ptr<HapticDevice> open_dhd(const DeviceSettings& settings) {
-  expect_loading_survived(settings.dhd.library, kRemedy);
-  return std::make_unique<DhdDevice>(settings.dhd);
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  return std::make_unique<DhdDevice>(settings.dhd,
+                                     settings.use_of("dhd").limits.max_force_n.value_or(kNone));
+}
+
+/// The device's own watchdog ends the motion if this process is killed meanwhile.
+std::string initialise_dhd(const DeviceSettings& settings) {
+  Session session(settings.dhd);
+  const Api& api = session.api();
+  if (!api.has_drd() || api.drd_auto_init == nullptr) {
+    throw DeviceError(one_line(
+        "dhd: " + session.library().file().string() +
+        " cannot initialise a device; name libdrd.so of the SDK at dhd.library, or do it by hand: "
+        "the device " +
+        kCalibrate));
+  }
+  if (session.is_calibrated()) return "is initialised already; nothing was moved";
+  session.keep_watchdog(kSlowestWatchdog);
+  if (api.drd_auto_init(session.device()) < 0) {
+    throw DeviceError(
+        one_line("dhd: the device was not initialised: " + session.library().last_error() +
+                 "; keep clear of it and try again, or do it by hand: it " + kCalibrate));
+  }
+  return "is initialised";
 }
 
 }  // namespace
@@ -180,9 +329,11 @@ std::unique_ptr<HapticDevice> open_dhd(const DeviceSettings& settings) {
 
 /// The loop ends before the session through which it talks.
 struct DhdDevice::Running {
-  explicit Running(const DhdSettings& settings) : session(settings), info(session.info()) {
-    session.configure();
-    loop = std::make_unique<dhd::Loop>(session.api(), session.device());
+  Running(const DhdSettings& settings, double limit_n, std::chrono::nanoseconds (*now)())
+      : session(settings), info(session.info()) {
+    session.check_mass();
+    session.configure(std::min(limit_n, info.max_force_n));
+    loop = std::make_unique<dhd::Loop>(session.api(), session.device(), session.gravity(info), now);
   }
 
   dhd::Session session;
@@ -190,7 +341,8 @@ struct DhdDevice::Running {
   std::unique_ptr<dhd::Loop> loop;
 };
 
-DhdDevice::DhdDevice(const DhdSettings& settings) : running_(std::make_unique<Running>(settings)) {}
+DhdDevice::DhdDevice(const DhdSettings& settings, double limit_n, std::chrono::nanoseconds (*now)())
+    : running_(std::make_unique<Running>(settings, limit_n, now)) {}
 
 DhdDevice::~DhdDevice() = default;
 
@@ -206,12 +358,17 @@ DeviceReadiness DhdDevice::readiness() const noexcept {
   return running_->loop->readiness();
 }
 
+Vec3 DhdDevice::support_force_n(const DeviceSample& /*sample*/) noexcept {
+  return running_->loop->support_force_n();
+}
+
 DeviceDriver dhd_driver() {
   return {.name = "dhd",
-          .what = "Force Dimension omega, delta and sigma, through the vendor's library",
+          .what = "Force Dimension omega, delta, sigma and lambda, through the vendor's library",
           .list = dhd::list_dhd,
           .open = dhd::open_dhd,
-          .workspace_is_known = false};
+          .workspace_is_known = false,
+          .initialise = dhd::initialise_dhd};
 }
 
 }  // namespace touchtrial::device

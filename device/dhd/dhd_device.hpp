@@ -1,29 +1,39 @@
-/// \file Force Dimension's omega, delta and sigma, through the vendor's library.
+/// \file Force Dimension's omega, delta, sigma and lambda, through the vendor's library.
 #pragma once
 
 #include "device/device_link.hpp"
 #include "device/device_settings.hpp"
 
+#include <chrono>
+#include <limits>
 #include <memory>
 
 namespace touchtrial::device {
 
 /// The driver "dhd". A thread of its own polls the device at 4 kHz. The device's velocity threshold
-/// and watchdog stay on beneath our safety chain; its time guard is set; gravity compensation and
-/// the effector's mass follow the settings. Not verified on hardware.
+/// stays on beneath our safety chain; its time guard is set, its watchdog to 10 ms, and the
+/// library's own limit of force to the device's largest. Not verified on hardware.
 ///
-/// The driver sends no force before the device knows where its axes are. Samples are not ready
-/// while a person has switched force off at the device. A fault latches: open the device anew.
+/// Force is off, with the brakes on, before the device is calibrated and after a halt or a fault.
+/// The library adds no gravity compensation: the weight that it models is `support_force_n`, which
+/// the servo adds before the safety chain. Samples are not ready while a person has switched force
+/// off at the device. A fault latches: open the device anew.
 class DhdDevice final : public LinkedDevice {
  public:
+  /// \param limit_n  > 0; the library holds this limit, or the device's largest force, behind the
+  ///   safety chain
+  /// \param now  the time of a reading, for velocities; a test may have another one
   /// \throws DeviceError with the remedy if there is no library, a function of it is missing, there
-  ///   is no such device, or it refuses a setting
-  explicit DhdDevice(const DhdSettings& settings);
-  /// Sends zero force, switches force off, and closes the device.
+  ///   is no such device, it refuses a setting, or a setting cannot be true
+  explicit DhdDevice(const DhdSettings& settings,
+                     double limit_n = std::numeric_limits<double>::infinity(),
+                     std::chrono::nanoseconds (*now)() = monotonic_now);
+  /// Sends zero force, switches force off, puts back what was set, and closes the device.
   ~DhdDevice() override;
 
   [[nodiscard]] DeviceInfo info() const override;
   [[nodiscard]] DeviceReadiness readiness() const noexcept override;
+  [[nodiscard]] Vec3 support_force_n(const DeviceSample& sample) noexcept override;
 
  private:
   [[nodiscard]] DeviceLink& link() const noexcept override;

@@ -3,13 +3,15 @@
 #include "device/platform/realtime.hpp"
 
 #include <algorithm>
-#include <chrono>
 
 namespace touchtrial::device::dhd {
 namespace {
 
 constexpr std::chrono::nanoseconds kPeriod{static_cast<std::int64_t>(1e9 / kPollRateHz)};
 constexpr std::int64_t kTicksBetweenStatus = 40;
+constexpr std::int64_t kTicksBetweenWeights = 16;
+/// Force that is not on after so many ticks waits for a person: 0.25 s.
+constexpr std::int64_t kTicksToSwitchOn = 1000;
 constexpr int kZerosAtTheEnd = 5;
 constexpr double kMmPerM = 1000.0;
 
@@ -23,7 +25,11 @@ Vec3 to_dhd_frame(Vec3 device) noexcept {
 
 }  // namespace
 
-Loop::Loop(const Api& api, char device) : api_(api), device_(device), thread_([this] { run(); }) {}
+Loop::Loop(const Api& api, char device, const std::optional<Gravity>& gravity, Now now)
+    : api_(api), device_(device), gravity_(gravity), now_(now) {
+  check_status();  // so that readiness() is true from the beginning
+  thread_ = std::thread([this] { run(); });
+}
 
 Loop::~Loop() {
   closing_.store(true, std::memory_order_release);
@@ -39,56 +45,104 @@ void Loop::run() noexcept {
     sleep_until(next);
   }
   for (int i = 0; i < kZerosAtTheEnd; ++i) (void)api_.set_force(0.0, 0.0, 0.0, device_);
+  switch_off();
 }
 
 void Loop::tick() noexcept {
-  if (tick_++ % kTicksBetweenStatus == 0) check_status();
+  if (tick_ >= status_at_) check_status();
+  switch_force();
   take_sample();
+  if (tick_ % kTicksBetweenWeights == 0) weigh();
   const Vec3 force_n = link_.force_to_send(monotonic_now());
   send(may_push() ? force_n : Vec3{});
+  ++tick_;
 }
 
 void Loop::check_status() noexcept {
+  status_at_ = tick_ + kTicksBetweenStatus;
   Status status{};
   if (api_.get_status(status.data(), device_) < 0 || status[kConnected] == 0) {
     link_.fail(DeviceFault::link_lost);
     return;
   }
   if (status[kError] != 0) link_.fail(DeviceFault::driver);
-  force_on_ = status[kForce] != 0;
-  if (!force_on_) judge_force_off(status[kForceOffCause]);
-  readiness_.store(
-      status[kReset] != 0 ? DeviceReadiness::ready : DeviceReadiness::needs_calibration,
-      std::memory_order_release);
+  calibrated_ = is_calibrated(api_, status, device_);
+  note_force(status[kForce] != 0, status[kForceOffCause]);
+  readiness_.store(need(), std::memory_order_release);
 }
 
-/// A person may switch force off at the device; that is no fault, and the samples are not ready.
-void Loop::judge_force_off(int cause) noexcept {
+/// The cause is that of the last time that force went off, perhaps of yesterday: it counts only for
+/// force that we have seen on. A person may switch force off at the device, which is no fault.
+void Loop::note_force(bool is_on, int cause) noexcept {
+  const bool lost = force_on_ && !is_on;
+  force_on_ = is_on && switched_on_;
+  was_on_ = was_on_ || force_on_;
+  if (!lost) return;
   if (cause == kOffByVelocity) link_.fail(DeviceFault::limit_passed);
   if (cause == kOffByWatchdog) link_.fail(DeviceFault::driver);
   if (cause == kOffByUnplugging) link_.fail(DeviceFault::link_lost);
 }
 
-void Loop::take_sample() noexcept {
-  Vec3 position_m;
-  Vec3 velocity_m_s;
-  const int got = api_.get_position(&position_m.x, &position_m.y, &position_m.z, device_);
-  if (got < 0 ||
-      api_.get_linear_velocity(&velocity_m_s.x, &velocity_m_s.y, &velocity_m_s.z, device_) < 0) {
+DeviceReadiness Loop::need() const noexcept {
+  if (!calibrated_) return DeviceReadiness::needs_calibration;
+  const bool should_be_on = switched_on_ && (was_on_ || tick_ - switched_at_ >= kTicksToSwitchOn);
+  return should_be_on && !force_on_ ? DeviceReadiness::needs_force_on : DeviceReadiness::ready;
+}
+
+/// Where there is to be no force there is none that could be set by anybody: after a halt or a
+/// fault, or while the device does not know where it is, force is off and the brakes are on.
+void Loop::switch_force() noexcept {
+  const bool may_be_on = calibrated_ && !link_.is_stopped();
+  if (may_be_on == switched_on_) return;
+  if (!may_be_on) {
+    switch_off();
+    return;
+  }
+  // The last force of every tick without force was zero.
+  if (api_.enable_force(1, device_) < 0) {
     fail_call();
     return;
   }
-  if (!is_finite(position_m) || !is_finite(velocity_m_s)) {
+  switched_on_ = true;
+  was_on_ = false;
+  switched_at_ = tick_;
+  status_at_ = tick_ + 1;
+}
+
+void Loop::switch_off() noexcept {
+  const int result = api_.stop != nullptr ? api_.stop(device_) : api_.enable_force(0, device_);
+  switched_on_ = force_on_ = was_on_ = false;
+  if (result < 0 && !closing_.load(std::memory_order_acquire)) fail_call();
+}
+
+void Loop::take_sample() noexcept {
+  Vec3 position_m;
+  const int got = api_.get_position(&position_m.x, &position_m.y, &position_m.z, device_);
+  const Time at = now_();
+  if (got < 0) {
+    fail_call();
+    return;
+  }
+  if (!is_finite(position_m)) {
     link_.fail(DeviceFault::bad_data);
     return;
   }
   if (got == kTimeGuard) return;  // nothing newer: the sequence number tells the servo
+  // The calibration moves the origin, so positions before it say nothing about motion.
+  if (!calibrated_) velocity_.forget();
   DeviceSample sample;
   sample.position_mm = kMmPerM * to_device_frame(position_m);
-  sample.velocity_mm_s = kMmPerM * to_device_frame(velocity_m_s);
+  sample.velocity_mm_s = velocity_.add(sample.position_mm, at);
   sample.buttons = api_.get_button_mask(device_);
   sample.ready = may_push();
   link_.publish(sample);
+}
+
+void Loop::weigh() noexcept {
+  if (!gravity_ || !calibrated_ || link_.is_stopped()) return;
+  const std::optional<Vec3> weight_n = gravity_->force_n();
+  if (!weight_n) link_.fail(DeviceFault::bad_data);
+  support_n_.set(weight_n ? to_device_frame(*weight_n) : Vec3{});
 }
 
 void Loop::send(Vec3 force_n) noexcept {

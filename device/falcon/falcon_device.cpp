@@ -10,14 +10,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-class RealPace final : public FalconPace {
- public:
-  [[nodiscard]] Time now() noexcept override { return monotonic_now(); }
-  void rest_until(Time time) noexcept override { sleep_until(time); }
-};
-
-constexpr double kMaxForceN = 8.0;
-
 constexpr int kProbes = 5;
 /// At a latency of 1 ms the chip sends a packet every millisecond, usually an empty one.
 constexpr int kPacketsPerProbe = 20;
@@ -94,13 +86,12 @@ bool falcon_answers(FtdiTransport& transport) {
   return false;
 }
 
-std::unique_ptr<FalconPace> real_falcon_pace() {
-  return std::make_unique<RealPace>();
-}
-
 FalconDevice::FalconDevice(std::unique_ptr<FtdiTransport> transport, const FalconSettings& settings,
                            FalconOptions options)
-    : transport_(std::move(transport)), options_(std::move(options)), exchange_(settings, link_) {
+    : settings_(settings),
+      transport_(std::move(transport)),
+      options_(std::move(options)),
+      exchange_(settings, link_) {
   make_run(*transport_, settings);
   transport_->start_stream(exchange_);
   thread_ = std::thread([this] {
@@ -122,7 +113,10 @@ DeviceInfo FalconDevice::info() const {
   info.name = "falcon";
   info.serial = transport_->serial();
   info.model = "Novint Falcon";
-  info.max_force_n = kMaxForceN;
+  info.max_force_n = kForcePerMotorValueN * settings_.motor_peak;
+  if (settings_.motor_continuous < settings_.motor_peak) {
+    info.continuous_force_n = kForcePerMotorValueN * settings_.motor_continuous;
+  }
   info.workspace = kFalconWorkspace;
   return info;
 }
@@ -152,24 +146,33 @@ void FalconDevice::exchange_until_stopped() noexcept {
 }
 
 void FalconDevice::exchange() noexcept {
-  const Packet command = exchange_.command(options_.pace->now());
+  // What has come since the last exchange does not answer this one.
+  transport_->serve(std::chrono::microseconds(0));
+  exchange_.publish(options_.pace->now());
   // A command that is not taken shows as a missing reply.
-  static_cast<void>(transport_->post(command));
+  static_cast<void>(transport_->post(exchange_.begin(options_.pace->now())));
+  wait_for_reply();
+  exchange_.end();
+  homed_.store(exchange_.homed(), std::memory_order_release);
+  if (transport_->lost()) link_.fail(DeviceFault::link_lost);
+}
+
+void FalconDevice::wait_for_reply() noexcept {
   // The device answers in real time, whatever the pace is.
   const FalconPace::Time until = monotonic_now() + kReplyLimit;
   do {
     transport_->serve(std::chrono::duration_cast<std::chrono::microseconds>(kReplyLimit));
-  } while (!exchange_.has_reply() && !transport_->lost() && monotonic_now() < until);
-  exchange_.finish(options_.pace->now());
-  homed_.store(exchange_.homed(), std::memory_order_release);
-  if (transport_->lost()) link_.fail(DeviceFault::link_lost);
+    exchange_.publish(options_.pace->now());
+    if (exchange_.is_answered() || transport_->lost()) return;
+  } while (monotonic_now() < until);
+  options_.pace->waited(kReplyLimit);
 }
 
 void FalconDevice::say_farewell() noexcept {
   transport_->stop_stream();
   try {
-    for (int i = 0; i < kFarewells && !transport_->lost(); ++i) {
-      static_cast<void>(transport_->send(FalconExchange::farewell(), milliseconds(20)));
+    for (int i = 0; i < kFarewells; ++i) {
+      static_cast<void>(transport_->send(FalconExchange::farewell(), kFarewellLimit));
     }
   } catch (const DeviceError&) {
     // The device is gone, so it needs no farewell.

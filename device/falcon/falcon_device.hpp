@@ -23,39 +23,28 @@ inline constexpr Workspace kFalconWorkspace = {
     {kWorkspaceRadiusMm, kWorkspaceRadiusMm, kWorkspaceRadiusMm},
     WorkspaceShape::ellipsoid};
 
-/// Time and rest of the USB thread, so that tests own them.
-class FalconPace {
- public:
-  using Time = DeviceLink::Time;
-  virtual ~FalconPace() = default;
-  /// The monotonic time. May be called from any thread.
-  [[nodiscard]] virtual Time now() noexcept = 0;
-  /// The USB thread rests here until its next exchange is due.
-  virtual void rest_until(Time time) noexcept = 0;
-  /// Ends the rest for good: the device is being closed, or the USB thread has ended. May be called
-  /// from any thread.
-  virtual void end() noexcept {}
-};
-
-/// Real time.
-[[nodiscard]] std::unique_ptr<FalconPace> real_falcon_pace();
+/// Time and rest of the USB thread.
+using FalconPace = LinkPace;
 
 struct FalconOptions {
-  std::unique_ptr<FalconPace> pace = real_falcon_pace();
+  std::unique_ptr<FalconPace> pace = std::make_unique<RealLinkPace>();
   /// Of the USB thread: its priority is a little above that of the servo, which needs its samples.
   SchedulingRequest scheduling{SchedulingPolicy::fifo, 81, true};
 };
 
 /// Exchanges one packet each way at up to 1 kHz on a thread of its own. Sends no force before all
-/// three axes are homed; adds the gravity bias while a servo runs.
+/// three axes are homed. The gravity bias is its support.
 class FalconDevice final : public HapticDevice {
  public:
   /// The shortest time from one exchange to the next: the device manages about 1 kHz.
   static constexpr FalconPace::Time kPeriod = std::chrono::milliseconds(1);
-  /// The longest time for a reply.
-  static constexpr FalconPace::Time kReplyLimit = std::chrono::milliseconds(5);
-  /// Packets without force before the device is closed.
+  /// The time for a reply, after which the next command goes out. A frame of the bus each way, the
+  /// chip's latency of 1 ms and 0.1 ms for the bytes each way make 3.2 ms at the very most; so two
+  /// lost replies in a row cost less than the safety chain's 10 ms without a reading.
+  static constexpr FalconPace::Time kReplyLimit = std::chrono::milliseconds(3);
+  /// Packets without force before the device is closed, and the time for each.
   static constexpr int kFarewells = 5;
+  static constexpr std::chrono::milliseconds kFarewellLimit{20};
 
   /// Loads the firmware unless the device answers already; returns once exchanges have begun.
   /// \throws DeviceError or FileError with the remedy
@@ -66,6 +55,9 @@ class FalconDevice final : public HapticDevice {
   [[nodiscard]] DeviceInfo info() const override;
   [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
   [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
+  [[nodiscard]] Vec3 support_force_n(const DeviceSample& /*sample*/) noexcept override {
+    return settings_.gravity_bias_n;
+  }
   void halt() noexcept override { link_.halt(); }
   void rearm() noexcept override { link_.rearm(); }
   [[nodiscard]] DeviceFault fault() const noexcept override { return link_.fault(); }
@@ -77,8 +69,10 @@ class FalconDevice final : public HapticDevice {
  private:
   void exchange_until_stopped() noexcept;
   void exchange() noexcept;
+  void wait_for_reply() noexcept;
   void say_farewell() noexcept;
 
+  FalconSettings settings_;
   std::unique_ptr<FtdiTransport> transport_;
   FalconOptions options_;
   DeviceLink link_;

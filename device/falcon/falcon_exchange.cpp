@@ -2,24 +2,37 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace touchtrial::device::falcon {
 
 FalconExchange::FalconExchange(const FalconSettings& settings, DeviceLink& link) noexcept
-    : link_(link), gravity_bias_n_(settings.gravity_bias_n), led_order_(settings.led_order) {}
+    : link_(link), led_order_(settings.led_order), motors_(settings) {}
 
 void FalconExchange::receive(std::span<const std::uint8_t> transfer) noexcept {
-  if (stream_.push_transfer(transfer) > 0) fresh_ = true;
+  const int replies = stream_.push_transfer(transfer);
+  if (replies == 0) return;
+  fresh_ = replied_ = true;
+  // More than are due: replies to what another program sent, or that had been given up.
+  due_ = std::max(0, due_ - replies);
 }
 
-void FalconExchange::finish(Time now) noexcept {
-  const bool good = fresh_ && take(stream_.newest(), now);
-  if (fresh_ && !good) bad_reading_ = true;
-  fresh_ = false;
-  if (!good) return note_missing();
+void FalconExchange::publish(Time now) noexcept {
+  if (!std::exchange(fresh_, false)) return;
+  if (!take(stream_.newest(), now)) {
+    bad_reading_ = true;
+    return;
+  }
+  read_ = true;
   missing_ = 0;
   bad_reading_ = false;
   sense_at_ = stream_.discarded_bytes();
+}
+
+void FalconExchange::end() noexcept {
+  overdue_ = due_ > 0 ? overdue_ + 1 : 0;
+  if (overdue_ >= kGivenUpAfter) due_ = overdue_ = 0;
+  if (!read_) note_missing();
 }
 
 void FalconExchange::note_missing() noexcept {
@@ -41,8 +54,9 @@ bool FalconExchange::take(const Reply& reply, Time now) noexcept {
   // Homing moves the origin, so readings before it say nothing about the hand's motion.
   if (!known_ || !homed_) velocity_.forget();
   known_ = homed_;
-  const Vec3 velocity_mm_s = velocity_.add(position_mm, now);
-  link_.publish({position_mm, velocity_mm_s, 0, reply.buttons, homed_});
+  DeviceSample sample{position_mm, velocity_.add(position_mm, now), 0, reply.buttons, homed_};
+  sample.limited = limited_;
+  link_.publish(sample);
   return true;
 }
 
@@ -61,26 +75,20 @@ bool FalconExchange::jumps(Vec3 position_mm, Time now) noexcept {
   return false;
 }
 
-Vec3 FalconExchange::bias_n(Time now) noexcept {
-  if (!bias_from_) bias_from_ = now;
-  const double share = std::chrono::duration<double>(now - *bias_from_) / kBiasRamp;
-  return std::clamp(share, 0.0, 1.0) * gravity_bias_n_;
-}
-
-MotorValues FalconExchange::motors(Time now) noexcept {
+PerLeg FalconExchange::torques(Time now) noexcept {
   // Taken even if it is not sent, so that no old force waits in the link.
-  const std::optional<Vec3> force_n = link_.live_force(now);
-  if (!force_n || !homed_ || !known_ || missing_ > kForcelessAfter) {
-    bias_from_.reset();
-    return {};
-  }
-  const auto torques = torques_nm(pose_.jacobian, with_gravity_bias(*force_n, bias_n(now)));
-  return torques && pose_.status == PoseStatus::ok ? motor_values(*torques) : MotorValues{};
+  const Vec3 force_n = link_.force_to_send(now);
+  if (!homed_ || !known_ || missing_ >= kForcelessAfter) return {};
+  if (pose_.status != PoseStatus::ok) return {};
+  return torques_nm(pose_.jacobian, force_n).value_or(PerLeg{});
 }
 
-Packet FalconExchange::command(Time now) noexcept {
+Packet FalconExchange::begin(Time now) noexcept {
+  replied_ = read_ = false;
+  const MotorCommand motors = motors_.command(torques(now), now);
+  limited_ = motors.limited;
   Command command;
-  command.motors = motors(now);
+  command.motors = motors.values;
   command.leds = led_bits({.red = !homed_, .blue = homed_}, led_order_);
   return encode_command(command);
 }

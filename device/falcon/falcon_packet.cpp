@@ -1,7 +1,6 @@
 #include "device/falcon/falcon_packet.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace touchtrial::device::falcon {
 namespace {
@@ -13,12 +12,6 @@ constexpr std::size_t kFlagsAt = 13;
 constexpr std::size_t kUnusedAt = 14;
 constexpr std::size_t kLastAt = kPacketSize - 1;
 constexpr std::size_t kNibbles = 4;
-
-constexpr double kMotorValuePerNm = -1e4;
-/// 1 N m. A force of 8 N takes up to 0.67 N m within the workspace, and without bound towards the
-/// singular poses beyond it.
-constexpr double kMostMotorValue = 10'000.0;
-constexpr double kMostBiasN = 1.0;
 
 void put_nibbles(Packet& packet, std::size_t axis, std::int16_t value) noexcept {
   const auto bits = static_cast<std::uint16_t>(value);
@@ -47,22 +40,6 @@ bool fits_reply(std::uint8_t byte, std::size_t at) noexcept {
 }
 
 }  // namespace
-
-MotorValues motor_values(const PerLeg& torques_nm) noexcept {
-  double most = 0.0;
-  for (const double torque : torques_nm) {
-    if (!std::isfinite(torque)) return {};
-    most = std::max(most, std::abs(kMotorValuePerNm * torque));
-  }
-  if (!std::isfinite(most)) return {};
-  const double scale = most > kMostMotorValue ? kMostMotorValue / most : 1.0;
-  MotorValues values{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double value = std::round(scale * (kMotorValuePerNm * torques_nm[i]));
-    values[i] = static_cast<std::int16_t>(std::clamp(value, -kMostMotorValue, kMostMotorValue));
-  }
-  return values;
-}
 
 std::uint8_t led_bits(const Lights& lights, const std::array<int, 3>& order) noexcept {
   const std::array<bool, 3> on = {lights.red, lights.green, lights.blue};
@@ -134,12 +111,6 @@ bool FalconStream::push_byte(std::uint8_t byte) noexcept {
   newest_ = decode_reply(packet_).value_or(newest_);
   ++replies_;
   return true;
-}
-
-Vec3 with_gravity_bias(Vec3 force_n, Vec3 bias_n) noexcept {
-  const double size = norm(bias_n);
-  if (!std::isfinite(size)) return force_n;
-  return force_n + (size > kMostBiasN ? kMostBiasN / size : 1.0) * bias_n;
 }
 
 }  // namespace touchtrial::device::falcon

@@ -9,7 +9,6 @@
 /// to one thread.
 #pragma once
 
-#include "core/vec.hpp"
 #include "device/falcon/falcon_kinematics.hpp"
 
 #include <array>
@@ -25,12 +24,7 @@ using Packet = std::array<std::uint8_t, kPacketSize>;
 
 /// \name To the Falcon
 ///@{
-using MotorValues = std::array<std::int16_t, 3>;  ///< -10,000 for 1 N m
-
-/// Motor values of torques. If one torque is beyond 1 N m, all three shrink by one factor, so that
-/// the force keeps its direction; no force that a Falcon can make in its workspace needs as much.
-/// \return zeros if a torque is not finite
-[[nodiscard]] MotorValues motor_values(const PerLeg& torques_nm) noexcept;
+using MotorValues = std::array<std::int16_t, 3>;  ///< from `FalconMotors`
 
 /// Which lights are on.
 struct Lights {
@@ -39,8 +33,7 @@ struct Lights {
   bool blue = false;
 };
 
-/// \param order  the bits of red, green and blue, each 0 to 2, on which sources differ; a bit out
-///   of range lights nothing
+/// \param order  the bits of red, green and blue, each 0 to 2; a bit out of range lights nothing
 /// \return bits 0 to 2 of Command::leds
 [[nodiscard]] std::uint8_t led_bits(const Lights& lights, const std::array<int, 3>& order) noexcept;
 
@@ -105,9 +98,5 @@ class FalconStream {
   std::uint64_t replies_ = 0;
   std::uint64_t discarded_ = 0;
 };
-
-/// \param bias_n  a constant force that carries the grip, device frame; its norm is cut to 1 N
-/// \return the force to send: the servo's and the bias
-[[nodiscard]] Vec3 with_gravity_bias(Vec3 force_n, Vec3 bias_n) noexcept;
 
 }  // namespace touchtrial::device::falcon

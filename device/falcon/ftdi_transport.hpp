@@ -29,6 +29,8 @@ class FtdiStreamSink {
   virtual ~FtdiStreamSink() = default;
   /// \param transfer  the bytes of one bulk transfer, with the chip's status bytes; may be empty
   virtual void receive(std::span<const std::uint8_t> transfer) noexcept = 0;
+  /// A posted packet has gone out.
+  virtual void sent() noexcept {}
 };
 
 /// A chip that is open and claimed; the destructor closes it. Belongs to one thread at a time. It
@@ -44,7 +46,8 @@ class FtdiTransport {
   /// \name Setting up: each waits, and throws DeviceError if the device is gone
   ///@{
   virtual void control(FtdiRequest request, std::uint16_t value) = 0;
-  /// \return how many bytes went out; fewer than all if the limit was too short
+  /// \return how many bytes went out; fewer than all if the limit was too short. Throws at once if
+  ///   the bus gives nothing back.
   [[nodiscard]] virtual std::size_t send(std::span<const std::uint8_t> bytes,
                                          std::chrono::milliseconds limit) = 0;
   /// Receives the next packet, with its status bytes.
@@ -62,9 +65,12 @@ class FtdiTransport {
   /// Ends the stream and waits, a few seconds at most, until no transfer is under way; if one still
   /// is, the device counts as lost. Safe on a lost device.
   virtual void stop_stream() noexcept = 0;
-  /// Sends without waiting.
-  /// \return whether the bytes were taken, which fails while the previous ones are under way
+  /// Sends without waiting, at most kUsbPacketSize bytes. If the device has not taken the packet
+  /// before it yet, that one is cancelled and these bytes go in its place, so that no old force
+  /// waits in front of a new one. After kMostStuck such packets in a row the link is lost.
+  /// \return whether the bytes were taken
   [[nodiscard]] virtual bool post(std::span<const std::uint8_t> bytes) noexcept = 0;
+  static constexpr int kMostStuck = 5;
   /// Waits until bytes arrive, at most this long, and hands them to the sink.
   virtual void serve(std::chrono::microseconds at_most) noexcept = 0;
   /// \return whether the device is unplugged or unusable. It stays so: open the device anew.

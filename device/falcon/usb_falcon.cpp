@@ -54,8 +54,10 @@ class UsbFtdi final : public FtdiTransport {
   [[nodiscard]] std::size_t transfer(unsigned char endpoint, std::uint8_t* bytes, int count,
                                      std::chrono::milliseconds limit);
   void queue_read() noexcept;
+  [[nodiscard]] bool submit_next() noexcept;
   /// Counts failures in a row. The device is lost after too many, or if it was unplugged.
   void note(libusb_transfer_status status) noexcept;
+  [[nodiscard]] DeviceError failure(int error) const;
 
   // In the order of use, so that they are released in the reverse.
   UsbContext context_;
@@ -67,12 +69,17 @@ class UsbFtdi final : public FtdiTransport {
   UsbTransfer send_;
   std::array<std::uint8_t, kUsbPacketSize> in_{};
   std::array<std::uint8_t, kUsbPacketSize> out_{};
+  std::array<std::uint8_t, kUsbPacketSize> next_{};  ///< to send once `out_` has come back
+  std::size_t next_size_ = 0;
   FtdiStreamSink* sink_ = nullptr;  ///< null: no stream, so no further read is queued
   bool reading_ = false;
   bool sending_ = false;
+  bool halted_ = false;  ///< the device refuses packets until its endpoint is cleared
+  int stuck_ = 0;        ///< packets in a row that the device did not take in time
   int failures_ = 0;
-  int deaf_ = 0;  ///< calls in a row in which libusb failed to handle its events
-  bool lost_ = false;
+  int deaf_ = 0;       ///< calls in a row in which libusb failed to handle its events
+  bool lost_ = false;  ///< for the stream; a last packet may still be tried
+  bool dead_ = false;  ///< the bus gave a transfer not back: another would wait for ever
 };
 
 UsbFtdi::UsbFtdi(UsbContext context, UsbHandle handle)
@@ -92,18 +99,24 @@ void UsbFtdi::control(FtdiRequest request, std::uint16_t value) {
   const int result =
       libusb_control_transfer(handle_.get(), kVendorRequest, static_cast<std::uint8_t>(request),
                               value, 0, nullptr, 0, kControlTimeoutMs);
-  if (result < 0) throw DeviceError("falcon at " + where_ + ": " + usb_remedy(result));
+  if (result < 0) throw failure(result);
+}
+
+DeviceError UsbFtdi::failure(int error) const {
+  return DeviceError("falcon at " + where_ + ": " + usb_remedy(error));
 }
 
 std::size_t UsbFtdi::transfer(unsigned char endpoint, std::uint8_t* bytes, int count,
                               std::chrono::milliseconds limit) {
+  if (dead_) throw failure(LIBUSB_ERROR_IO);
   int done = 0;
   // To libusb a limit of 0 is no limit.
   const auto limit_ms = static_cast<unsigned>(std::max<std::int64_t>(limit.count(), 1));
-  const int result = libusb_bulk_transfer(handle_.get(), endpoint, bytes, count, &done, limit_ms);
-  if (result != 0 && result != LIBUSB_ERROR_TIMEOUT) {
-    throw DeviceError("falcon at " + where_ + ": " + usb_remedy(result));
+  int result = libusb_bulk_transfer(handle_.get(), endpoint, bytes, count, &done, limit_ms);
+  if (result == LIBUSB_ERROR_PIPE && libusb_clear_halt(handle_.get(), endpoint) == 0) {
+    result = libusb_bulk_transfer(handle_.get(), endpoint, bytes, count, &done, limit_ms);
   }
+  if (result != 0 && result != LIBUSB_ERROR_TIMEOUT) throw failure(result);
   return static_cast<std::size_t>(done);
 }
 
@@ -120,13 +133,14 @@ std::size_t UsbFtdi::receive(std::span<std::uint8_t, kUsbPacketSize> packet,
 
 void UsbFtdi::start_stream(FtdiStreamSink& sink) {
   sink_ = &sink;
-  failures_ = 0;
+  failures_ = stuck_ = 0;
   queue_read();
-  if (lost_) throw DeviceError("falcon at " + where_ + ": " + usb_remedy(LIBUSB_ERROR_NO_DEVICE));
+  if (lost_) throw failure(LIBUSB_ERROR_NO_DEVICE);
 }
 
 void UsbFtdi::stop_stream() noexcept {
   sink_ = nullptr;
+  next_size_ = 0;
   if (reading_) libusb_cancel_transfer(read_.get());
   if (sending_) libusb_cancel_transfer(send_.get());
   // A transfer belongs to libusb until its callback has run, even if the device is gone.
@@ -136,7 +150,7 @@ void UsbFtdi::stop_stream() noexcept {
     serve(std::chrono::milliseconds(100));
   }
   if (!reading_ && !sending_) return;
-  lost_ = true;
+  lost_ = dead_ = true;
   if (std::exchange(reading_, false)) leave_to_libusb(read_);
   if (std::exchange(sending_, false)) leave_to_libusb(send_);
 }
@@ -149,10 +163,22 @@ void UsbFtdi::queue_read() noexcept {
 }
 
 bool UsbFtdi::post(std::span<const std::uint8_t> bytes) noexcept {
-  if (sending_ || lost_ || bytes.size() > out_.size()) return false;
-  std::copy(bytes.begin(), bytes.end(), out_.begin());
+  if (lost_ || bytes.size() > next_.size()) return false;
+  std::copy(bytes.begin(), bytes.end(), next_.begin());
+  next_size_ = bytes.size();
+  if (!sending_) return submit_next();
+  if (++stuck_ >= kMostStuck) lost_ = true;
+  // It comes back cancelled, or sent after all; then the next one is submitted.
+  libusb_cancel_transfer(send_.get());
+  return !lost_;
+}
+
+bool UsbFtdi::submit_next() noexcept {
+  if (halted_) halted_ = libusb_clear_halt(handle_.get(), kOutEndpoint) != 0;
+  const std::size_t size = std::exchange(next_size_, 0);
+  std::copy_n(next_.begin(), size, out_.begin());
   libusb_fill_bulk_transfer(send_.get(), handle_.get(), kOutEndpoint, out_.data(),
-                            static_cast<int>(bytes.size()), &on_sent, this, 0);
+                            static_cast<int>(size), &on_sent, this, 0);
   const int error = libusb_submit_transfer(send_.get());
   sending_ = error == 0;
   if (error == LIBUSB_ERROR_NO_DEVICE) lost_ = true;
@@ -189,7 +215,19 @@ void LIBUSB_CALL UsbFtdi::on_read(libusb_transfer* transfer) {
 void LIBUSB_CALL UsbFtdi::on_sent(libusb_transfer* transfer) {
   auto& self = *static_cast<UsbFtdi*>(transfer->user_data);
   self.sending_ = false;
-  if (self.sink_ != nullptr) self.note(transfer->status);
+  if (self.sink_ == nullptr) return;
+  const bool cancelled = transfer->status == LIBUSB_TRANSFER_CANCELLED;
+  if (!cancelled) self.note(transfer->status);
+  // One that was cancelled too late has gone out as well.
+  const bool whole = transfer->actual_length == transfer->length;
+  if (whole && (cancelled || transfer->status == LIBUSB_TRANSFER_COMPLETED)) {
+    self.stuck_ = 0;
+    self.sink_->sent();
+  }
+  // Cleared before the next packet; libusb forbids waiting in its callbacks.
+  self.halted_ = transfer->status == LIBUSB_TRANSFER_STALL;
+  const bool next = self.next_size_ > 0 && !self.lost_ && !self.halted_;
+  if (next) static_cast<void>(self.submit_next());
 }
 
 /// Finds out whether the device can be claimed, by claiming it for a moment.

@@ -75,10 +75,18 @@ constexpr std::int64_t kTicksBetweenTemperatures = 100;
 /// The library takes a moment for a calibration; a new request during it would begin it anew.
 constexpr std::int64_t kTicksBetweenCalibrations = 100;
 
-DeviceReadiness readiness_of(Enum calibration, int style) noexcept {
-  if (calibration == kCalibrationOk) return DeviceReadiness::ready;
-  return (style & kStyleInkwell) != 0 ? DeviceReadiness::needs_inkwell
-                                      : DeviceReadiness::needs_calibration;
+/// What a person has to do for a calibration of this style.
+DeviceReadiness need_of(int style) noexcept {
+  switch (style) {
+    case kStyleEncoderReset:
+      return DeviceReadiness::needs_reset;
+    case kStyleAuto:
+      return DeviceReadiness::needs_homing;
+    case kStyleInkwell:
+      return DeviceReadiness::needs_inkwell;
+    default:
+      return DeviceReadiness::needs_calibration;
+  }
 }
 
 Vec3 vec_from(const std::array<double, 3>& values) noexcept {
@@ -112,26 +120,43 @@ bool Loop::close(std::chrono::milliseconds patience) noexcept {
 
 void Loop::tick() noexcept {
   api_.make_current_device(device_);
-  run_frame(check_calibration());
+  check_calibration();
+  run_frame();
   const Errors errors = drain_errors(api_);
   if (errors.fault != DeviceFault::none) link_.fail(errors.fault);
   ++tick_;
 }
 
-bool Loop::check_calibration() noexcept {
+/// A device that was calibrated once keeps a valid position while it has news for its calibration.
+void Loop::check_calibration() noexcept {
   const Enum state = api_.check_calibration();
-  if (state == kCalibrationNeedsUpdate && options_.calibration_style != 0 &&
-      tick_ % kTicksBetweenCalibrations == 0) {
+  if (state == kCalibrationOk) is_calibrated_ = true;
+  if (state != kCalibrationOk && state != kCalibrationNeedsUpdate) is_calibrated_ = false;
+  if (is_update_due(state)) {
     api_.update_calibration(static_cast<Enum>(options_.calibration_style));
+    // A calibration that fails is tried again.
+    const DeviceFault fault = drain_errors(api_).fault;
+    if (fault != DeviceFault::none && fault != DeviceFault::driver) link_.fail(fault);
   }
-  readiness_.store(readiness_of(state, options_.calibration_style), std::memory_order_release);
-  return state == kCalibrationOk;
+  readiness_.store(is_calibrated_ ? DeviceReadiness::ready : need_of(options_.calibration_style),
+                   std::memory_order_release);
 }
 
-void Loop::run_frame(bool calibrated) noexcept {
+/// An update moves the origin. A reset makes the arm's place the reset position wherever it is, so
+/// only a person decides it; all other updates wait until no servo renders forces.
+bool Loop::is_update_due(Enum state) noexcept {
+  const bool is_asked = reset_asked_.exchange(false, std::memory_order_acq_rel);
+  if (options_.calibration_style == kStyleEncoderReset) return is_asked && !is_calibrated_;
+  idle_ticks_ = link_.live_force(monotonic_now()) ? 0 : idle_ticks_ + 1;
+  return options_.calibration_style != 0 && state == kCalibrationNeedsUpdate &&
+         tick_ % kTicksBetweenCalibrations == 0 &&
+         (!is_calibrated_ || idle_ticks_ > kTicksBetweenCalibrations);
+}
+
+void Loop::run_frame() noexcept {
   api_.begin_frame(device_);
   DeviceSample sample = read_sample();
-  sample.ready = calibrated;
+  sample.ready = is_calibrated_;
   if (tick_ % kTicksBetweenTemperatures == 0) watch_temperature();
   if (!is_finite(sample.position_mm) || !is_finite(sample.velocity_mm_s)) {
     link_.fail(DeviceFault::bad_data);
@@ -139,7 +164,7 @@ void Loop::run_frame(bool calibrated) noexcept {
     link_.publish(sample);
   }
   const Vec3 force_n = link_.force_to_send(monotonic_now());
-  send(calibrated ? force_n : Vec3{});
+  send(is_calibrated_ ? force_n : Vec3{});
   api_.end_frame(device_);
 }
 

@@ -46,6 +46,7 @@ constexpr Enum kMaxStiffness = 0x2602;      ///< nominal, N/mm
 constexpr Enum kMaxForce = 0x2603;          ///< nominal, N
 constexpr Enum kContinuousForce = 0x2604;   ///< nominal, N
 constexpr Enum kMotorTemperature = 0x2605;  ///< 6 doubles: 0 cold, 1 as warm as a motor may get
+constexpr Enum kMaxDamping = 0x2609;        ///< nominal, N s/mm
 constexpr Enum kCurrentForce = 0x2700;      ///< 3 doubles, N
 
 /// Capabilities to switch on and off.
@@ -56,8 +57,9 @@ constexpr Enum kForceRamping = 0x4002;
 /// States of calibration, and bits of its styles.
 constexpr Enum kCalibrationOk = 0x5000;
 constexpr Enum kCalibrationNeedsUpdate = 0x5001;
-constexpr int kStyleAuto = 2;
-constexpr int kStyleInkwell = 4;
+constexpr int kStyleEncoderReset = 1;  ///< a person puts the arm at a known place and says so
+constexpr int kStyleAuto = 2;          ///< the device learns while it is moved
+constexpr int kStyleInkwell = 4;       ///< the stylus lies in its inkwell
 
 /// Errors with a DeviceFault of their own; all others are DeviceFault::driver.
 constexpr std::uint32_t kWarmMotors = 0x200;
@@ -106,7 +108,7 @@ struct Errors {
 /// What the device offers, as found when it was opened.
 struct LoopOptions {
   bool has_motor_temperature = false;
-  int calibration_style = kStyleInkwell;  ///< 0: none that a program can do
+  int calibration_style = kStyleInkwell;  ///< one of the styles, or 0: none is known
 };
 
 /// The callback's data, and all that it touches. The thread that opens the device makes and
@@ -128,6 +130,8 @@ class Loop {
   [[nodiscard]] DeviceReadiness readiness() const noexcept {
     return readiness_.load(std::memory_order_acquire);
   }
+  /// As HapticDevice::calibrate. Any thread.
+  void calibrate() noexcept { reset_asked_.store(true, std::memory_order_release); }
   /// \return the number of frames in a row, up to now, that sent zero
   [[nodiscard]] int zeros_sent() const noexcept {
     return zeros_sent_.load(std::memory_order_acquire);
@@ -141,8 +145,9 @@ class Loop {
  private:
   [[nodiscard]] std::uint32_t enter() noexcept;
   void tick() noexcept;
-  [[nodiscard]] bool check_calibration() noexcept;
-  void run_frame(bool calibrated) noexcept;
+  void check_calibration() noexcept;
+  [[nodiscard]] bool is_update_due(Enum state) noexcept;
+  void run_frame() noexcept;
   [[nodiscard]] DeviceSample read_sample() noexcept;
   void watch_temperature() noexcept;
   void send(Vec3 force_n) noexcept;
@@ -152,6 +157,9 @@ class Loop {
   LoopOptions options_;
   DeviceLink link_;
   std::int64_t tick_ = 0;
+  bool is_calibrated_ = false;   ///< the position is valid
+  std::int64_t idle_ticks_ = 0;  ///< in a row, up to now, without a force from a servo
+  std::atomic<bool> reset_asked_{false};
   std::atomic<DeviceReadiness> readiness_{DeviceReadiness::needs_calibration};
   std::atomic<int> zeros_sent_{0};
   std::atomic<bool> inside_{false};

@@ -2,7 +2,9 @@
 
 #include "core/errors.hpp"
 #include "device/drivers.hpp"
+#include "device/only_user.hpp"
 #include "device/openhaptics/hd_loop.hpp"
+#include "device/workspace_fit.hpp"
 
 #include <array>
 #include <atomic>
@@ -23,8 +25,9 @@ using std::chrono::milliseconds;
 
 /// The remedy for a library that cannot be used.
 constexpr const char* kRemedy =
-    "install the vendor's OpenHaptics and its device driver, or name the library in the device "
-    "settings at openhaptics.library";
+    "install the vendor's OpenHaptics and its device driver, with the libraries that they need "
+    "(docs/devices/openhaptics.md), or name the library in the device settings at "
+    "openhaptics.library";
 
 /// Frames of zero before the scheduler is stopped, and how long to wait for them.
 constexpr int kZerosAtTheEnd = 5;
@@ -71,8 +74,8 @@ Handle open_device_of(const Api& api, const OpenHapticsSettings& settings) {
   const std::string wanted = settings.device.empty() ? "the default device" : settings.device;
   throw DeviceError(one_line("openhaptics: " + wanted +
                              " does not open: " + words_for(api, errors.oldest) +
-                             "; plug it in, let the vendor's diagnostic find it, and close other "
-                             "programs that use it"));
+                             "; plug it in, let the vendor's diagnostic find it with the same "
+                             "GTDD_HOME as here, and close other programs that use it"));
 }
 
 std::string text_of(const Api& api, Enum what) {
@@ -126,29 +129,24 @@ Workspace workspace_of(const Api& api) {
   return box_of(api, kMaxWorkspace).value_or(kTouchWorkspace);
 }
 
+/// The vendor's order of preference.
+int best_style_of(int styles) noexcept {
+  for (const int style : {kStyleAuto, kStyleInkwell, kStyleEncoderReset}) {
+    if ((styles & style) != 0) return style;
+  }
+  return 0;
+}
+
 std::string joined(const std::string& vendor, const std::string& model) {
   return vendor.empty() || model.empty() ? vendor + model : vendor + ' ' + model;
 }
 
 /// The library keeps a "current device" and breaks when it is loaded twice, so that a process may
 /// use it once at a time.
-class OnlyUser {
- public:
-  /// \throws DeviceError if there is one already
-  OnlyUser() {
-    if (in_use_.exchange(true)) {
-      throw DeviceError(
-          "openhaptics: this program has a device open already, and the vendor's library serves "
-          "one at a time; close that one first");
-    }
-  }
-  ~OnlyUser() { in_use_.store(false); }
-  OnlyUser(const OnlyUser&) = delete;
-  OnlyUser& operator=(const OnlyUser&) = delete;
-
- private:
-  static inline std::atomic<bool> in_use_{false};
-};
+std::atomic<bool> library_in_use{false};
+constexpr const char* kInUse =
+    "openhaptics: this program has a device open already, and the vendor's library serves one at a "
+    "time; close that one first";
 
 /// The loaded library and one device of it, without force or scheduler. Belongs to the thread that
 /// opens it.
@@ -157,7 +155,7 @@ class Session {
   /// \throws DeviceError with the remedy if the library cannot be used or no device answers
   explicit Session(const OpenHapticsSettings& settings)
       : name_(settings.library.string()),
-        library_(settings.library, Unload::never, kRemedy),
+        library_(settings.library, Unload::never, kRemedy, Binding::as_needed),
         api_(load_api(library_)),
         device_(open_device_of(api_, settings)) {
     api_.make_current_device(device_);
@@ -181,6 +179,7 @@ class Session {
     info.max_force_n = positive_or(api_, kMaxForce, kTouchMaxForceN);
     info.continuous_force_n = positive_or(api_, kContinuousForce, kTouchContinuousForceN);
     info.max_stiffness_n_per_mm = positive_or(api_, kMaxStiffness, 0.0);
+    info.max_damping_n_s_per_mm = positive_or(api_, kMaxDamping, 0.0);
     info.workspace = workspace_of(api_);
     return info;
   }
@@ -191,7 +190,7 @@ class Session {
     int styles = 0;
     api_.get_integerv(kCalibrationStyles, &styles);
     const bool told = drain_errors(api_).oldest == 0 && styles != 0;
-    if (told && (styles & kStyleInkwell) == 0) options.calibration_style = styles & kStyleAuto;
+    if (told) options.calibration_style = best_style_of(styles);
     return options;
   }
 
@@ -204,7 +203,7 @@ class Session {
   }
 
  private:
-  OnlyUser only_user_;
+  OnlyUser only_user_{library_in_use, kInUse};
   std::string name_;  ///< of the library
   DynamicLibrary library_;
   Api api_;
@@ -223,11 +222,14 @@ std::vector<DeviceListing> list_openhaptics(const DeviceSettings& settings) {
   listing.driver = "openhaptics";
   listing.where = settings.openhaptics.library.string();
   try {
-    expect_loading_survived(settings.openhaptics.library, kRemedy);
+    expect_loading_survived(settings.openhaptics.library, kRemedy, Binding::as_needed);
     const DeviceInfo info = Session(settings.openhaptics).info();
     listing.model = info.model;
     listing.serial = info.serial;
     listing.present = true;
+    if (const std::string limits = rendering_limits_text(info); !limits.empty()) {
+      listing.notes = {limits};
+    }
   } catch (const DeviceError& error) {
     listing.missing = {error.what()};
   }
@@ -235,7 +237,7 @@ std::vector<DeviceListing> list_openhaptics(const DeviceSettings& settings) {
 }
 
 std::unique_ptr<HapticDevice> open_openhaptics(const DeviceSettings& settings) {
-  expect_loading_survived(settings.openhaptics.library, kRemedy);
+  expect_loading_survived(settings.openhaptics.library, kRemedy, Binding::as_needed);
   return std::make_unique<OpenHapticsDevice>(settings.openhaptics);
 }
 
@@ -318,6 +320,10 @@ DeviceLink& OpenHapticsDevice::link() const noexcept {
 
 DeviceReadiness OpenHapticsDevice::readiness() const noexcept {
   return running_->loop().readiness();
+}
+
+void OpenHapticsDevice::calibrate() noexcept {
+  running_->loop().calibrate();
 }
 
 DeviceDriver openhaptics_driver() {

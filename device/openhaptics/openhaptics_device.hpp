@@ -12,9 +12,10 @@ namespace touchtrial::device {
 /// towards the person, mm. The library's own scheduler thread sends the forces; its clamping and
 /// ramping stay on beneath our safety chain. Not verified on hardware.
 ///
-/// The driver sends no force before the device reports that it is calibrated, and updates the
-/// calibration when the device requests it (the stylus is in the inkwell). A fault latches: open
-/// the device anew.
+/// The driver sends no force before the device reports that it is calibrated. It updates the
+/// calibration when the device requests it and no servo writes forces (the device was moved, or the
+/// stylus lies in the inkwell), or when `calibrate` says that the arm is at its reset position. A
+/// fault latches: open the device anew.
 class OpenHapticsDevice final : public LinkedDevice {
  public:
   /// Starts the scheduler, from which samples come. A process may have one device at a time.
@@ -26,6 +27,7 @@ class OpenHapticsDevice final : public LinkedDevice {
 
   [[nodiscard]] DeviceInfo info() const override { return info_; }
   [[nodiscard]] DeviceReadiness readiness() const noexcept override;
+  void calibrate() noexcept override;
 
  private:
   [[nodiscard]] DeviceLink& link() const noexcept override;

@@ -17,8 +17,9 @@
 namespace touchtrial::device {
 namespace {
 
-int load_flags(Unload unload) {
-  return RTLD_NOW | RTLD_LOCAL | (unload == Unload::never ? RTLD_NODELETE : 0);
+int load_flags(Unload unload, Binding binding) {
+  return (binding == Binding::at_once ? RTLD_NOW | RTLD_LOCAL : RTLD_LAZY | RTLD_GLOBAL) |
+         (unload == Unload::never ? RTLD_NODELETE : 0);
 }
 
 /// \return the linker's reason, without the library's name in front, which begins our message
@@ -30,13 +31,13 @@ std::string reason_for(const std::string& library) {
 }
 
 /// The child's work: crashes stay silent, and no code of the parent runs at the exit.
-[[noreturn]] void load_and_end(const char* library) {
+[[noreturn]] void load_and_end(const char* library, Binding binding) {
   for (const int crash : std::array{SIGSEGV, SIGBUS, SIGABRT, SIGILL, SIGFPE}) {
     signal(crash, SIG_DFL);
   }
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-  dlopen(library, load_flags(Unload::never));
+  dlopen(library, load_flags(Unload::never, binding));
   _exit(0);
 }
 
@@ -55,10 +56,11 @@ std::optional<int> status_of(pid_t child) {
 
 }  // namespace
 
-void expect_loading_survived(const std::filesystem::path& library, const std::string& remedy) {
+void expect_loading_survived(const std::filesystem::path& library, const std::string& remedy,
+                             Binding binding) {
   const std::string name = library.string();
   const pid_t child = fork();
-  if (child == 0) load_and_end(name.c_str());
+  if (child == 0) load_and_end(name.c_str(), binding);
   if (child < 0) return;  // without a process, the loading itself has to tell
   const std::optional<int> status = status_of(child);
   if (status && !WIFSIGNALED(*status)) return;
@@ -68,10 +70,10 @@ void expect_loading_survived(const std::filesystem::path& library, const std::st
 }
 
 DynamicLibrary::DynamicLibrary(const std::filesystem::path& library, Unload unload,
-                               std::string remedy)
+                               std::string remedy, Binding binding)
     : name_(library.string()), remedy_(std::move(remedy)) {
   if (name_.empty()) throw DeviceError("no library is named; " + remedy_);
-  handle_ = dlopen(name_.c_str(), load_flags(unload));
+  handle_ = dlopen(name_.c_str(), load_flags(unload, binding));
   if (handle_ == nullptr) {
     throw DeviceError(
         one_line(name_ + ": cannot be loaded (" + reason_for(name_) + "); " + remedy_));

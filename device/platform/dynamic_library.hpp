@@ -12,15 +12,25 @@ enum class Unload {
   never,  ///< for libraries that break when they are loaded a second time
 };
 
-/// A vendor's library, found by the dynamic linker's rules (a bare name along its search path).
-/// Symbols stay in the library's own scope. Any thread may use it.
+/// When the library's own references are resolved, and who else sees its functions.
+enum class Binding {
+  /// All at once, so that none is missing later, in the middle of a session; its functions are for
+  /// us alone.
+  at_once,
+  /// Each when it is first used, and what it loads itself may use its functions too: for libraries
+  /// with references that no installed library has, and with parts of their own.
+  as_needed,
+};
+
+/// A vendor's library, found by the dynamic linker's rules (a bare name along its search path). Any
+/// thread may use it.
 class DynamicLibrary {
  public:
-  /// Runs the library's initialisers and resolves all its own references at once, so that none is
-  /// missing later, in the middle of a session.
+  /// Runs the library's initialisers.
   /// \param remedy  what to do if it cannot be used; ends every error, without a full stop
   /// \throws DeviceError naming the library, the linker's reason and the remedy
-  DynamicLibrary(const std::filesystem::path& library, Unload unload, std::string remedy);
+  DynamicLibrary(const std::filesystem::path& library, Unload unload, std::string remedy,
+                 Binding binding = Binding::at_once);
   ~DynamicLibrary();
   DynamicLibrary(const DynamicLibrary&) = delete;
   DynamicLibrary& operator=(const DynamicLibrary&) = delete;
@@ -55,6 +65,7 @@ class DynamicLibrary {
 /// kill the process that loads it. Costs a fork.
 /// \throws DeviceError naming library and remedy if the child crashes or hangs for ten seconds, but
 ///   not for anything that DynamicLibrary itself throws
-void expect_loading_survived(const std::filesystem::path& library, const std::string& remedy);
+void expect_loading_survived(const std::filesystem::path& library, const std::string& remedy,
+                             Binding binding = Binding::at_once);
 
 }  // namespace touchtrial::device

@@ -13,7 +13,7 @@ namespace touchtrial::device {
 /// What the chain did with a force.
 enum class SafetyVerdict {
   passed,   ///< sent as computed
-  limited,  ///< shortened or held back by a link of the chain
+  limited,  ///< shortened or held back by a link of the chain, or by a limit of the device's own
   fault,    ///< a fault now or earlier: zero is sent until `rearm`
 };
 
@@ -30,8 +30,9 @@ enum class SafetyFault {
 };
 
 struct SafeForce {
-  Vec3 force_n;
+  Vec3 force_n;  ///< to send
   SafetyVerdict verdict = SafetyVerdict::passed;
+  Vec3 rendered_n{};  ///< the part of force_n that is not the device's support
 };
 
 /// In this order: finite check, latched fault, homed and armed, small-force gate on engaging,
@@ -46,10 +47,13 @@ class SafetyChain {
 
   /// A device that is not ready before engaging gets zero, without a fault. No allocation, lock or
   /// exception; about 10 ns.
+  /// \param force_n  as rendered: the gate judges it alone
   /// \param ticks  since the last call, more than 1 after an overrun; less counts as 1
+  /// \param support_n  HapticDevice::support_force_n, added to the rendered force: all limits judge
+  ///   the sum, and the ramp holds for both
   /// \return the force that may be sent for this tick
-  [[nodiscard]] SafeForce check(Vec3 force_n, const DeviceSample& sample,
-                                std::int64_t ticks = 1) noexcept;
+  [[nodiscard]] SafeForce check(Vec3 force_n, const DeviceSample& sample, std::int64_t ticks = 1,
+                                Vec3 support_n = {}) noexcept;
 
   /// Latches a fault that was seen elsewhere; the first one stays.
   void trip(SafetyFault fault) noexcept;
@@ -70,6 +74,7 @@ class SafetyChain {
   [[nodiscard]] bool is_engaged(double force_squared_n2, const DeviceSample& sample) noexcept;
   [[nodiscard]] SafetyFault fault_in(const DeviceSample& sample, double ticks) noexcept;
   [[nodiscard]] SafeForce stopped() noexcept;
+  [[nodiscard]] SafeForce limited(Vec3 force_n, Vec3 support_n) noexcept;
 
   bool may_engage_;
   SafetyFault fault_ = SafetyFault::none;

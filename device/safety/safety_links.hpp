@@ -8,6 +8,7 @@
 #include "core/vec.hpp"
 #include "device/haptic_device.hpp"
 #include "device/safety/safety_limits.hpp"
+#include "device/safety/thermal_budget.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -129,62 +130,6 @@ class Freshness {
   std::uint64_t sequence_ = 0;
 };
 
-/// The force that the motors can hold without a time limit, and for a while. Motors warm with the
-/// square of the force. Their heat is modelled as its running mean, which fades exponentially; the
-/// continuous force gives the greatest heat allowed. Below the share kWarm of that heat the peak
-/// force is allowed; above it the limit falls in proportion, down to the continuous force, so that
-/// the greatest heat is never passed. The time constant follows from thermal_budget_s, the time in
-/// which peak force brings a cold motor to kWarm. Nobody has measured it on a device's motors.
-class ThermalBudget {
- public:
-  static constexpr double kWarm = 0.9;
-
-  /// \param limits  sound; no budget if the continuous force is 0 or not below the peak force
-  /// \param tick_s  of the servo, > 0
-  ThermalBudget(const SafetyLimits& limits, double tick_s) noexcept
-      : peak_n_(limits.max_force_n), continuous_n_(limits.continuous_force_n) {
-    if (!(continuous_n_ > 0.0) || !(continuous_n_ < peak_n_)) return;
-    most_heat_ = continuous_n_ * continuous_n_;
-    // At peak force the heat is peak^2 (1 - exp(-t / tau)).
-    const double warm_share = kWarm * most_heat_ / (peak_n_ * peak_n_);
-    tau_s_ = -limits.thermal_budget_s / std::log1p(-warm_share);
-    share_per_tick_ = -std::expm1(-tick_s / tau_s_);
-  }
-
-  /// \return the limit of the force's norm for this tick, N: from the peak down to the continuous
-  ///   force
-  [[nodiscard]] double limit_n() const noexcept {
-    if (heat_ <= kWarm * most_heat_) return peak_n_;
-    const double cold = std::max(0.0, 1.0 - heat_ / most_heat_) / (1.0 - kWarm);
-    return continuous_n_ + std::min(cold, 1.0) * (peak_n_ - continuous_n_);
-  }
-
-  /// Warms the motors by a force.
-  /// \param ticks  how long the force was sent, >= 0
-  void heat(double force_squared_n2, double ticks) noexcept {
-    heat_ += std::min(1.0, share_per_tick_ * ticks) * (force_squared_n2 - heat_);
-  }
-
-  /// \return the running mean of the force's square, N^2, for `begin_warm` of a later run on the
-  ///   same motors; 0 without a budget
-  [[nodiscard]] double heat_n2() const noexcept { return heat_; }
-  /// Begins with motors that are warm from earlier work.
-  /// \param heat_n2  when that work ended; a value that is negative or not finite is ignored
-  /// \param rest_s  without force since then, >= 0
-  void begin_warm(double heat_n2, double rest_s) noexcept {
-    if (share_per_tick_ == 0.0 || !(heat_n2 >= 0.0) || !std::isfinite(heat_n2)) return;
-    heat_ = heat_n2 * std::exp(-std::max(rest_s, 0.0) / tau_s_);
-  }
-
- private:
-  double peak_n_;
-  double continuous_n_;
-  double most_heat_ = std::numeric_limits<double>::infinity();  ///< N^2; infinite: no budget
-  double tau_s_ = 1.0;                                          ///< in which heat fades to 1/e
-  double share_per_tick_ = 0.0;  ///< of the way to the present force's heat
-  double heat_ = 0.0;            ///< N^2
-};
-
 /// Lets forces grow to their full size after engaging: a factor that rises evenly from 0 to 1. It
 /// counts calls and not time, because the hand has not felt the ticks that a servo missed.
 class RampUp {
@@ -197,12 +142,12 @@ class RampUp {
 
   void start() noexcept { share_ = first_; }
 
-  /// \return the force of this tick
-  [[nodiscard]] Vec3 of(Vec3 force_n) noexcept {
-    if (share_ >= 1.0) return force_n;
+  /// \return this tick's share of the force, in [0, 1]
+  [[nodiscard]] double next_share() noexcept {
+    if (share_ >= 1.0) return 1.0;
     const double share = share_;
     share_ += share_per_tick_;
-    return share * force_n;
+    return share;
   }
 
  private:

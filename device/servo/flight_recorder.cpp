@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 
@@ -16,7 +17,8 @@ constexpr double kMostTicks = 1e7;
 
 constexpr std::string_view kHeader =
     "tick,time_s,x_mm,y_mm,z_mm,vx_mm_s,vy_mm_s,vz_mm_s,requested_x_n,requested_y_n,requested_z_n,"
-    "sent_x_n,sent_y_n,sent_z_n,verdict,fault,device_fault,lateness_us,sequence,buttons,ready\r\n";
+    "sent_x_n,sent_y_n,sent_z_n,verdict,fault,device_fault,lateness_us,sequence,buttons,ready,"
+    "delivered_x_n,delivered_y_n,delivered_z_n\r\n";
 
 std::size_t room_for(double seconds, double rate_hz) {
   const double ticks = std::ceil(seconds * rate_hz);
@@ -47,6 +49,10 @@ class Row {
     add(v.y);
     add(v.z);
   }
+  void add(const std::optional<Vec3>& v) {
+    if (v) return add(*v);
+    for (int i = 0; i < 3; ++i) add(std::string_view());
+  }
   void end() { text_ += "\r\n"; }
 
  private:
@@ -69,6 +75,7 @@ void add_row(std::string& text, const FlightTick& tick) {
   row.add(tick.sample.sequence);
   row.add(tick.sample.buttons);
   row.add(tick.sample.ready ? 1 : 0);
+  row.add(tick.sample.delivered_n);
   row.end();
 }
 

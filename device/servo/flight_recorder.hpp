@@ -19,7 +19,7 @@ struct FlightTick {
   std::int64_t tick = 0;            ///< as ServoSample::tick
   std::chrono::nanoseconds time{};  ///< since the first tick, when this one began
   DeviceSample sample;              ///< as the servo read it
-  Vec3 requested_n;                 ///< by the force source, after the fade
+  Vec3 requested_n;                 ///< by force source and support, after the fade
   Vec3 sent_n;                      ///< after the safety chain
   SafetyVerdict verdict = SafetyVerdict::passed;
   SafetyFault fault = SafetyFault::none;

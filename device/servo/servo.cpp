@@ -17,6 +17,8 @@ constexpr double kLeastRateHz = 1'000.0;
 constexpr double kGreatestRateHz = 10'000.0;
 constexpr double kComfortStopS = 0.1;  ///< from the first tick that sees the request
 constexpr double kShareS = 0.1;        ///< in which the share goes from 0 to 1
+/// Forces below this are not compared with what the device says it exerted.
+constexpr double kComparedN = 0.1;
 
 double share_of(const ServoParameters& parameters) noexcept {
   return parameters.force_share >= 0.0 ? std::min(parameters.force_share, 1.0) : 0.0;
@@ -134,6 +136,7 @@ class ServoRun {
     report_.end = end.value_or(end_of_fade_);
     report_.fault = safety_.fault();
     report_.device_fault = device_.fault();
+    report_.force_limit_n = std::max(0.0, report_.force_limit_n - std::sqrt(most_support_n2_));
     pacing.report_to(report_);
     if (hooks_.lateness != nullptr) hooks_.lateness->add(pacing.lateness());
     return report_;
@@ -208,17 +211,33 @@ class ServoRun {
     const DeviceStatus state = device_.read(sample);
     if (state == DeviceStatus::stopped) return ServoEnd::hand_stopped;
     if (state == DeviceStatus::fault) safety_.trip(SafetyFault::device);
-    const Vec3 requested_n = (fade_at(start.tick) * share()) * force_.force_n(sample);
-    SafeForce safe = safety_.check(requested_n, sample, start.tick - last_tick_);
+    if (sample.delivered_n) note_delivered(*sample.delivered_n);
+    const double fade = fade_at(start.tick);
+    const Vec3 rendered_n = (fade * share()) * force_.force_n(sample);
+    const Vec3 support_n = fade * device_.support_force_n(sample);
+    most_support_n2_ = std::max(most_support_n2_, dot(support_n, support_n));
+    SafeForce safe = safety_.check(rendered_n, sample, start.tick - last_tick_, support_n);
     last_tick_ = start.tick;
+    if (sample.limited && safe.verdict == SafetyVerdict::passed) {
+      safe.verdict = SafetyVerdict::limited;
+    }
     if (safe.verdict != SafetyVerdict::fault && device_.write(safe.force_n) != DeviceStatus::ok) {
       safety_.trip(SafetyFault::device);
       safe = {{}, SafetyVerdict::fault};
     }
-    show(start, sample, requested_n, safe);
+    show(start, sample, support_n == Vec3{} ? rendered_n : rendered_n + support_n, safe);
     if (safe.verdict == SafetyVerdict::fault) return ServoEnd::fault;
     count(sample, safe, start.tick);
     return std::nullopt;
+  }
+
+  /// Compares the device's report with the force of the tick before.
+  void note_delivered(Vec3 delivered_n) noexcept {
+    const Vec3 sent_n = safety_.sent_n();
+    if (dot(sent_n, sent_n) < kComparedN * kComparedN) return;
+    sent_squared_n2_ += dot(sent_n, sent_n);
+    sent_delivered_n2_ += dot(sent_n, delivered_n);
+    report_.delivered_share = sent_delivered_n2_ / sent_squared_n2_;
   }
 
   void take_heat(ServoClock::Time now) noexcept {
@@ -236,10 +255,10 @@ class ServoRun {
   }
 
   void count(const DeviceSample& sample, const SafeForce& safe, std::int64_t tick) noexcept {
-    sink_.record({sample.position_mm, safe.force_n, tick});
+    sink_.record({sample.position_mm, safe.rendered_n, tick});
     ++report_.ticks;
     if (safe.verdict == SafetyVerdict::limited) ++report_.limited_ticks;
-    report_.contact_ticks += safe.force_n.z > 0.0 ? 1 : 0;
+    report_.contact_ticks += safe.rendered_n.z > 0.0 ? 1 : 0;
   }
 
   /// Shows this tick to the watcher and to the flight recorder.
@@ -247,7 +266,7 @@ class ServoRun {
             const SafeForce& safe) noexcept {
     const double late_us = static_cast<double>(start.late.count()) * 1e-3;
     if (hooks_.state != nullptr) {
-      hooks_.state->set({sample, safe.force_n, safe.verdict, start.tick, late_us});
+      hooks_.state->set({sample, safe.rendered_n, safe.verdict, start.tick, late_us});
     }
     if (hooks_.recorder != nullptr) {
       const bool fault = safe.verdict == SafetyVerdict::fault;
@@ -268,7 +287,10 @@ class ServoRun {
   std::int64_t fade_from_;
   std::int64_t fade_ticks_;
   double fade_share_ = 1.0;  ///< at which the fade begins
-  double share_ = 1.0;       ///< follows ServoParameters::force_share
+  double most_support_n2_ = 0.0;
+  double share_ = 1.0;  ///< follows ServoParameters::force_share
+  double sent_squared_n2_ = 0.0;
+  double sent_delivered_n2_ = 0.0;
   std::int64_t end_of_comfort_stop_ = 0;
   ServoEnd end_of_fade_ = ServoEnd::time_limit;
   ServoReport report_;

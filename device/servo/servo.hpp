@@ -30,7 +30,7 @@ class ForceSource {
 /// One tick: where the stylus was, and the force that was sent.
 struct ServoSample {
   Vec3 position_mm;
-  Vec3 force_n;
+  Vec3 force_n;           ///< without the device's support (HapticDevice::support_force_n)
   std::int64_t tick = 0;  ///< place in time since plane-on; an overrun leaves out numbers
 };
 
@@ -74,20 +74,24 @@ struct ServoReport {
   SafetyFault fault = SafetyFault::none;
   DeviceFault device_fault = DeviceFault::none;
   std::int64_t ticks = 0;          ///< recorded samples
-  std::int64_t limited_ticks = 0;  ///< changed by the safety chain
+  std::int64_t limited_ticks = 0;  ///< changed by the safety chain, or by the device's own limits
   std::int64_t contact_ticks = 0;  ///< with a force out of the plane
   std::int64_t overruns = 0;       ///< ticks left out because the loop stood still too long
-  double force_limit_n = 0.0;      ///< in force: the smaller of the options' and the device's
+  /// In force: the smaller of the options' and the device's, less the largest support.
+  double force_limit_n = 0.0;
   /// Measured from the first tick to the last; 0 with fewer than two ticks. In virtual time, that
   /// of the options.
   double rate_hz = 0.0;
   Lateness lateness;  ///< zeros in virtual time
+  /// The share of the commanded force that the device says it exerted (DeviceSample::delivered_n):
+  /// the factor that explains its reports best, over ticks with at least 0.1 N; 0: it says nothing.
+  double delivered_share = 0.0;
 };
 
 /// What a watcher sees of the loop.
 struct ServoState {
   DeviceSample sample;
-  Vec3 force_n;  ///< as sent
+  Vec3 force_n;  ///< as sent, without the device's support
   SafetyVerdict verdict = SafetyVerdict::passed;
   std::int64_t tick = 0;
   double lateness_us = 0.0;  ///< of this tick

@@ -100,7 +100,6 @@ PathPoint ExplorationPath::at(double time_s, std::size_t& stroke) const noexcept
 
 namespace {
 
-constexpr double kMmPerM = 1000.0;
 /// The plane and the time of a hand that is opened by name; nobody watches it for longer.
 constexpr PlaneGeometry kNamedPlane{0.2, 500, 500};
 constexpr double kNamedExploreS = 8.0 * 3600.0;
@@ -119,12 +118,6 @@ void check(const HandOptions& o) {
 double push_share(double time_s) noexcept {
   const double u = std::min(time_s / SimulatedHand::kPushBuildUpS, 1.0);
   return u * u * (3.0 - 2.0 * u);
-}
-
-/// \return the velocity after one tick under a force and a damper, the damper fully implicit
-double velocity_after_tick(double velocity_mm_s, double force_n, double damping_n_s_per_mm,
-                           double tick_per_mass) noexcept {
-  return (velocity_mm_s + tick_per_mass * force_n) / (1.0 + tick_per_mass * damping_n_s_per_mm);
 }
 
 std::vector<DeviceListing> list_simulated(const DeviceSettings&) {
@@ -146,40 +139,41 @@ std::unique_ptr<HapticDevice> open_simulated(const DeviceSettings&) {
 
 }  // namespace
 
-SimulatedHand::SimulatedHand(const HandOptions& options, ExplorationPath path)
-    : options_(options), path_(std::move(path)) {
+SimulatedHand::SimulatedHand(const HandOptions& options, ExplorationPath path,
+                             const DeviceModel& device)
+    : options_(options),
+      path_(std::move(path)),
+      dynamics_(device, kServoTickS),
+      max_force_n_(device.max_force_n > 0.0 ? std::min(device.max_force_n, options.max_force_n)
+                                            : options.max_force_n) {
   check(options);
   last_tick_ = std::llround(options.explore_s * kServoRateHz);
   const Vec2 start_mm = path_.at(0.0, stroke_).position_mm;
-  state_.position_mm = {start_mm.x, start_mm.y, options.start_height_mm};
+  dynamics_.place({start_mm.x, start_mm.y, options.start_height_mm});
 }
 
 DeviceInfo SimulatedHand::info() const {
-  return {"simulated", "", options_.max_force_n, true};
+  return {"simulated", "", max_force_n_, true};
 }
 
 DeviceStatus SimulatedHand::read(DeviceSample& sample) noexcept {
-  sample = state_;
-  sample.sequence = static_cast<std::uint64_t>(tick_) + 1;
+  sample = {dynamics_.read_position_mm(), dynamics_.read_velocity_mm_s(),
+            static_cast<std::uint64_t>(tick_) + 1};
   return tick_ < last_tick_ ? DeviceStatus::ok : DeviceStatus::stopped;
 }
 
 DeviceStatus SimulatedHand::write(Vec3 force_n) noexcept {
   const double time_s = static_cast<double>(tick_) * kServoTickS;
-  const double tick_per_mass = kServoTickS * kMmPerM / options_.mass_kg;
   const PathPoint target = path_.at(time_s, stroke_);
+  const Vec3 tip_mm = dynamics_.true_position_mm();
   const double damping = options_.arm_damping_n_s_per_mm;
-  Vec3& position = state_.position_mm;
-  Vec3& velocity = state_.velocity_mm_s;
   const Vec2 pull_n =
-      options_.arm_stiffness_n_per_mm * (target.position_mm - Vec2{position.x, position.y}) +
+      options_.arm_stiffness_n_per_mm * (target.position_mm - Vec2{tip_mm.x, tip_mm.y}) +
       damping * target.velocity_mm_s;
   const double push_n = options_.push_n * push_share(time_s);
-  velocity.x = velocity_after_tick(velocity.x, force_n.x + pull_n.x, damping, tick_per_mass);
-  velocity.y = velocity_after_tick(velocity.y, force_n.y + pull_n.y, damping, tick_per_mass);
-  velocity.z = velocity_after_tick(velocity.z, force_n.z - push_n, options_.push_damping_n_s_per_mm,
-                                   tick_per_mass);
-  position = position + kServoTickS * velocity;
+  dynamics_.tick(force_n, {{pull_n.x, pull_n.y, -push_n},
+                           options_.mass_kg,
+                           {damping, damping, options_.push_damping_n_s_per_mm}});
   ++tick_;
   return DeviceStatus::ok;
 }

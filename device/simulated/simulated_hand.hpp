@@ -6,6 +6,7 @@
 #include "core/random.hpp"
 #include "core/vec.hpp"
 #include "device/haptic_device.hpp"
+#include "device/model/device_model.hpp"
 
 #include <chrono>
 #include <cstddef>
@@ -69,22 +70,23 @@ struct HandOptions {
   double push_damping_n_s_per_mm = 0.008;  ///< of motion across the plane, >= 0
   double start_height_mm = 15.0;           ///< above the plane, >= 0
   double explore_s = 10.0;                 ///< after which the hand stops, > 0
-  double max_force_n = 3.3;                ///< of the device that it holds, > 0
+  double max_force_n = 3.3;                ///< of the device that it holds, > 0; a model's too
 };
 
 /// The driver "simulated". Along the plane a spring and a damper pull the mass towards the path. A
 /// push, which builds up smoothly while the hand comes down from above, presses it on the plane.
-/// The servo's forces move it. Semi-implicit Euler (damping fully implicit) at the servo's rate, in
-/// virtual time: each `write` is one tick. The motion depends on the options, the path and the
-/// forces alone. Not thread-safe.
+/// The servo's forces move it, through the device that it holds: an ideal one unless a model is
+/// given (device/model). Virtual time: each `write` is one tick. The motion depends on the options,
+/// the path, the device and the forces alone. Not thread-safe.
 class SimulatedHand final : public HapticDevice {
  public:
   /// The time in which the push builds up, s.
   static constexpr double kPushBuildUpS = 0.3;
 
   /// The hand begins above the path's first point.
-  /// \throws std::invalid_argument if an option is out of range
-  SimulatedHand(const HandOptions& options, ExplorationPath path);
+  /// \param device  whose mass adds to the hand's; in the plane frame, its workspace is not in use
+  /// \throws std::invalid_argument if an option or a parameter of the device is out of range
+  SimulatedHand(const HandOptions& options, ExplorationPath path, const DeviceModel& device = {});
 
   [[nodiscard]] DeviceInfo info() const override;
   [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
@@ -99,10 +101,11 @@ class SimulatedHand final : public HapticDevice {
  private:
   HandOptions options_;
   ExplorationPath path_;
+  DeviceDynamics dynamics_;
+  double max_force_n_;  ///< of hand and device, the smaller one
   std::size_t stroke_ = 0;
   std::int64_t tick_ = 0;
   std::int64_t last_tick_;
-  DeviceSample state_;
 };
 
 }  // namespace touchtrial::device

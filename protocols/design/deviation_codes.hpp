@@ -8,6 +8,12 @@
 
 namespace touchtrial::design {
 
+/// Recorded in place of a certificate's hash: the experimenter let the session run on a device with
+/// force that had no valid one.
+inline constexpr const char* kUnverifiedDevice = "UNVERIFIED DEVICE";
+/// The code of that deviation.
+inline constexpr const char* kUnverifiedDeviceCode = "unverified-device";
+
 /// In alphabetical order.
 inline constexpr auto kDeviationCodes = std::to_array<std::string_view>({"answers-lost",
                                                                          "comfort-stop",
@@ -26,11 +32,13 @@ inline constexpr auto kDeviationCodes = std::to_array<std::string_view>({"answer
                                                                          "no-masking-noise",
                                                                          "no-placement",
                                                                          "no-questions-after",
+                                                                         "no-real-time",
                                                                          "no-warm-up",
                                                                          "not-cleaned",
                                                                          "other-certificate",
                                                                          "other-device",
                                                                          "practice-not-passed",
+                                                                         kUnverifiedDeviceCode,
                                                                          "visit-late"});
 
 /// Whether a code is one of them, or names an item of a study's own day sheet: "no-day-sheet-3".

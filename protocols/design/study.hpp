@@ -42,6 +42,9 @@ enum class OnInterruption { repeat, leave_out, restart_block };
 /// The speeds of strokes that the instructions ask for, mm/s. Source: docs/participant-window.md.
 inline constexpr double kSlowestMmS = 50.0;
 inline constexpr double kFastestMmS = 150.0;
+/// The forces across the plane that they ask for, N.
+inline constexpr double kLightestN = 0.5;
+inline constexpr double kStrongestN = 0.8;
 
 /// When a trial is valid: fixed before outcomes are seen. Forces differ between textures, and so do
 /// the path and the contact that forces bend. Whether these are within their limits is therefore

@@ -16,8 +16,14 @@ std::string need_of(device::DeviceReadiness readiness) {
       return "the device is not homed; move its handle through the whole range";
     case device::DeviceReadiness::needs_inkwell:
       return "the device is not calibrated; put the stylus into its inkwell";
+    case device::DeviceReadiness::needs_reset:
+      return "the device is not calibrated; put its arm at the reset position, with all links at "
+             "right angles, hold it still, and press h for here";
     case device::DeviceReadiness::needs_calibration:
-      return "the device is not calibrated; run its vendor's calibration";
+      return "the device is not calibrated; put it at its rest position, or run its vendor's "
+             "calibration";
+    case device::DeviceReadiness::needs_force_on:
+      return "force is switched off at the device; press its force button";
     case device::DeviceReadiness::ready:
       break;
   }
@@ -46,7 +52,8 @@ SupplyState DeviceStation::make_ready() {
   if (need.empty() && armed_) return SupplyState::ready;
   const Attendant::Says says = attendant_.attend(need);
   if (says == Attendant::Says::stop) return SupplyState::stopped;
-  if (says == Attendant::Says::wait || !need.empty()) return SupplyState::not_yet;
+  if (says == Attendant::Says::at_reset && device_) device_->calibrate();
+  if (says != Attendant::Says::arm || !need.empty()) return SupplyState::not_yet;
   device_->rearm();
   armed_ = true;
   return SupplyState::ready;

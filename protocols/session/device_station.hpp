@@ -42,7 +42,12 @@ class AlwaysReady final : public DeviceSupply {
 class Attendant {
  public:
   virtual ~Attendant() = default;
-  enum class Says { wait, arm, stop };
+  enum class Says {
+    wait,
+    arm,
+    stop,
+    at_reset,  ///< the arm is at its reset position: HapticDevice::calibrate
+  };
   /// Called repeatedly. May block for a moment, for instance to draw a screen.
   /// \param need  a line on what is missing and its remedy; empty: nothing is missing, and force
   ///   may come on if the hand is ready for it
@@ -91,7 +96,7 @@ class DeviceStation final : public DeviceSupply {
 };
 
 /// Fills in what a session's first event says about its device and servo thread.
-/// \param certificate  SHA-256 of the device's calibration certificate, hexadecimal, or empty
+/// \param certificate  as StationRecord::calibration
 void describe_station(store::SessionOpening& opening, const device::DeviceInfo& device,
                       const device::SchedulingObtained& scheduling, double rate_hz,
                       const std::string& certificate);

@@ -9,6 +9,17 @@
 
 namespace touchtrial::session {
 
+/// Beside what participants are told.
+enum class HandLevel { low, right, high };
+
+/// How the hand presses across the plane and strokes along it.
+struct HandLevels {
+  HandLevel force = HandLevel::right;
+  HandLevel speed = HandLevel::right;
+
+  friend bool operator==(const HandLevels&, const HandLevels&) = default;
+};
+
 /// What the experimenter is shown. Nothing in it depends on a stimulus or an outcome.
 struct SessionStatus {
   std::string participant;
@@ -23,6 +34,8 @@ struct SessionStatus {
   bool needs_consent = false;          ///< no force until the experimenter consents
   std::chrono::nanoseconds elapsed{};  ///< since the session's opening
   std::string device;                  ///< its name, and what it needs
+  /// While a plane is on in real time, and the hand at it.
+  std::optional<HandLevels> hand;
   // Of the last exploration in real time.
   double rate_hz = 0.0;
   double lateness_p99_us = 0.0;

@@ -27,7 +27,9 @@ std::string with_text(const std::string& words, const std::string& text) {
 class SessionDesk::AttendedParticipant final : public Participant {
  public:
   explicit AttendedParticipant(SessionDesk& desk)
-      : desk_(desk), participant_(desk.parts_.participant) {}
+      : desk_(desk),
+        participant_(desk.parts_.participant),
+        in_real_time_(desk.parts_.explorer.in_real_time()) {}
 
   void see_pictures(const std::vector<std::string>& labels) override {
     participant_.see_pictures(labels);
@@ -48,18 +50,21 @@ class SessionDesk::AttendedParticipant final : public Participant {
   }
   void feel(const device::ServoSample& sample) noexcept override {
     desk_.marks_.feel(sample);
+    if (in_real_time_) desk_.hand_.feel(sample);
     participant_.feel(sample);
   }
 
  private:
   SessionDesk& desk_;
   Participant& participant_;
+  bool in_real_time_;
 };
 
 SessionDesk::SessionDesk(Session& session, const SessionParts& parts)
     : session_(session),
       parts_(parts),
-      marks_(parts.explorer.in_real_time() ? parts.instruments : nullptr, session, parts.rate_hz) {
+      marks_(parts.explorer.in_real_time() ? parts.instruments : nullptr, session, parts.rate_hz),
+      hand_(parts.key.study.trials.validity, parts.rate_hz) {
   status_.participant = parts.participant_name;
   status_.device = parts.device_name;
 }
@@ -103,6 +108,7 @@ void SessionDesk::show() {
     status_.of = begun + session_.presentations_left() - (session_.in_presentation() ? 1 : 0);
   }
   status_.elapsed = now();
+  status_.hand = hand_.levels();
   shown_ = std::chrono::steady_clock::now();
   parts_.experimenter.show(status_);
 }
@@ -134,7 +140,9 @@ std::optional<StepReply> SessionDesk::attend(const Step& step) {
 Exploration SessionDesk::explore(const engine::RenderingModel& model, const PlaneGeometry& plane,
                                  const device::ServoOptions& options, store::Trace& trace) {
   AttendedParticipant participant(*this);
+  hand_.begin();
   Exploration done = parts_.explorer.explore(model, plane, participant, options, trace);
+  hand_.begin();
   parts_.clock.pass(done.lasted);
   status_.rate_hz = done.servo.rate_hz;
   status_.lateness_p99_us = done.servo.lateness.p99_us;

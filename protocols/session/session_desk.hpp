@@ -4,6 +4,7 @@
 /// Private to protocols/session.
 #pragma once
 
+#include "protocols/session/hand_meter.hpp"
 #include "protocols/session/instruments.hpp"
 #include "protocols/session/session_runner.hpp"
 
@@ -100,6 +101,7 @@ class SessionDesk {
   std::optional<std::string> left_;
   bool is_aborted_ = false;  ///< after the last trial, when there is nothing left to stop
   SessionStatus status_;
+  HandMeter hand_;
   std::deque<Request> postponed_;
   std::optional<std::string> reason_;  ///< of an interruption that the experimenter asked for
   bool is_stopped_ = false;            ///< a comfort stop is not settled yet

@@ -132,13 +132,14 @@ struct ScreenRecord {
 
 /// `opened`, in real time: the device that the hand was on. Says nothing about stimuli.
 struct StationRecord {
-  std::string model;          ///< as the device reports it; may be empty
-  std::string firmware;       ///< likewise
-  double max_force_n = 0.0;   ///< of the device
-  bool visual = false;        ///< shown on a screen instead of felt: pilot sessions only
-  double rate_hz = 0.0;       ///< requested rate of the servo
-  std::string scheduling;     ///< that the servo's thread obtained
-  std::string calibration{};  ///< SHA-256 of the device's certificate, hexadecimal; empty: none
+  std::string model;         ///< as the device reports it; may be empty
+  std::string firmware;      ///< likewise
+  double max_force_n = 0.0;  ///< of the device
+  bool visual = false;       ///< shown on a screen instead of felt: pilot sessions only
+  double rate_hz = 0.0;      ///< requested rate of the servo
+  std::string scheduling;    ///< that the servo's thread obtained
+  /// SHA-256 of the device's certificate, hexadecimal; design::kUnverifiedDevice; or empty: none.
+  std::string calibration{};
   std::optional<ScreenRecord> screen{};  ///< only of sessions before a window
 
   friend bool operator==(const StationRecord&, const StationRecord&) = default;

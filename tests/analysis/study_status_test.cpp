@@ -1,7 +1,9 @@
 #include "analysis/study_status.hpp"
 
 #include "analysis/fake_study.hpp"
+#include "analysis/page/study_document.hpp"
 #include "analysis/text_matching.hpp"
+#include "protocols/design/deviation_codes.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -94,6 +96,40 @@ TEST_CASE("A study's status says who is done, who is open, who is to come and wh
   CHECK(status.orders->orders == 2);
   CHECK(status.orders->complete == 1);
   CHECK(status.orders->open == std::vector<int>{0});
+}
+
+TEST_CASE("A session without a valid certificate is stamped in status, reports and their tables") {
+  FakeStudy study(design::identification::classification(), {.simulated = false});
+  FakeSession felt{.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()};
+  felt.station = store::StationRecord();
+  felt.station->calibration = "c0ffee";
+  study.add(felt);
+  CHECK_FALSE(analysis::provenance_of(study.store(), "study.db").unverified);
+  felt.participant = "P02";
+  felt.enrolment = 2;
+  felt.station->calibration = design::kUnverifiedDevice;
+  study.add(felt);
+  const StudyStatus status = analysis::status_of(study.store(), {});
+  CHECK(person(status, "P02").certificate == "UNVERIFIED DEVICE");
+  CHECK(has_left(status, "P02: UNVERIFIED DEVICE"));
+  CHECK_FALSE(has_left(status, "P01"));
+  CHECK(contains(analysis::status_text(status, {}), "UNVERIFIED DEVICE"));
+  const analysis::Provenance provenance = analysis::provenance_of(study.store(), "study.db");
+  CHECK(provenance.unverified);
+  CHECK(analysis::further_stamp(true, provenance) == "PILOT, UNVERIFIED DEVICE");
+  CHECK(analysis::further_stamp(false, provenance) == "UNVERIFIED DEVICE");
+}
+
+TEST_CASE("A session that was resumed without a valid certificate is stamped too") {
+  FakeStudy study(design::identification::classification(), {.simulated = false});
+  FakeSession felt{.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()};
+  felt.station = store::StationRecord();
+  felt.station->calibration = "c0ffee";
+  felt.before_trials = [](store::SessionRecorder& recorder) {
+    recorder.deviated(milliseconds(1), {"unverified-device", "resumed"});
+  };
+  study.add(felt);
+  CHECK(analysis::provenance_of(study.store(), "study.db").unverified);
 }
 
 TEST_CASE("A study's status has no word of stimuli and answers, and is the same as JSON") {

@@ -17,13 +17,16 @@ namespace {
 /// A study of two pictures of different sizes, 0.2 mm per pixel, beside empty device settings.
 class FitFolder {
  public:
-  FitFolder(int side_px, int other_side_px) {
+  /// \param rendering  a member of the study file, with a comma in front; may be empty
+  FitFolder(int side_px, int other_side_px, const std::string& rendering = "") {
     write_png(folder_.path() / "a.png", GreyImage(side_px, other_side_px, 90));
     write_png(folder_.path() / "b.png", GreyImage(other_side_px, side_px, 90));
-    replace_file(folder_.path() / "devices.json", "{}");
+    replace_file(folder_.path() / "devices.json",
+                 R"({"openhaptics": {"library": ")" TOUCHTRIAL_FAKE_HD R"("}})");
     replace_file(folder_.path() / "study.json", R"({"study": "flat", "protocol": "classification",
       "classes": [{"label": "a", "images": ["a.png"]}, {"label": "b", "images": ["b.png"]}],
-      "methods": [{"name": "adaptive"}]})");
+      "methods": [{"name": "adaptive"}])" + rendering +
+                                                    "}");
   }
 
   [[nodiscard]] ProgramResult fit(std::vector<std::string> more) const {
@@ -75,6 +78,35 @@ TEST_CASE("device fit accepts any plane for a device without a frame of its own"
   const ProgramResult result = FitFolder(600, 600).fit({"--device", "simulated"});
   CHECK(result.exit_code == 0);
   CHECK_THAT(result.output, holds_text("120.0 x 120.0 mm") && holds_text("fits"));
+}
+
+TEST_CASE("device fit compares a study's stiffness with what the device says that it renders") {
+  const auto fit = [](const std::string& wall, std::vector<std::string> more) {
+    more.insert(more.end(), {"--device", "openhaptics"});
+    return FitFolder(
+               200, 200,
+               R"(, "rendering": {"texture_stiffness_n_per_mm": 0.3, "stiffness_n_per_mm": )" +
+                   wall + "}")
+        .fit(more);
+  };
+  const ProgramResult below = fit("0.3", {"--json"});
+  INFO(below.errors);
+  REQUIRE(below.exit_code == 0);
+  CHECK(below.errors.empty());
+  const json stiffness = json::parse(below.output).at("stiffness");
+  CHECK(stiffness.at("wall_n_per_mm") == 0.3);
+  CHECK(stiffness.at("limit_n_per_mm").get<double>() == Approx(0.4));
+  CHECK(stiffness.at("damping_limit_n_s_per_mm").get<double>() == Approx(0.004));
+
+  const ProgramResult at = fit("0.4", {});
+  CHECK(at.exit_code == 0);
+  CHECK_THAT(at.output, holds_text("0.4 N/mm of the wall") && holds_text("at most 0.4 N/mm"));
+  CHECK_THAT(at.errors, holds_text("at the device's own limit"));
+
+  const ProgramResult beyond = fit("0.5", {});
+  CHECK(beyond.exit_code == 1);
+  CHECK(line_count(beyond.errors) == 1);
+  CHECK_THAT(beyond.errors, holds_text("rendering.stiffness_n_per_mm of 0.5 N/mm is beyond"));
 }
 
 TEST_CASE("device fit refuses a device or an orientation that does not exist") {

@@ -47,6 +47,16 @@ TEST_CASE("device list prints the same as JSON") {
   for (const char* key : {"model", "serial", "where"}) CHECK(simulated->at(key).is_string());
 }
 
+TEST_CASE("device list says what a device renders, for studies") {
+  const TempFolder folder;
+  const std::string settings =
+      settings_in(folder, R"({"openhaptics": {"library": ")" TOUCHTRIAL_FAKE_HD R"("}})");
+  const ProgramResult result =
+      run_touchtrial(folder.path(), {"device", "list", "--settings", settings});
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.output, holds_text("renders a stiffness of at most 0.4 N/mm and a damping of"));
+}
+
 TEST_CASE("device list refuses settings that break their schema with the place") {
   const TempFolder folder;
   const std::string settings = settings_in(folder, R"({"falcon": {"firmwear": "x"}})");
@@ -55,6 +65,22 @@ TEST_CASE("device list refuses settings that break their schema with the place")
   CHECK(result.exit_code == 2);
   CHECK(line_count(result.errors) == 1);
   CHECK_THAT(result.errors, holds_text("/falcon/firmwear") && holds_text("firmware"));
+}
+
+TEST_CASE("device models lists the shipped models, with a mark at every guess") {
+  const TempFolder folder;
+  const ProgramResult table = run_touchtrial(folder.path(), {"device", "models"});
+  REQUIRE(table.exit_code == 0);
+  CHECK_THAT(table.output, holds_text("touch") && holds_text("Novint Falcon"));
+  CHECK_THAT(table.output, holds_text("0.15?") && holds_text("4.9"));
+  const ProgramResult result = run_touchtrial(folder.path(), {"device", "models", "--json"});
+  REQUIRE(result.exit_code == 0);
+  const json models = json::parse(result.output).at("models");
+  const auto falcon =
+      std::ranges::find_if(models, [](const json& model) { return model.at("name") == "falcon"; });
+  REQUIRE(falcon != models.end());
+  CHECK(falcon->at("max_force_n") == 4.9);
+  CHECK(falcon->at("provenance").at("max_force_n").at("confidence") == "derived");
 }
 
 TEST_CASE("the command device requires a command of its own") {

@@ -1,4 +1,4 @@
-// touchtrial device test and device calibrate as people and scripts run them. Every test waits for
+// touchtrial device test and device accept as people and scripts run them. Every test waits for
 // the program's output, never for a time, and tolerates a machine that stalls: the program must
 // then end with a fault.
 #include "app/touchtrial_process.hpp"
@@ -192,15 +192,115 @@ TEST_CASE("device list and test use the library that the settings name") {
   CHECK((code == 0 || stood_still));
 }
 
-TEST_CASE("device calibrate requires motors, and every answer") {
-  const ProgramResult simulated = DeviceFolder().run("calibrate", {"simulated"});
+TEST_CASE("device initialise asks before it moves anything, and says who must do it instead") {
+  const ProgramResult simulated = DeviceFolder().run("initialise", {"simulated"});
+  CHECK(simulated.exit_code == 2);
+  CHECK_THAT(simulated.errors, holds_text("touchtrial device test simulated"));
+
+  const DeviceFolder folder(dhd_settings());
+  const ProgramResult unasked = folder.run("initialise", {"dhd"});
+  CHECK(unasked.exit_code == 2);
+  CHECK_THAT(unasked.errors, holds_text("the arm will move") && holds_text("--yes"));
+  const ProgramResult by_hand = folder.run("initialise", {"dhd", "--yes"});
+  CHECK(by_hand.exit_code == 1);
+  CHECK(line_count(by_hand.errors) == 1);
+  CHECK_THAT(by_hand.errors, holds_text("libdrd.so") && holds_text("rest position"));
+}
+
+TEST_CASE("device accept requires motors, every answer, and a device or a model") {
+  const ProgramResult simulated = DeviceFolder().run("accept", {"simulated"});
   CHECK(simulated.exit_code == 1);
   CHECK(line_count(simulated.errors) == 1);
   CHECK_THAT(simulated.errors, holds_text("no motors"));
+  const ProgramResult nothing = DeviceFolder().run("accept", {});
+  CHECK(nothing.exit_code == 2);
+  CHECK_THAT(nothing.errors, holds_text("--emulate"));
 
   const DeviceFolder folder(dhd_settings());
-  const ProgramResult silent = folder.run("calibrate", {"dhd"});
+  const ProgramResult silent = folder.run("accept", {"dhd"});
   CHECK(silent.exit_code == 2);
-  CHECK_THAT(silent.errors, holds_text("Then press Enter") && holds_text("answer every prompt"));
+  CHECK_THAT(silent.errors, holds_text("no force acts") && holds_text("answer every prompt"));
   CHECK_FALSE(std::filesystem::exists(folder.path("dhd-certificate.json")));
+}
+
+TEST_CASE("device accept ends at q and at a signal, without a certificate") {
+  const DeviceFolder folder(dhd_settings());
+  // With --silence it works in a process of its own.
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"dhd"}, std::vector<std::string>{"dhd", "--silence"}}) {
+    ChildProcess quit = folder.start("accept", words);
+    REQUIRE(quit.says("no force acts"));
+    quit.write("q\n");
+    CHECK(quit.finish() == 1);
+    CHECK_THAT(quit.output(), holds_text("nothing was written"));
+    ChildProcess ended = folder.start("accept", words);
+    REQUIRE(ended.says("no force acts"));
+    ended.send_signal(SIGTERM);
+    CHECK(ended.finish() == 128 + SIGTERM);
+  }
+
+  ChildProcess signalled = folder.start("accept", {"dhd"});
+  REQUIRE(signalled.says("no force acts"));
+  signalled.send_signal(SIGINT);
+  CHECK(signalled.finish() == 128 + SIGINT);
+  CHECK_THAT(signalled.output(), holds_text("stopped by SIGINT"));
+  CHECK_FALSE(std::filesystem::exists(folder.path("dhd-certificate.json")));
+}
+
+TEST_CASE("device accept that leaves out every step writes a certificate that fails") {
+  const DeviceFolder folder(dhd_settings());
+  ChildProcess skipping = folder.start("accept", {"dhd"});
+  skipping.write("s\nwhat\ns\ns\n");
+  const int code = skipping.finish();
+  INFO(skipping.output());
+  CHECK(code == 1);
+  CHECK_THAT(skipping.output(), holds_text("press Enter to go on") && holds_text("FAILED"));
+  const json certificate = json::parse(text_of(read_file(folder.path("dhd-certificate.json"))));
+  CHECK(certificate.at("passed") == false);
+  CHECK(certificate.at("driver") == "dhd");
+  CHECK(certificate.at("emulated") == "");
+  CHECK(certificate.at("not_measured").size() >= 3);
+}
+
+TEST_CASE("device accept rehearses on a device model, and says that it proves no device") {
+  const DeviceFolder folder;
+  ChildProcess rehearsal = folder.start("accept", {"--emulate", "falcon"});
+  const int code = rehearsal.finish();
+  INFO(rehearsal.output());
+  REQUIRE(code == 0);
+  CHECK_THAT(rehearsal.output(),
+             holds_text("REHEARSAL") && holds_text("proves the program, not a device"));
+  const json certificate =
+      json::parse(text_of(read_file(folder.path("emulated-falcon-certificate.json"))));
+  CHECK(certificate.at("emulated") == "falcon");
+  CHECK(certificate.at("passed") == true);
+  const std::string page = text_of(read_file(folder.path("emulated-falcon-certificate.html")));
+  CHECK_THAT(page, holds_text("REHEARSAL") && holds_text("<svg"));
+  const json model = json::parse(text_of(read_file(folder.path("emulated-falcon-model.json"))));
+  CHECK(model.at("mass_kg") > 0.1);
+  CHECK(model.at("provenance").at("mass_kg").at("confidence") == "derived");
+}
+
+TEST_CASE("device accept refuses a broken emulated device, and takes an accelerometer's record") {
+  const DeviceFolder folder;
+  replace_file(folder.path("broken.json"),
+               R"({"name": "broken", "mass_kg": 0.1, "coulomb_n": 0.2, "max_force_n": 4,
+                   "planted": {"force_sign_scale": [1, 1, -1]}})");
+  std::string record = "time_s,x_m_s2,y_m_s2,z_m_s2\n";
+  for (int i = 0; i < 2000; ++i)
+    record += std::to_string(0.001 * i) + ",0,0," + std::to_string(i % 2) + "\n";
+  replace_file(folder.path("wall.csv"), record);
+  const std::vector<std::string> words = {
+      "--emulate",       folder.path("broken.json").string(),
+      "--accelerometer", "wall=" + folder.path("wall.csv").string(),
+      "--certificate",   folder.path("c.json").string(),
+      "--json"};
+  const ProgramResult result = folder.run("accept", words);
+  INFO(result.errors);
+  CHECK(result.exit_code == 1);
+  const json certificate = json::parse(result.output);
+  CHECK(certificate.at("passed") == false);
+  CHECK_THAT(certificate.at("failures").dump(), holds_text("axis z") && holds_text("sign"));
+  CHECK(certificate.at("spectra").at(0).at("felt") == "wall");
+  CHECK(folder.run("accept", {"--emulate", "falcn"}).exit_code == 2);
 }

@@ -161,6 +161,46 @@ TEST_CASE("a run that is refused leaves nothing, and the corrected command runs"
   CHECK(run(study, "P01").exit_code == 0);
 }
 
+TEST_CASE("a session on a device with force needs an acceptance of that very device") {
+  const StudyFolder study;
+  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  replace_file(study.path() / "devices.json",
+               json{{"dhd", {{"library", TOUCHTRIAL_FAKE_DHD}}}}.dump());
+  const auto refused = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> command = {"run",
+                                        study.in("cloths.json"),
+                                        "--participant",
+                                        "P01",
+                                        "--db",
+                                        study.in("db"),
+                                        "--device",
+                                        "dhd",
+                                        "--no-sound",
+                                        "--settings",
+                                        study.in("devices.json")};
+    command.insert(command.end(), more.begin(), more.end());
+    const ProgramResult result = study.run(command);
+    CHECK(result.exit_code != 0);
+    CHECK_FALSE(fs::exists(study.path() / "db"));
+    return result.errors;
+  };
+  for (const bool is_pilot : {false, true}) {
+    const std::vector<std::string> kind =
+        is_pilot ? std::vector<std::string>{"--pilot"} : std::vector<std::string>{};
+    CHECK_THAT(refused(kind),
+               holds_text("touchtrial device accept dhd") && holds_text("--allow-unverified"));
+  }
+  REQUIRE(study
+              .run({"device", "accept", "--emulate", "omega_3", "--certificate",
+                    study.in("rehearsed.json")})
+              .exit_code == 0);
+  CHECK_THAT(refused({"--certificate", study.in("rehearsed.json")}),
+             holds_text("proves no device"));
+  // Only the terminal is missing then.
+  CHECK_THAT(refused({"--allow-unverified"}),
+             holds_text("UNVERIFIED DEVICE") && holds_text("is not a terminal"));
+}
+
 TEST_CASE("a database in a folder that is not there is refused before anything else") {
   const StudyFolder study;
   const ProgramResult refused =

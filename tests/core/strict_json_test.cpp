@@ -44,3 +44,12 @@ TEST_CASE("comments mean nothing, wherever they stand outside a text") {
   CHECK(refusal_of_text("{\"a\": 1} /* open").find("line 1") != std::string::npos);
   CHECK(refusal_of_text("{\"a\": 1} # no comment").find("line 1") != std::string::npos);
 }
+
+TEST_CASE("an object with anybody's keys is handed on as JSON, without its comments") {
+  const JsonObject object =
+      parse_strict_json("{\"a\": {\"b\": [1, 2.5], /* c */ \"d\": \"\\u0000\"}, \"e\": 1}",
+                        "x.json")
+          .object({"a", "e"});
+  CHECK(object.at("a").any_object() == R"({"b":[1,2.5],"d":"\u0000"})");
+  CHECK_THROWS_WITH(object.at("e").any_object(), "x.json: /e: must be an object, not a number");
+}

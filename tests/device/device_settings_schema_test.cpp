@@ -43,7 +43,8 @@ struct ObjectPlace {
 void collect(const json& node, const Pointer& place, std::vector<Leaf>& leaves,
              std::vector<ObjectPlace>& objects) {
   const json rule = resolved(node);
-  if (rule.at("type") != "object") {
+  // Of an object that may have any key, the reader knows none.
+  if (rule.at("type") != "object" || rule.at("additionalProperties") == true) {
     leaves.push_back({place, rule});
     return;
   }
@@ -133,8 +134,8 @@ TEST_CASE("the schema of device settings and the reader know the same keys") {
     for (const auto& [key, unused] : object.rule.at("properties").items()) in_schema.insert(key);
     CHECK(keys_of_reader(object.place) == in_schema);
   }
-  CHECK(objects.size() == 1 + 6 + 6 + 3 + 3);
-  CHECK(leaves.size() == 4 + 3 + 7 + 1 + 6 * 4 + 3 * 2 + 5 + 2);
+  CHECK(objects.size() == 1 + 8 + 8 + 5 + 3);
+  CHECK(leaves.size() == 7 + 3 + 7 + 2 + 5 + 1 + 8 * 4 + 5 * 2 + 5 + 2);
 }
 
 TEST_CASE("the reader keeps the bounds of the schema of device settings") {
@@ -144,7 +145,7 @@ TEST_CASE("the reader keeps the bounds of the schema of device settings") {
     bounds += holds_bound(leaf, "maximum", 1.0, true) ? 1 : 0;
     bounds += holds_bound(leaf, "exclusiveMinimum", -1.0, false) ? 1 : 0;
   }
-  CHECK(bounds == 2 * (1 + 1 + 1 + 5 + 6 * 4 + 3 + 3));
+  CHECK(bounds == 2 * (5 + 1 + 5 + 3 + 8 * 4 + 5 + 3));
 }
 
 TEST_CASE("the reader keeps the types of the schema of device settings") {
@@ -159,6 +160,7 @@ TEST_CASE("the reader keeps the types of the schema of device settings") {
       const bool fits = (type == "string" && value.is_string() && is_word) ||
                         ((type == "number" || type == "integer") && value.is_number()) ||
                         (type == "boolean" && value.is_boolean()) ||
+                        (type == "object" && value.is_object()) ||
                         (type == "array" && value.is_array());
       // [0, 1, 2] is neither a gravity bias nor a size: its numbers are too large, or too small.
       if (fits && (leaf.place.back() == "gravity_bias_n" || leaf.place.back() == "workspace_mm"))
@@ -194,9 +196,9 @@ TEST_CASE("the reader keeps the words, lengths and defaults of the schema of dev
     }
     if (leaf.rule.contains("default")) CHECK(refusal(leaf.place, leaf.rule.at("default")).empty());
   }
-  CHECK(words == 3 + 1);
-  CHECK(lists == 6);
-  CHECK(texts == 6 + 3);
+  CHECK(words == 5 + 1);
+  CHECK(lists == 8);
+  CHECK(texts == 9 + 3);
 }
 
 TEST_CASE("the defaults of the schema of device settings are the reader's") {
@@ -216,6 +218,9 @@ TEST_CASE("the defaults of the schema of device settings are the reader's") {
   CHECK(written.falcon.serial == bare.falcon.serial);
   CHECK(written.falcon.gravity_bias_n == bare.falcon.gravity_bias_n);
   CHECK(written.falcon.led_order == bare.falcon.led_order);
+  CHECK(written.falcon.motor_peak == bare.falcon.motor_peak);
+  CHECK(written.falcon.motor_continuous == bare.falcon.motor_continuous);
+  CHECK(written.falcon.motor_peak_s == bare.falcon.motor_peak_s);
   CHECK(written.openhaptics.library == bare.openhaptics.library);
   CHECK(written.openhaptics.device == bare.openhaptics.device);
   CHECK(written.openhaptics.rate_hz == bare.openhaptics.rate_hz);
@@ -223,9 +228,12 @@ TEST_CASE("the defaults of the schema of device settings are the reader's") {
   CHECK(written.dhd.index == bare.dhd.index);
   CHECK(written.dhd.gravity_compensation == bare.dhd.gravity_compensation);
   CHECK(written.dhd.effector_mass_kg == bare.dhd.effector_mass_kg);
-  CHECK(written.dhd.max_force_n == bare.dhd.max_force_n);
-  CHECK(written.dhd.workspace_mm == bare.dhd.workspace_mm);
-  CHECK(written.dhd.continuous_force_n == bare.dhd.continuous_force_n);
+  CHECK(written.plugin.settings == bare.plugin.settings);
+  CHECK(written.inverse3.host == bare.inverse3.host);
+  CHECK(written.inverse3.port == bare.inverse3.port);
+  CHECK(written.inverse3.events_port == bare.inverse3.events_port);
+  CHECK(written.inverse3.device_id == bare.inverse3.device_id);
+  CHECK(written.inverse3.max_force_n == bare.inverse3.max_force_n);
 }
 
 TEST_CASE("examples of the schema of device settings are accepted") {

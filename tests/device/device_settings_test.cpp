@@ -29,16 +29,22 @@ bool is_refused(const std::string& text, const std::string& part) {
 TEST_CASE("device settings give every setting of the drivers") {
   const device::DeviceSettings settings = parsed(R"({
     "falcon": {"firmware": "fw.bin", "serial": "F7", "gravity_bias_n": [0, 0.5, -0.1],
-               "led_order": [2, 0, 1]},
+               "led_order": [0, 2, 1], "motor_peak": 4000, "motor_continuous": 900,
+               "motor_peak_s": 12.5},
     "openhaptics": {"library": "/opt/libHD.so", "device": "Left", "rate_hz": 2000},
     "dhd": {"library": "libdhd.so.3", "index": 1, "gravity_compensation": false,
             "effector_mass_kg": 0.2, "max_force_n": 12, "continuous_force_n": 4,
             "workspace_mm": [190, 190, 130]},
+    "inverse3": {"host": "rig-2", "port": 8500, "events_port": 9000, "device_id": "049D",
+                 "max_force_n": 4},
     "replay": {"trace": "traces/one.csv"}})");
   CHECK(settings.falcon.firmware == "/lab/fw.bin");
   CHECK(settings.falcon.serial == "F7");
   CHECK(settings.falcon.gravity_bias_n == Vec3{0.0, 0.5, -0.1});
-  CHECK(settings.falcon.led_order == std::array<int, 3>{2, 0, 1});
+  CHECK(settings.falcon.led_order == std::array<int, 3>{0, 2, 1});
+  CHECK(settings.falcon.motor_peak == 4000);
+  CHECK(settings.falcon.motor_continuous == 900);
+  CHECK(settings.falcon.motor_peak_s == 12.5);
   CHECK(settings.openhaptics.library == "/opt/libHD.so");
   CHECK(settings.openhaptics.device == "Left");
   CHECK(settings.openhaptics.rate_hz == 2000);
@@ -49,6 +55,11 @@ TEST_CASE("device settings give every setting of the drivers") {
   CHECK(settings.dhd.max_force_n == 12.0);
   CHECK(settings.dhd.continuous_force_n == 4.0);
   CHECK(settings.dhd.workspace_mm == Vec3{190.0, 190.0, 130.0});
+  CHECK(settings.inverse3.host == "rig-2");
+  CHECK(settings.inverse3.port == 8500);
+  CHECK(settings.inverse3.events_port == 9000);
+  CHECK(settings.inverse3.device_id == "049D");
+  CHECK(settings.inverse3.max_force_n == 4.0);
   CHECK(settings.replay.trace == "/lab/traces/one.csv");
 }
 
@@ -60,6 +71,8 @@ TEST_CASE("a control character in a text is refused with its place") {
   CHECK(is_refused(R"({"falcon": {"firmware": "a\u0000b"}})", "/falcon/firmware"));
   CHECK(is_refused(R"({"falcon": {"serial": "A\nB"}})", "/falcon/serial"));
   CHECK(is_refused(R"({"replay": {"trace": "\u007f"}})", "/replay/trace"));
+  CHECK(is_refused(R"({"inverse3": {"host": "a\nb"}})", "/inverse3/host"));
+  CHECK(is_refused(R"({"inverse3": {"host": ""}})", "/inverse3/host"));
   CHECK(parsed(R"({"falcon": {"serial": "Größe 7"}})").falcon.serial == "Größe 7");
 }
 
@@ -131,7 +144,7 @@ TEST_CASE("device settings are refused with the place and a remedy") {
 TEST_CASE("the example settings are accepted and relative to their file") {
   const fs::path file = fs::path(TOUCHTRIAL_SOURCE_DIR) / "config" / "devices.json";
   const device::DeviceSettings settings = device::read_device_settings(file);
-  CHECK(settings.falcon.firmware == file.parent_path() / "falcon-firmware.bin");
+  CHECK(settings.falcon.firmware == file.parent_path() / "nvent_firmware.bin");
   CHECK(settings.use_of("dhd").limits.max_speed_mm_s == 1000.0);
 }
 

@@ -43,6 +43,19 @@ TEST_CASE("a plane's positions count from its top-left corner") {
   }
 }
 
+TEST_CASE("a device's support is asked for in its own frame and turned into the plane's") {
+  for (const Axes& axes : {kTable, kWall}) {
+    ScriptedDevice device;
+    device.support_n = 0.7 * kUp;
+    device::PlacedDevice placed(device, {axes.orientation, {3.0, 5.0, -7.0}});
+    device::DeviceSample sample;
+    REQUIRE(placed.read(sample) == device::DeviceStatus::ok);
+    const Vec3 plane_n = placed.support_force_n(sample);
+    CHECK(norm(plane_n.x * axes.x + plane_n.y * axes.y + plane_n.z * axes.z - 0.7 * kUp) < 1e-12);
+    CHECK(norm(device.supported_mm - Vec3{0.0, 0.0, -1.0}) < 1e-12);
+  }
+}
+
 TEST_CASE("a plane's force pushes the hand on a Falcon out of the plane, however it stands") {
   for (const Axes& axes : {kTable, kWall}) {
     device::falcon::FalconEmulator emulator({.firmware_runs = true, .homed = true});

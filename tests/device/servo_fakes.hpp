@@ -27,11 +27,17 @@ class ScriptedDevice final : public device::HapticDevice {
     return static_cast<int>(written.size()) == fails_at_write ? device::DeviceStatus::fault
                                                               : device::DeviceStatus::ok;
   }
+  [[nodiscard]] Vec3 support_force_n(const device::DeviceSample& sample) noexcept override {
+    supported_mm = sample.position_mm;
+    return support_n;
+  }
   void halt() noexcept override {}
   void rearm() noexcept override {}
   [[nodiscard]] device::DeviceFault fault() const noexcept override { return device_fault; }
 
   double max_force_n = 3.3;
+  Vec3 support_n;
+  Vec3 supported_mm;  ///< where it was asked for the last support
   int ticks = 1'000'000;
   int fails_at_write = 0;
   device::DeviceStatus end = device::DeviceStatus::stopped;

@@ -167,4 +167,32 @@ TEST_CASE("a session on a device that is too small is refused with numbers and a
       "centre_mm"));
 }
 
+TEST_CASE("a study is refused on a device that does not render its stiffness or damping") {
+  device::DeviceInfo device;
+  device.name = "touch";
+  device.max_stiffness_n_per_mm = static_cast<double>(0.4F);
+  device.max_damping_n_s_per_mm = 0.004;
+  CHECK(device::check_stiffness({0.3, 0.3, 0.003}, device).empty());
+  CHECK(device::check_stiffness({9.0, 9.0, 9.0}, {}).empty());
+  // A library gives its limit in single precision: the default wall is at it, not beyond.
+  CHECK_THAT(device::check_stiffness({0.4, 0.3, 0.0}, device),
+             holds_text("rendering.stiffness_n_per_mm of 0.4 N/mm is at the device's own limit") &&
+                 holds_text("at most 0.36"));
+  CHECK(refuses<DeviceError>(
+      [&] {
+        (void)device::check_stiffness({0.41, 0.3, 0.0}, device);
+      },
+      "stiffness_n_per_mm of 0.41 N/mm is beyond"));
+  CHECK(refuses<DeviceError>(
+      [&] {
+        (void)device::check_stiffness({0.3, 0.5, 0.0}, device);
+      },
+      "texture_stiffness_n_per_mm of 0.5"));
+  CHECK(refuses<DeviceError>(
+      [&] {
+        (void)device::check_stiffness({0.3, 0.3, 0.005}, device);
+      },
+      "damping_n_s_per_mm of 0.005 N s/mm"));
+}
+
 }  // namespace touchtrial

@@ -276,6 +276,26 @@ TEST_CASE("the console shows the participant's stop until it is settled") {
   });
 }
 
+TEST_CASE("the console marks the levels of the hand at the plane, each another way") {
+  using session::HandLevel;
+  Room room;
+  room.run([&] {
+    session::SessionStatus shown = status("exploring");
+    room.console.show(shown);
+    std::vector<engine::ColourImage> pictures = {room.window.console_picture()};
+    for (const HandLevel force : {HandLevel::low, HandLevel::right, HandLevel::high}) {
+      for (const HandLevel speed : {HandLevel::low, HandLevel::right, HandLevel::high}) {
+        shown.hand = session::HandLevels{force, speed};
+        room.console.show(shown);
+        pictures.push_back(room.window.console_picture());
+      }
+    }
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) CHECK(pictures[i] != pictures[k]);
+    }
+  });
+}
+
 TEST_CASE("a missing monitor of the console is named") {
   const auto screen = VirtualScreen::open();
   session::Experimenter nobody;
@@ -301,6 +321,9 @@ TEST_CASE("screenshots of every state of the console, for TOUCHTRIAL_SCREENSHOTS
     room.console.show(status());
     keep(room.window.console_picture(), "console");
     const Buttons buttons = buttons_of(room.window.console_picture());
+    session::SessionStatus felt = status("exploring");
+    felt.hand = session::HandLevels{session::HandLevel::right, session::HandLevel::low};
+    room.console.show(felt);
     room.click(buttons.note);
     room.type("R o o m space i s space h o t");
     keep(room.window.console_picture(), "console-note");
@@ -312,7 +335,7 @@ TEST_CASE("screenshots of every state of the console, for TOUCHTRIAL_SCREENSHOTS
     room.console.show(stopped());
     keep(room.window.console_picture(), "console-stopped");
     room.window.show_exploring({0.2, 256, 256});
-    room.console.show(status("exploring"));
+    room.console.show(felt);
     keep(room.window.console_picture(), "console-exploring");
     room.screen->resize_window(kConsoleTitle, 1280, 720);
     room.settle();

@@ -214,6 +214,28 @@ TEST_CASE("force comes on only by a key that is pressed when nothing is missing"
   CHECK(all_requests(experimenter).at(0).text == "fire alarm");
 }
 
+TEST_CASE("the arm is at its reset position by a key that is pressed when the line asks for it") {
+  TypedTerminal typed;
+  app::TerminalExperimenter experimenter(typed.terminal());
+  typed.keys = "h";
+  CHECK_FALSE(experimenter.request());
+  CHECK(experimenter.attend("put the arm at its place") == session::Attendant::Says::wait);
+  typed.keys = "h";
+  CHECK(experimenter.attend("put the arm at its place") == session::Attendant::Says::at_reset);
+  CHECK(experimenter.attend("put the arm at its place") == session::Attendant::Says::wait);
+  typed.keys = "h";
+  CHECK(experimenter.attend("") == session::Attendant::Says::wait);
+}
+
+TEST_CASE("the line says how the hand presses and strokes while it is at the plane") {
+  session::SessionStatus status = exploring();
+  status.rate_hz = 1000.0;
+  CHECK_THAT(app::status_line(status), holds_text("1000/s") && !holds_text("force"));
+  status.hand = session::HandLevels{session::HandLevel::low, session::HandLevel::high};
+  CHECK_THAT(app::status_line(status),
+             holds_text("force low  speed high") && !holds_text("1000/s"));
+}
+
 TEST_CASE("requests from other sources come after the typed ones") {
   TypedTerminal typed;
   app::TerminalExperimenter experimenter(typed.terminal());

@@ -4,7 +4,11 @@
 #include "device/fakes/loaded_fake.hpp"
 #include "device/registry.hpp"
 #include "support/catch.hpp"
+#include "support/temp_folder.hpp"
 
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 
 namespace touchtrial {
@@ -15,18 +19,43 @@ using fakes::LoadedDhd;
 using fakes::next_sample;
 using fakes::write_until;
 
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+constexpr double kGravityMS2 = 9.81;
+
 device::DhdSettings settings_of_fake() {
   device::DhdSettings settings;
   settings.library = TOUCHTRIAL_FAKE_DHD;
   return settings;
 }
 
+/// Opens a device whose readings happen in the fake's time, so that velocities do not depend on the
+/// machine's pace.
+device::DhdDevice opened(const LoadedDhd& fake,
+                         const device::DhdSettings& settings = settings_of_fake()) {
+  return device::DhdDevice(settings, kNoLimit, fake.exports().now);
+}
+
+/// Waits until force is on, and one reading more.
+device::DeviceSample ready_sample(device::HapticDevice& device) {
+  device::DeviceSample sample;
+  REQUIRE(eventually([&] {
+    (void)device.read(sample);
+    return sample.ready;
+  }));
+  return next_sample(device);
+}
+
+/// The device frame's y is up, DHD's z.
+double up_n(const LoadedDhd& fake) {
+  return fake->force_n.get().z;
+}
+
 TEST_CASE("dhd: position, velocity and buttons arrive in the device frame, in millimetres") {
   LoadedDhd fake;
   fake->hand.rest_at({30.0, 10.0, -20.0});  // towards the person, to the right, up
   fake->buttons = 5;
-  device::DhdDevice device(settings_of_fake());
-  const device::DeviceSample sample = next_sample(device);
+  device::DhdDevice device = opened(fake);
+  const device::DeviceSample sample = ready_sample(device);
   CHECK(norm(sample.position_mm - Vec3{10.0, -20.0, 30.0}) < 1e-12);
   CHECK(sample.velocity_mm_s == Vec3{});
   CHECK(sample.buttons == 5);
@@ -35,7 +64,7 @@ TEST_CASE("dhd: position, velocity and buttons arrive in the device frame, in mi
 
 TEST_CASE("dhd: a force in the device frame reaches the library in its own") {
   LoadedDhd fake;
-  device::DhdDevice device(settings_of_fake());
+  device::DhdDevice device = opened(fake);
   CHECK(write_until(device, {1.0, 2.0, 3.0}, [&] {
     return fake->force_n.get() == Vec3{3.0, 1.0, 2.0};
   }));
@@ -44,65 +73,307 @@ TEST_CASE("dhd: a force in the device frame reaches the library in its own") {
 TEST_CASE("dhd: the velocity is the hand's, in the device frame") {
   LoadedDhd fake;
   fake->hand.push_n.set({0.008, 0.0, -0.016});  // through oil: 1 mm/s and -2 mm/s
-  device::DhdDevice device(settings_of_fake());
-  CHECK(norm(next_sample(device).velocity_mm_s - Vec3{0.0, -2.0, 1.0}) < 1e-9);
+  device::DhdDevice device = opened(fake);
+  // The line goes through nine readings.
+  for (int i = 0; i < 5; ++i) (void)next_sample(device);
+  CHECK(norm(next_sample(device).velocity_mm_s - Vec3{0.0, -2.0, 1.0}) < 1e-6);
+}
+
+TEST_CASE("dhd: a library that has no velocity yet is no fault, and readiness is true at once") {
+  LoadedDhd fake;
+  device::DhdDevice device = opened(fake);
+  CHECK(device.readiness() == device::DeviceReadiness::ready);
+  (void)ready_sample(device);
+  CHECK(device.fault() == device::DeviceFault::none);
 }
 
 TEST_CASE("dhd: a wall carries the hand that pushes against it") {
   LoadedDhd fake;
   fake->hand.position_mm.set({0.0, 5.0, 3.0});
   fake->hand.push_n.set({0.0, 0.0, -0.7});
-  device::DhdDevice device(settings_of_fake());
+  device::DhdDevice device = opened(fake);
   fakes::WallRun(device, fake.exports()).check_carries_hand();
 }
 
-TEST_CASE("dhd: gravity compensation, mass and time guard follow the settings") {
+TEST_CASE("dhd: mass, time guard, watchdog and largest force are set, and put back in the end") {
   LoadedDhd fake;
+  fake->own_mass_kg = 0.1;
+  fake->watchdog = 200;
+  device::DhdSettings settings = settings_of_fake();
+  settings.effector_mass_kg = GENERATE(0.0, 0.125);
+  {
+    const device::DhdDevice device = opened(fake, settings);
+    CHECK(fake->effector_mass_kg == (settings.effector_mass_kg > 0.0 ? 0.125 : -1.0));
+    CHECK(fake->time_guard_us == -1);
+    CHECK(fake->max_force_n == 12.0);
+    CHECK(fake->watchdog == 80);
+  }
+  CHECK(fake->effector_mass_kg == (settings.effector_mass_kg > 0.0 ? 0.1 : -1.0));
+  CHECK(fake->watchdog == 200);
+}
+
+TEST_CASE("dhd: the library holds the lab's limit behind the safety chain") {
+  LoadedDhd fake;
+  device::DeviceSettings settings;
+  settings.dhd.library = TOUCHTRIAL_FAKE_DHD;
+  settings.uses["dhd"].limits.max_force_n = 2.5;
+  const auto device = device::open_device("dhd", settings);
+  CHECK(fake->max_force_n == 2.5);
+  CHECK(write_until(*device, {0.0, 4.0, 0.0}, [&] { return up_n(fake) == 2.5; }));
+}
+
+TEST_CASE("dhd: a commanded zero is zero, whatever arms and end-effector weigh") {
+  LoadedDhd fake;
+  fake->arm_mass_kg = 0.2;
+  fake->own_mass_kg = 0.1;
   device::DhdSettings settings = settings_of_fake();
   settings.gravity_compensation = GENERATE(true, false);
-  settings.effector_mass_kg = GENERATE(0.0, 0.125);
-  device::DhdDevice device(settings);
-  CHECK(fake->gravity_compensation == (settings.gravity_compensation ? 1 : 0));
-  CHECK(fake->effector_mass_kg == (settings.effector_mass_kg > 0.0 ? 0.125 : -1.0));
-  CHECK(fake->time_guard_us == -1);
+  device::DhdDevice device = opened(fake, settings);
+  (void)ready_sample(device);
+  const long begun = fake->polls;
+  REQUIRE(write_until(device, {}, [&] { return fake->polls > begun + 50; }));
+  CHECK(up_n(fake) == 0.0);
+}
+
+TEST_CASE("dhd: the support is the weight of arms and end-effector, straight up") {
+  LoadedDhd fake;
+  fake->arm_mass_kg = 0.2;
+  fake->own_mass_kg = 0.1;
+  device::DhdSettings settings = settings_of_fake();
+  double mass_kg = 0.3;
+  SECTION("as the device knows them") {}
+  SECTION("with another end-effector") {
+    settings.effector_mass_kg = 0.15;
+    mass_kg = 0.35;
+  }
+  SECTION("not wanted") {
+    settings.gravity_compensation = false;
+    mass_kg = 0.0;
+  }
+  device::DhdDevice device = opened(fake, settings);
+  const device::DeviceSample sample = ready_sample(device);
+  for (int i = 0; i < 10; ++i) (void)next_sample(device);
+  CHECK(norm(device.support_force_n(sample) - Vec3{0.0, kGravityMS2 * mass_kg, 0.0}) < 1e-9);
+  CHECK(fake->misuses == 0);
+}
+
+TEST_CASE("dhd: the functions of newer libraries give the same support") {
+  const fakes::LoadedDrd fake;
+  fake->arm_mass_kg = 0.2;
+  fake->own_mass_kg = 0.1;
+  device::DhdSettings settings;
+  settings.library = TOUCHTRIAL_FAKE_DRD;
+  device::DhdDevice device(settings, kNoLimit, fake.exports().now);
+  const device::DeviceSample sample = ready_sample(device);
+  for (int i = 0; i < 10; ++i) (void)next_sample(device);
+  CHECK(norm(device.support_force_n(sample) - Vec3{0.0, kGravityMS2 * 0.3, 0.0}) < 1e-9);
+  CHECK(fake->misuses == 0);
+}
+
+TEST_CASE("dhd: a hand that lets go sinks while the support rises, and then hovers") {
+  LoadedDhd fake;
+  fake->arm_mass_kg = 0.2;
+  fake->own_mass_kg = 0.1;
+  device::DhdDevice device = opened(fake);
+  for (int i = 0; i < 20; ++i) (void)next_sample(device);
+  fakes::SteppingClock clock(fake.exports());
+  // So high that it would not reach the wall even without any support.
+  fake->hand.rest_at({0.0, 0.0, 200.0});
+  REQUIRE(fake.exports().step(12));  // so that the velocity forgets this jump
+  device::PlacedDevice placed(device, {});
+  FlatWall wall;
+  KeptSamples kept;
+  const device::ServoReport report =
+      device::run_servo(placed, wall, kept, {.limit_ticks = 400, .fade_ticks = 0}, clock);
+  CHECK(report.end == device::ServoEnd::time_limit);
+  CHECK(report.contact_ticks == 0);
+  REQUIRE(kept.samples.size() == 400);
+  CHECK(kept.samples[50].position_mm.z < kept.samples[10].position_mm.z - 1.0);
+  // A stall of the machine lets forces lapse, but not most of them.
+  int hovering = 0;
+  for (std::size_t i = 150; i < 400; ++i) {
+    const Vec3 way_mm = kept.samples[i].position_mm - kept.samples[i - 1].position_mm;
+    hovering += norm(way_mm) < 1e-9 ? 1 : 0;
+    CHECK(kept.samples[i].force_n == Vec3{});
+  }
+  CHECK(hovering > 0);
+}
+
+TEST_CASE("dhd: a mass that cannot be true is refused before any force") {
+  LoadedDhd fake;
+  fake->own_mass_kg = 0.12;
+  device::DhdSettings settings = settings_of_fake();
+  settings.effector_mass_kg = 1.2;
+  CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("dhd.effector_mass_kg is 1.2") &&
+                                                     holds_text("the device says 0.12") &&
+                                                     holds_text("10.6 N"));
+  CHECK(fake->effector_mass_kg == -1.0);
+  CHECK(fake.calls() == "open force_off close ");
+  device::DeviceSettings listed;
+  listed.dhd = settings;
+  const std::vector<device::DeviceListing> listings = device::device_driver("dhd").list(listed);
+  REQUIRE(listings.at(0).missing.size() == 1);
+  CHECK_THAT(listings[0].missing[0], holds_text("dhd.effector_mass_kg"));
+}
+
+TEST_CASE("dhd: a weight that cannot be one is refused, or a fault once it is known") {
+  LoadedDhd fake;
+  fake->weight_is_nonsense = true;
+  SECTION("on opening") {
+    CHECK_THROWS_WITH(device::DhdDevice(settings_of_fake()),
+                      holds_text("dhd.gravity_compensation"));
+  }
+  SECTION("after the calibration") {
+    fake->calibrated = false;
+    device::DhdDevice device = opened(fake);
+    (void)next_sample(device);
+    CHECK(device.fault() == device::DeviceFault::none);
+    fake->calibrated = true;
+    CHECK(eventually([&] { return device.fault() == device::DeviceFault::bad_data; }));
+  }
+}
+
+TEST_CASE("dhd: a library that goes on adding gravity by itself is not used") {
+  LoadedDhd fake;
+  fake->keeps_gravity = true;
+  CHECK_THROWS_WITH(device::DhdDevice(settings_of_fake()), holds_text("behind our limits"));
 }
 
 TEST_CASE("dhd: a setting that the device refuses is named, and the device closed") {
   LoadedDhd fake;
   fake->refuses_mass = true;
   device::DhdSettings settings = settings_of_fake();
-  settings.effector_mass_kg = 50.0;
+  settings.effector_mass_kg = 0.1;
   CHECK_THROWS_AS(device::DhdDevice(settings), DeviceError);
   CHECK_THROWS_WITH(device::DhdDevice(settings),
                     holds_text("dhd.effector_mass_kg was refused: fake words"));
-  CHECK(fake.calls() == "open force_off close open force_off close ");
+  CHECK(fake.calls() == "open force_off force_off close open force_off force_off close ");
 }
 
-TEST_CASE("dhd: the device describes itself") {
+TEST_CASE("dhd: the device describes itself, and its model gives size and strength") {
   LoadedDhd fake;
-  device::DhdSettings settings = settings_of_fake();
-  settings.max_force_n = 12.0;
-  settings.continuous_force_n = 5.0;
-  const device::DeviceInfo info = device::DhdDevice(settings).info();
+  const device::DeviceInfo info = device::DhdDevice(settings_of_fake()).info();
   CHECK(info.name == "dhd");
   CHECK(info.model == "omega.3");
   CHECK(info.serial == "4242");
-  CHECK(info.firmware == "2.5");
+  CHECK(info.firmware == "3.5");
+  // The maker's data sheet: a cylinder of 160 mm, 110 mm long; 12 N.
   CHECK(info.max_force_n == 12.0);
-  CHECK(info.continuous_force_n == 5.0);
+  CHECK(info.continuous_force_n == 12.0);
+  CHECK(info.max_stiffness_n_per_mm == 5.0);
+  REQUIRE(info.workspace);
+  CHECK(info.workspace->least_mm == Vec3{-80.0, -80.0, -55.0});
+  CHECK(info.workspace->greatest_mm == Vec3{80.0, 80.0, 55.0});
+  CHECK(info.workspace->shape == device::WorkspaceShape::ellipsoid);
   CHECK_FALSE(info.simulated);
+}
+
+TEST_CASE("dhd: size and strength differ by model, and the settings come first") {
+  LoadedDhd fake;
+  fake->system_type = 63;  // delta.3: 400 mm, 260 mm long; 20 N
+  CHECK(device::DhdDevice(settings_of_fake()).info().workspace->greatest_mm ==
+        Vec3{200.0, 200.0, 130.0});
+  device::DhdSettings settings = settings_of_fake();
+  settings.max_force_n = 10.0;
+  settings.continuous_force_n = 5.0;
+  settings.workspace_mm = Vec3{300.0, 200.0, 100.0};
+  const device::DeviceInfo info = device::DhdDevice(settings).info();
+  CHECK(info.max_force_n == 10.0);
+  CHECK(info.continuous_force_n == 5.0);
+  CHECK(info.workspace->greatest_mm == Vec3{150.0, 100.0, 50.0});
+}
+
+TEST_CASE("dhd: a force that the model does not have, or a model without numbers, is refused") {
+  LoadedDhd fake;
+  device::DhdSettings settings = settings_of_fake();
+  SECTION("too strong") {
+    settings.max_force_n = 13.0;
+    CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("13 N, more than the 12 N"));
+  }
+  SECTION("an unknown model") {
+    fake->system_type = 91;
+    CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("set dhd.max_force_n"));
+    settings.max_force_n = 4.0;
+    CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("set dhd.workspace_mm"));
+    settings.workspace_mm = Vec3{100.0, 100.0, 100.0};
+    CHECK(device::DhdDevice(settings).info().max_force_n == 4.0);
+  }
 }
 
 TEST_CASE(
     "dhd: a library without names and expert mode works, one without another function does not") {
   device::DhdSettings settings;
   settings.library = TOUCHTRIAL_OLD_DHD;
+  settings.max_force_n = 4.0;
+  settings.workspace_mm = Vec3{100.0, 100.0, 100.0};
   CHECK(device::DhdDevice(settings).info().model == "Force Dimension device");
+  settings.effector_mass_kg = 0.15;
+  device::DhdDevice device(settings);
+  (void)ready_sample(device);
+  for (int i = 0; i < 10; ++i) (void)next_sample(device);
+  // Without a model of the arms only the end-effector's mass is known.
+  CHECK(device.support_force_n({}).y == Approx(0.15 * kGravityMS2).epsilon(1e-3));
   settings.library = TOUCHTRIAL_PARTIAL_DHD;
   CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("has no function dhdEnableForce"));
   settings.library = "/nowhere/libdhd.so";
   CHECK_THROWS_WITH(device::DhdDevice(settings),
                     holds_text("/nowhere/libdhd.so") && holds_text("dhd.library"));
+}
+
+/// The kit's folders, with versions as it has them. A link is the same library to the system.
+class Kit {
+ public:
+  Kit() {
+    std::filesystem::create_directories(libraries());
+    add(TOUCHTRIAL_FAKE_DHD, "libdhd.so.3.9.0");
+    add(TOUCHTRIAL_FAKE_DHD, "libdhd.so.3.17.6");
+    add(TOUCHTRIAL_FAKE_DHD, "libdhd.a");
+  }
+  void add(const std::filesystem::path& library, const std::string& name) const {
+    std::filesystem::create_symlink(library, libraries() / name);
+  }
+  [[nodiscard]] std::filesystem::path folder() const { return folder_.path(); }
+  [[nodiscard]] std::filesystem::path libraries() const {
+    return folder_.path() / "lib" / "release" / "lin-x86_64-gcc";
+  }
+
+ private:
+  TempFolder folder_;
+};
+
+std::string library_found(const std::filesystem::path& named) {
+  device::DeviceSettings settings;
+  settings.dhd.library = named;
+  const std::string where = device::device_driver("dhd").list(settings).at(0).where;
+  return std::filesystem::path(where.substr(0, where.find(','))).filename().string();
+}
+
+TEST_CASE("dhd: the newest library of the kit's folder is used, and libdrd before libdhd") {
+  const LoadedDhd fake;
+  const Kit kit;
+  CHECK(library_found(kit.folder()) == "libdhd.so.3.17.6");
+  CHECK(library_found(kit.libraries()) == "libdhd.so.3.17.6");
+  CHECK(library_found(kit.libraries() / "libdhd.so.3.9.0") == "libdhd.so.3.9.0");
+  const fakes::LoadedDrd drd;
+  kit.add(TOUCHTRIAL_FAKE_DRD, "libdrd.so.3.9.0");
+  CHECK(library_found(kit.folder()) == "libdrd.so.3.9.0");
+}
+
+TEST_CASE("dhd: a kit that the environment names is found without any setting") {
+  const LoadedDhd fake;
+  const Kit kit;
+  REQUIRE(setenv("FDSDK", kit.folder().c_str(), 1) == 0);
+  CHECK(library_found("libdhd.so") == "libdhd.so.3.17.6");
+  REQUIRE(unsetenv("FDSDK") == 0);
+}
+
+TEST_CASE("dhd: a folder without a library is named, with the remedy") {
+  const TempFolder empty;
+  device::DhdSettings settings;
+  settings.library = empty.path();
+  CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text(empty.path().string()) &&
+                                                     holds_text("is not found") &&
+                                                     holds_text("dhd.library"));
 }
 
 TEST_CASE("dhd: a device that is missing, or does not open, is reported with the remedy") {
@@ -120,34 +391,57 @@ TEST_CASE("dhd: a device that is missing, or does not open, is reported with the
   }
 }
 
-TEST_CASE("dhd: without calibration the force stays zero") {
+TEST_CASE("dhd: a device that waits for its calibration gets no force, and none is switched on") {
   LoadedDhd fake;
   fake->calibrated = false;
-  device::DhdDevice device(settings_of_fake());
+  device::DhdDevice device = opened(fake);
   CHECK_FALSE(next_sample(device).ready);
   CHECK(device.readiness() == device::DeviceReadiness::needs_calibration);
   const long begun = fake->polls;
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->polls > begun + 50; }));
   CHECK(fake->zero_forces_last >= 50);
+  CHECK(fake.calls() == "open force_off ");
   fake->calibrated = true;
-  CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().z == 1.0; }));
+  CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
+  CHECK(device.readiness() == device::DeviceReadiness::ready);
+}
+
+TEST_CASE("dhd: a device that loses its calibration is not ready, and its force is off") {
+  LoadedDhd fake;
+  device::DhdDevice device = opened(fake);
+  REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
+  fake->calibrated = false;
+  REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->brakes.load(); }));
+  CHECK_FALSE(next_sample(device).ready);
+  CHECK(device.readiness() == device::DeviceReadiness::needs_calibration);
+  CHECK(device.fault() == device::DeviceFault::none);
+}
+
+TEST_CASE("dhd: a device whose force comes on by its button alone asks a person to press it") {
+  LoadedDhd fake;
+  fake->wants_button = true;
+  device::DhdDevice device = opened(fake);
+  REQUIRE(
+      eventually([&] { return device.readiness() == device::DeviceReadiness::needs_force_on; }));
+  CHECK_FALSE(next_sample(device).ready);
+  fake.exports().press_force_button();
+  CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
   CHECK(device.readiness() == device::DeviceReadiness::ready);
 }
 
 TEST_CASE("dhd: a device at which a person switches force off is not ready, without a fault") {
   LoadedDhd fake;
-  device::DhdDevice device(settings_of_fake());
-  REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().z == 1.0; }));
-  fake->force_off_cause = GENERATE(1, 4, 6);
-  device::DeviceSample sample;
-  REQUIRE(eventually([&] {
-    (void)device.read(sample);
-    return !sample.ready;
-  }));
+  device::DhdDevice device = opened(fake);
+  REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
+  const int cause = GENERATE(1, 4, 6);
+  fake.exports().force_off(cause);
+  REQUIRE(
+      eventually([&] { return device.readiness() == device::DeviceReadiness::needs_force_on; }));
+  CHECK_FALSE(next_sample(device).ready);
   CHECK(device.fault() == device::DeviceFault::none);
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->zero_forces_last > 10; }));
-  fake->force_off_cause = 0;
-  CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().z == 1.0; }));
+  fake.exports().press_force_button();
+  CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
 }
 
 TEST_CASE("dhd: force that the device itself switches off is a fault by its cause") {
@@ -156,18 +450,40 @@ TEST_CASE("dhd: force that the device itself switches off is a fault by its caus
                                                 {3, device::DeviceFault::driver},
                                                 {5, device::DeviceFault::link_lost}}));
   LoadedDhd fake;
-  device::DhdDevice device(settings_of_fake());
-  (void)next_sample(device);
-  fake->force_off_cause = cause;
+  device::DhdDevice device = opened(fake);
+  (void)ready_sample(device);
+  fake.exports().force_off(cause);
   CHECK(eventually([&] { return device.fault() != device::DeviceFault::none; }));
   CHECK(device.fault() == fault);
+}
+
+TEST_CASE("dhd: what switched force off in an earlier program is no fault of this one") {
+  LoadedDhd fake;
+  fake->force_off_cause = GENERATE(2, 3, 5);
+  fake->wants_button = GENERATE(true, false);
+  device::DhdDevice device = opened(fake);
+  for (int i = 0; i < 100; ++i) (void)next_sample(device);
+  CHECK(device.fault() == device::DeviceFault::none);
+}
+
+TEST_CASE("dhd: the device lets go 10 ms after the last command of a program that was stopped") {
+  LoadedDhd fake;
+  device::DhdDevice device = opened(fake);
+  REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
+  fakes::SteppingClock clock(fake.exports());  // the driver's thread stands still
+  fake->force_n.set({0.0, 0.0, 1.0});
+  fake.exports().silence(std::chrono::milliseconds(9));
+  CHECK(up_n(fake) == 1.0);
+  fake.exports().silence(std::chrono::milliseconds(11));
+  CHECK(up_n(fake) == 0.0);
+  CHECK(fake->brakes);
 }
 
 TEST_CASE(
     "dhd: a failure while the device is connected is the driver's, otherwise the link is lost") {
   LoadedDhd fake;
-  device::DhdDevice device(settings_of_fake());
-  REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().z == 1.0; }));
+  device::DhdDevice device = opened(fake);
+  REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
   device::DeviceFault expected = device::DeviceFault::driver;
   SECTION("a position that cannot be read") {
     fake->position_fails = true;
@@ -194,7 +510,7 @@ TEST_CASE(
 TEST_CASE("dhd: a device that is lost in the middle of a run ends it with a fault") {
   LoadedDhd fake;
   fake->hand.push_n.set({0.0, 0.0, -0.7});
-  device::DhdDevice device(settings_of_fake());
+  device::DhdDevice device = opened(fake);
   fakes::WallRun wall(device, fake.exports());
   REQUIRE(wall.run(50).end == device::ServoEnd::time_limit);
   fake->connected = false;
@@ -204,8 +520,8 @@ TEST_CASE("dhd: a device that is lost in the middle of a run ends it with a faul
 
 TEST_CASE("dhd: the time guard's answer is neither a new reading nor a fault") {
   LoadedDhd fake;
-  device::DhdDevice device(settings_of_fake());
-  (void)next_sample(device);
+  device::DhdDevice device = opened(fake);
+  (void)ready_sample(device);
   fake->too_soon = true;
   const long begun = fake->polls;
   REQUIRE(eventually([&] { return fake->polls > begun + 10; }));
@@ -222,30 +538,45 @@ TEST_CASE("dhd: the time guard's answer is neither a new reading nor a fault") {
 TEST_CASE("dhd: saturated motors are not a fault") {
   LoadedDhd fake;
   fake->saturated = true;
-  device::DhdDevice device(settings_of_fake());
+  device::DhdDevice device = opened(fake);
   REQUIRE(eventually([&] { return fake->polls > 100; }));
   CHECK(device.fault() == device::DeviceFault::none);
 }
 
-TEST_CASE("dhd: halting sends zero until it is re-armed") {
+TEST_CASE("dhd: halting switches force off and the brakes on, until it is re-armed") {
   LoadedDhd fake;
-  device::DhdDevice device(settings_of_fake());
+  fake->own_mass_kg = 0.3;
+  device::DhdDevice device = opened(fake);
   REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().y == 1.0; }));
   device.halt();
-  REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->zero_forces_last > 20; }));
+  REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->brakes.load(); }));
+  const long begun = fake->polls;
+  REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->polls > begun + 20; }));
+  CHECK(fake->force_n.get() == Vec3{});
+  CHECK(fake->zero_forces_last > 10);
+  CHECK(device.readiness() == device::DeviceReadiness::ready);
   device.rearm();
   CHECK(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().y == 1.0; }));
+}
+
+TEST_CASE("dhd: a fault switches force off and the brakes on") {
+  LoadedDhd fake;
+  device::DhdDevice device = opened(fake);
+  REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().y == 1.0; }));
+  fake->device_error = true;
+  REQUIRE(eventually([&] { return fake->brakes.load(); }));
+  CHECK(fake->force_n.get() == Vec3{});
 }
 
 TEST_CASE("dhd: closing sends zeros, switches force off, and closes the device") {
   LoadedDhd fake;
   {
-    device::DhdDevice device(settings_of_fake());
+    device::DhdDevice device = opened(fake);
     REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().y == 1.0; }));
   }
   CHECK(fake->zero_forces_last >= 5);
   CHECK(fake->misuses == 0);
-  CHECK(fake.calls() == "open force_on force_off close ");
+  CHECK(fake.calls() == "open force_off force_on stop force_off close ");
 }
 
 std::vector<device::DeviceListing> listings_with(const std::filesystem::path& library) {
@@ -269,6 +600,55 @@ TEST_CASE("the list of dhd names every connected device, and closes it") {
   CHECK_THAT(listings[1].where, holds_text(", device 1"));
   CHECK(fake->misuses == 0);
   CHECK(fake.calls() == "open force_off close open force_off close ");
+}
+
+TEST_CASE("the list of dhd says that a device waits for its calibration, and how to do it") {
+  const fakes::LoadedDhd fake;
+  fake->calibrated = false;
+  const std::vector<device::DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
+  REQUIRE(listings.size() == 1);
+  CHECK(listings[0].present);
+  REQUIRE(listings[0].missing.size() == 1);
+  CHECK_THAT(listings[0].missing[0],
+             holds_text("rest position") && holds_text("touchtrial device initialise dhd"));
+}
+
+TEST_CASE("the list of dhd says that the settings must give the size of an unknown model") {
+  const fakes::LoadedDhd fake;
+  fake->system_type = 203;
+  const std::vector<device::DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
+  REQUIRE(listings.size() == 1);
+  REQUIRE(listings[0].missing.size() == 1);
+  CHECK_THAT(listings[0].missing[0], holds_text("dhd.max_force_n"));
+}
+
+std::string initialised_with(const std::filesystem::path& library) {
+  device::DeviceSettings settings;
+  settings.dhd.library = library;
+  return device::device_driver("dhd").initialise(settings);
+}
+
+TEST_CASE("dhd: a device is initialised by libdrd alone, and only if it is not yet") {
+  const fakes::LoadedDrd fake;
+  fake->calibrated = false;
+  CHECK(initialised_with(TOUCHTRIAL_FAKE_DRD) == "is initialised");
+  CHECK(fake.calls() == "drd open auto_init force_off drd close ");
+  CHECK_THAT(initialised_with(TOUCHTRIAL_FAKE_DRD), holds_text("nothing was moved"));
+  CHECK(fake.calls() == "drd open auto_init force_off drd close drd open force_off drd close ");
+}
+
+TEST_CASE(
+    "dhd: an initialisation that fails, or that the library does not have, names the rest "
+    "position") {
+  const fakes::LoadedDrd drd;
+  drd->calibrated = false;
+  drd->auto_init_fails = true;
+  CHECK_THROWS_WITH(initialised_with(TOUCHTRIAL_FAKE_DRD),
+                    holds_text("fake words") && holds_text("rest position"));
+  const fakes::LoadedDhd dhd;
+  dhd->calibrated = false;
+  CHECK_THROWS_WITH(initialised_with(TOUCHTRIAL_FAKE_DHD),
+                    holds_text("name libdrd.so") && holds_text("rest position"));
 }
 
 TEST_CASE("the list of dhd says what is missing: device, library, function, or access") {

@@ -1,14 +1,39 @@
-// A stand-in for the vendor's libdhd with its real names. It is written from the same facts as the
-// driver but shares no declaration with it, so that a slip in either shows.
+// A stand-in for the vendor's libdhd (and libdrd) with its real names. It is written from the
+// vendor's texts and shares no declaration with the driver, so that a slip in either shows. Each
+// behaviour names its source:
+//
+//   [H]  the vendor's header dhdc.h (3.7): names, numbers, the order of arguments
+//   [D]  the vendor's programming manual, as the public Python bindings for 3.14 to 3.16 repeat it
+//   [M]  the vendor's user manuals of omega.x, delta.x and sigma.7
+//   [S]  the vendor's sample programs
 #include "device/fakes/fake_dhd.hpp"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <cmath>
 
 namespace touchtrial::fakes {
 namespace {
 
-constexpr int kFailed = -1;
+constexpr int kFailed = -1;  // [D]: "0 on success, -1 otherwise"
 constexpr double kMmPerM = 1000.0;
+constexpr double kGravityMS2 = 9.81;
+
+// [H]: the errors that dhdErrorGetLast tells, of which the driver sees the words alone.
+constexpr int kErrorTimeout = 7;
+constexpr int kErrorExpertModeDisabled = 9;
+
+// [H]: causes for which force went off.
+constexpr int kOffByButton = 1;
+constexpr int kOffByWatchdog = 3;
+constexpr int kOffBySoftware = 4;
+
+// [D] Device Modes: an active device is in one of four modes. RESET: a person is expected to put
+// the end-effector at its rest position. IDLE: the position can be read, no current in the motors.
+// FORCE: motors are on. BRAKE: force is off, motors brake; entered when force is disabled or a
+// safety feature acts.
+enum class Mode { reset, idle, force, brake };
 
 FakeDhd* state = new FakeDhd;  // never freed: the driver keeps the library loaded for ever
 
@@ -18,6 +43,9 @@ struct Inside {
   std::atomic<int> open{-1};  ///< the open device
   std::atomic<bool> force_on{false};
   std::atomic<bool> expert{false};
+  std::atomic<int> last_error{0};
+  std::atomic<long> forces{0};
+  long readings = 0;
 };
 Inside& inside() {
   static Inside* const kInside = new Inside;
@@ -26,6 +54,11 @@ Inside& inside() {
 
 void note(const char* call) {
   inside().calls.note(call);
+}
+
+int fail(int error) {
+  inside().last_error = error;
+  return kFailed;
 }
 
 /// \return whether this is the open device; another one is an error of the driver
@@ -39,8 +72,67 @@ bool answers(char device) {
   return is_open(device) && state->connected;
 }
 
+// [D] Expert Mode: low-level functions must be enabled first. [H] lists which they are.
+bool is_expert() {
+#ifdef FAKE_OF_OLD
+  return true;
+#else
+  return inside().expert;
+#endif
+}
+
+Mode mode() {
+  if (!state->calibrated) return Mode::reset;
+  if (inside().force_on) return Mode::force;
+  return state->brakes ? Mode::brake : Mode::idle;
+}
+
+double mass_kg() {
+  return state->effector_mass_kg >= 0.0 ? state->effector_mass_kg : state->own_mass_kg;
+}
+
+/// What the library believes that arms and end-effector weigh.
+double modelled_weight_n() {
+  return kGravityMS2 * (state->arm_mass_kg + mass_kg());
+}
+
+/// What they do weigh.
+double true_weight_n() {
+  return kGravityMS2 * (state->arm_mass_kg + state->own_mass_kg);
+}
+
+void force_off(int cause) {
+  if (inside().force_on) state->force_off_cause = cause;
+  inside().force_on = false;
+  state->brakes = true;
+  state->force_n.set({});
+}
+
+// [M] omega: force can be switched on and off at any time by the force button.
+void press_force_button() {
+  if (inside().force_on) {
+    force_off(kOffByButton);
+  } else {
+    inside().force_on = true;
+    state->brakes = false;
+  }
+}
+
+// [D] setWatchdog: the firmware disables force if the duration is exceeded before a new force
+// command comes; in multiples of 125 us, 0 disables it.
+void silence(std::chrono::microseconds time) {
+  const int watchdog = state->watchdog;
+  if (watchdog > 0 && time > std::chrono::microseconds(125) * watchdog) force_off(kOffByWatchdog);
+}
+
+std::chrono::nanoseconds now() {
+  return std::chrono::milliseconds(inside().forces.load());
+}
+
 void reset() {
   inside().calls.clear();
+  inside().force_on = false;
+  inside().readings = 0;
   state->~FakeDhd();
   new (state) FakeDhd;
 }
@@ -55,6 +147,48 @@ void give_m(Vec3 mm, double* x, double* y, double* z) {
   *z = mm.z / kMmPerM;
 }
 
+#ifndef FAKE_OF_OLD
+/// Joints of a delta whose Jacobian is the same everywhere, m/rad; rows are x, y and z.
+constexpr double kJacobian[3][3] = {{0.05, -0.02, -0.03}, {0.0, 0.04, -0.05}, {0.06, 0.07, 0.05}};
+constexpr std::array<double, 3> kAngles = {0.3, -0.1, 0.2};
+
+// [S] "torques": the torques of a force are the transposed Jacobian times the force, and those of
+// the gravity compensation are added to them.
+void give_gravity_torques(double* torques) {
+  const Vec3 force_n =
+      state->weight_is_nonsense ? Vec3{5.0, 0.0, -3.0} : Vec3{0.0, 0.0, modelled_weight_n()};
+  for (int j = 0; j < 3; ++j) {
+    torques[j] =
+        kJacobian[0][j] * force_n.x + kJacobian[1][j] * force_n.y + kJacobian[2][j] * force_n.z;
+  }
+}
+
+bool are_arm_angles(double a, double b, double c) {
+  const bool known = a == kAngles[0] && b == kAngles[1] && c == kAngles[2];
+  if (!known) ++state->misuses;
+  return known;
+}
+#endif
+
+int open_device(char index) {
+  note("open");
+  // [D] openID: the index is below the number of connected devices.
+  if (!state->opens || index < 0 || index >= state->devices) return kFailed;
+  if (inside().open >= 0) ++state->misuses;
+  inside().open = index;
+  // [M]: when a connection is made, force is disabled; the brakes are on while force is off.
+  inside().force_on = false;
+  state->brakes = true;
+  return index;
+}
+
+int close_device(char device) {
+  note("close");
+  if (!is_open(device)) return kFailed;
+  inside().open = -1;
+  return 0;
+}
+
 }  // namespace
 }  // namespace touchtrial::fakes
 
@@ -63,60 +197,99 @@ using namespace touchtrial::fakes;  // NOLINT: what follows is the library's C i
 extern "C" {
 
 FakeDhdExports* fake_dhd_exports() {
-  static FakeDhdExports exports{state, reset, [](int ticks) { return inside().pace.step(ticks); },
-                                [] { inside().pace.run_freely(); }, calls};
+  static FakeDhdExports exports{state,
+                                reset,
+                                [](int ticks) { return inside().pace.step(ticks); },
+                                [] { inside().pace.run_freely(); },
+                                calls,
+                                force_off,
+                                press_force_button,
+                                silence,
+                                now};
   return &exports;
 }
 
+// [D]: all that are connected, also those that other programs hold.
 int dhdGetDeviceCount() {
   return state->devices;
 }
 
 int dhdOpenID(char index) {
-  note("open");
-  if (!state->opens || index < 0 || index >= state->devices) return kFailed;
-  if (inside().open >= 0) ++state->misuses;
-  inside().open = index;
-  return index;
+  return open_device(index);
 }
 
 int dhdClose(char device) {
-  note("close");
-  if (!is_open(device)) return kFailed;
-  inside().open = -1;
-  return 0;
+  return close_device(device);
 }
 
+// [D] Axes: x towards the person, y to the right, z up, metres. [M] has the same in its figures.
 int dhdGetPosition(double* x, double* y, double* z, char device) {
   if (!inside().pace.begin_step()) return kFailed;
   ++state->polls;
   if (!answers(device) || state->position_fails) return kFailed;
   give_m(state->hand.position_mm.get(), x, y, z);
-  return state->too_soon ? 1 : 0;
+  // [D] TimeGuard: returns 1 if communication was unnecessary.
+  if (state->too_soon) return 1;
+  ++inside().readings;
+  return 0;
 }
 
+// [D] getLinearVelocity: needs two positions within the estimator's window, 20 ms; without them it
+// fails with the error "timeout".
 int dhdGetLinearVelocity(double* x, double* y, double* z, char device) {
   if (!answers(device)) return kFailed;
+  if (inside().readings < 2) return fail(kErrorTimeout);
   give_m(state->hand.velocity.get(), x, y, z);
   return 0;
 }
 
+// [D] Gravity Compensation: computed on the host, so it only acts whenever a force is sent; the
+// weights of arms and end-effector are taken into account, and a vertical force is added to the
+// user's command. It is on by default.
+// [D] setMaxForce: a limit to the magnitude of what setForce applies; negative: none.
 int dhdSetForce(double x, double y, double z, char device) {
   const touchtrial::Vec3 asked_n{x, y, z};
-  const touchtrial::Vec3 force_n = inside().force_on ? asked_n : touchtrial::Vec3{};
+  touchtrial::Vec3 force_n;
+  if (mode() == Mode::force) {
+    const double norm_n = norm(asked_n);
+    const double most_n = state->max_force_n;
+    const double share = most_n >= 0.0 && norm_n > most_n ? most_n / norm_n : 1.0;
+    force_n = share * asked_n;
+    if (state->gravity_compensation != 0) force_n.z += modelled_weight_n();
+  }
   state->force_n.set(force_n);
   state->zero_forces_last = asked_n == touchtrial::Vec3{} ? state->zero_forces_last + 1 : 0;
-  state->hand.step(force_n);
+  state->hand.step(force_n - touchtrial::Vec3{0.0, 0.0, true_weight_n()});
+  ++inside().forces;
   inside().pace.end_step();
   if (!answers(device)) return kFailed;
+  // [D]: 2 if a motor cannot give what was asked for.
   return state->saturated ? 2 : 0;
 }
 
 #ifndef FAKE_WITHOUT_ENABLE_FORCE
+// [D] enableForce: switches the controller's force mode on or off. [D] Device Modes: BRAKE is
+// entered when force is disabled. In RESET there is no other mode. [M] omega: a person may have to
+// press the force button.
 int dhdEnableForce(unsigned char on, char device) {
   note(on != 0 ? "force_on" : "force_off");
   if (!is_open(device)) return kFailed;
-  inside().force_on = on != 0;
+  if (on == 0) {
+    force_off(kOffBySoftware);
+  } else if (state->calibrated && !state->wants_button) {
+    inside().force_on = true;
+    state->brakes = false;
+  }
+  return 0;
+}
+#endif
+
+#ifndef FAKE_OF_OLD
+// [D] stop: disables force and puts the device into BRAKE mode.
+int dhdStop(char device) {
+  note("stop");
+  if (!answers(device)) return kFailed;
+  force_off(kOffBySoftware);
   return 0;
 }
 #endif
@@ -125,17 +298,49 @@ unsigned dhdGetButtonMask(char device) {
   return answers(device) ? state->buttons.load() : 0;
 }
 
+// [H] the places of the status, 16 or 17 of them; [D] Device Modes: exactly one of RESET, IDLE,
+// FORCE and BRAKE. [D] ForceOffCause: the event that disabled force the last time, however long
+// ago.
 int dhdGetStatus(int* status, char device) {
   if (!is_open(device)) return kFailed;
   for (int i = 0; i < 17; ++i) status[i] = 0;
+  const Mode now_in = mode();
   status[0] = 1;
   status[1] = state->connected ? 1 : 0;
   status[2] = 1;
-  status[3] = state->calibrated ? 1 : 0;
-  status[5] = inside().force_on && state->force_off_cause == 0 ? 1 : 0;
+  status[3] = now_in == Mode::reset ? 1 : 0;
+  status[4] = now_in == Mode::idle ? 1 : 0;
+  status[5] = now_in == Mode::force ? 1 : 0;
+  status[6] = now_in == Mode::brake ? 1 : 0;
   status[9] = state->device_error ? 1 : 0;
+  status[10] = state->gravity_compensation;
+  status[11] = state->time_guard_us != 0 ? 1 : 0;
   status[14] = state->force_off_cause;
   return 0;
+}
+
+int dhdSetTimeGuard(int us, char device) {
+  if (!is_open(device)) return kFailed;
+  if (!is_expert()) return fail(kErrorExpertModeDisabled);
+  state->time_guard_us = us;
+  return 0;
+}
+
+int dhdSetGravityCompensation(int on, char device) {
+  if (!is_open(device)) return kFailed;
+  if (!state->keeps_gravity) state->gravity_compensation = on;
+  return 0;
+}
+
+// [D] setEffectorMass: kg, needed where the end-effector is not the maker's own.
+int dhdSetEffectorMass(double kg, char device) {
+  if (!is_open(device) || state->refuses_mass) return kFailed;
+  state->effector_mass_kg = kg;
+  return 0;
+}
+
+const char* dhdErrorGetLastStr() {
+  return "fake words";
 }
 
 #ifndef FAKE_OF_OLD
@@ -148,34 +353,37 @@ int dhdDisableExpertMode() {
   inside().expert = false;
   return 0;
 }
-#endif
 
-int dhdSetTimeGuard(int us, char device) {
-#ifndef FAKE_OF_OLD
-  if (!inside().expert) return kFailed;
-#endif
+// [D] getEffectorMass: the mass that is defined now.
+int dhdGetEffectorMass(double* kg, char device) {
+  *kg = mass_kg();
+  return is_open(device) ? 0 : kFailed;
+}
+
+int dhdSetMaxForce(double limit_n, char device) {
   if (!is_open(device)) return kFailed;
-  state->time_guard_us = us;
+  state->max_force_n = limit_n;
   return 0;
 }
 
-int dhdSetGravityCompensation(int on, char device) {
+int dhdSetWatchdog(unsigned char times_125_us, char device) {
   if (!is_open(device)) return kFailed;
-  state->gravity_compensation = on;
+  if (!is_expert()) return fail(kErrorExpertModeDisabled);
+  state->watchdog = times_125_us;
   return 0;
 }
 
-int dhdSetEffectorMass(double kg, char device) {
-  if (!is_open(device) || state->refuses_mass) return kFailed;
-  state->effector_mass_kg = kg;
+int dhdGetWatchdog(unsigned char* times_125_us, char device) {
+  if (!is_open(device)) return kFailed;
+  if (!is_expert()) return fail(kErrorExpertModeDisabled);
+  *times_125_us = static_cast<unsigned char>(state->watchdog);
   return 0;
 }
 
-const char* dhdErrorGetLastStr() {
-  return "fake words";
+int dhdGetSystemType(char device) {
+  return is_open(device) ? state->system_type.load() : kFailed;
 }
 
-#ifndef FAKE_OF_OLD
 const char* dhdGetSystemName(char device) {
   return is_open(device) ? "omega.3" : nullptr;
 }
@@ -186,8 +394,84 @@ int dhdGetSerialNumber(unsigned short* serial, char device) {
 }
 
 int dhdGetVersion(double* version, char device) {
-  *version = 2.5;
+  *version = 3.5;
   return is_open(device) ? 0 : kFailed;
+}
+
+int dhdGetDeltaJointAngles(double* a, double* b, double* c, char device) {
+  if (!is_expert()) return fail(kErrorExpertModeDisabled);
+  *a = kAngles[0];
+  *b = kAngles[1];
+  *c = kAngles[2];
+  return answers(device) ? 0 : kFailed;
+}
+
+// [D]: the torques that compensate gravity at these angles.
+int dhdDeltaGravityJointTorques(double a, double b, double c, double* t0, double* t1, double* t2,
+                                char device) {
+  if (!is_expert()) return fail(kErrorExpertModeDisabled);
+  if (!is_open(device) || !are_arm_angles(a, b, c)) return kFailed;
+  std::array<double, 3> torques{};
+  give_gravity_torques(torques.data());
+  *t0 = torques[0];
+  *t1 = torques[1];
+  *t2 = torques[2];
+  return 0;
+}
+
+int dhdDeltaJointAnglesToJacobian(double a, double b, double c, double jacobian[3][3],
+                                  char device) {
+  if (!is_expert()) return fail(kErrorExpertModeDisabled);
+  if (!is_open(device) || !are_arm_angles(a, b, c)) return kFailed;
+  for (int i = 0; i < 3; ++i) std::copy_n(kJacobian[i], 3, jacobian[i]);
+  return 0;
+}
+#endif
+
+#ifdef FAKE_WITH_DRD
+// libdrd has libdhd's functions as well, and devices opened by either are the same.
+
+// [D]: "Open a connection to one particular device".
+int drdOpenID(char index) {
+  note("drd");
+  return open_device(index);
+}
+
+int drdClose(char device) {
+  note("drd");
+  return close_device(device);
+}
+
+// [D] isInitialized: reflects the status of the controller's RESET light.
+bool drdIsInitialized(char device) {
+  return is_open(device) && state->calibrated;
+}
+
+// [D] autoInit: moves the device to a known position and resets its encoders there.
+int drdAutoInit(char device) {
+  note("auto_init");
+  if (!answers(device) || state->auto_init_fails) return kFailed;
+  state->calibrated = true;
+  return 0;
+}
+
+// The functions of 3.16, which replace those for the arms alone.
+int dhdGetJointAngles(double* angles, char device) {
+  if (!is_expert()) return fail(kErrorExpertModeDisabled);
+  std::fill_n(angles, 8, 0.0);
+  std::copy(kAngles.begin(), kAngles.end(), angles);
+  return answers(device) ? 0 : kFailed;
+}
+
+int dhdJointAnglesToGravityJointTorques(double* angles, double* torques, unsigned char mask,
+                                        char device) {
+  if (!is_expert()) return fail(kErrorExpertModeDisabled);
+  if (!is_open(device) || mask != 0xff || !are_arm_angles(angles[0], angles[1], angles[2])) {
+    return kFailed;
+  }
+  std::fill_n(torques, 8, 0.0);
+  give_gravity_torques(torques);
+  return 0;
 }
 #endif
 

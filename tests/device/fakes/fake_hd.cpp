@@ -1,5 +1,9 @@
-// A stand-in for the vendor's libHD with its real names. It is written from the same facts as the
-// driver but shares no declaration with it, so that a slip in either shows.
+// A stand-in for the vendor's libHD with its real names. It is written from the vendor's public
+// text, in our words, and shares no declaration with the driver, so that a slip in either shows.
+// Each behaviour names its source: [header]   hdDefines.h and HDDevice.h of OpenHaptics 3.0:
+// values, types [guide]    OpenHaptics Toolkit API Reference Guide [sample]   the vendor's sample
+// programs: Calibration, AnchoredSpringForce, QueryDevice [notes]    release notes of HDAPI
+// [assumed]  no text says so; the strictest that is plausible
 #include "device/fakes/fake_hd.hpp"
 
 #include <cstring>
@@ -28,8 +32,9 @@ struct Inside {
   Pace pace;
   bool open = false;
   bool force_on = false;
-  bool in_frame = false;  ///< scheduler's thread alone
-  Vec3 force_n;           ///< likewise
+  std::atomic<bool> runs{false};  ///< the scheduler
+  bool in_frame = false;          ///< scheduler's thread alone
+  Vec3 force_n;                   ///< likewise
 };
 Inside& inside() {
   static Inside* const kInside = new Inside;
@@ -91,6 +96,19 @@ void hold_if_asked() {
   state->callback_held = false;
 }
 
+bool supports(int style) {
+  return (state->calibration_styles & style) != 0;
+}
+
+/// Whether the device has what an update by this style takes.
+/// Encoder reset: the arm is at a known place, which nothing can check; it may be done before the
+/// servo loop runs [sample]. Inkwell: the stylus lies in its fixture, and the servo loop runs
+/// [guide, sample]. Auto: new information was gathered while the arm was moved [guide].
+bool can_update(int style) {
+  if (style == kHdInkwell) return state->in_inkwell && inside().runs;
+  return style == kHdEncoderReset || state->has_news;
+}
+
 void reset() {
   const std::lock_guard lock(inside().mutex);
   inside().calls.clear();
@@ -135,10 +153,12 @@ FakeHdExports* fake_hd_exports() {
 
 std::uint32_t hdInitDevice(const char* name) {
   note("init");
+  // [header] HD_INVALID_HANDLE, HD_DEVICE_FAULT; which error it is [assumed]
   if ((name_bit(name) & state->opens_by) == 0) {
-    push_error(0x301);
+    push_error(0x300);
     return kNoDevice;
   }
+  // [header] HD_DEVICE_ALREADY_INITIATED
   if (inside().open) {
     misuse(0x301);
     return kNoDevice;
@@ -150,13 +170,13 @@ std::uint32_t hdInitDevice(const char* name) {
 void hdDisableDevice(std::uint32_t device) {
   note("disable_device");
   join_scheduler();
-  if (device != kDevice || !inside().open) misuse(0x101);
+  if (device != kDevice || !inside().open) misuse(0x104);  // [header] HD_BAD_HANDLE
   inside().open = false;
   inside().force_on = false;
 }
 
 void hdMakeCurrentDevice(std::uint32_t device) {
-  if (device != kDevice || !inside().open) misuse(0x101);
+  if (device != kDevice || !inside().open) misuse(0x104);
 }
 
 void hdBeginFrame(std::uint32_t device) {
@@ -173,7 +193,8 @@ void hdEndFrame(std::uint32_t device) {
   state->force_n.set(force_n);
   state->zero_forces_last = force_n == touchtrial::Vec3{} ? state->zero_forces_last + 1 : 0;
   state->hand.step(force_n);
-  inside().force_n = {};  // a force holds for its frame
+  // The force of this frame stays on the hand until another is set [sample: "continue rendering the
+  // last force sent" unless zero is sent].
   if (state->lost) push_error(0x302);
   if (const std::uint32_t error = state->next_error.exchange(0); error != 0) push_error(error);
   ++state->frames;
@@ -194,7 +215,7 @@ void hdDisable(std::uint32_t what) {
 void hdGetDoublev(std::uint32_t what, double* values) {
   switch (what) {
     case 0x2050:
-      return copy(state->hand.position_mm.get(), values);
+      return copy(state->hand.position_mm.get() - state->encoder_error_mm.get(), values);
     case 0x2051:
       return copy(state->hand.velocity.get(), values);
     case 0x2505:
@@ -206,8 +227,14 @@ void hdGetDoublev(std::uint32_t what, double* values) {
     case 0x2551:
       return give_box(state->tells_usable_workspace, {-80.0, -60.0, -40.0}, {80.0, 60.0, 30.0},
                       values);
+    // What the maker gives for a Touch: N/mm [sample: "F = k x", N and mm] and N s/mm [assumed], in
+    // the precision of a float.
     case 0x2602:
-      values[0] = 0.75;
+      values[0] = static_cast<double>(0.4F);
+      return;
+    case 0x2609:  // which the first version of the library did not have [notes]
+      if (!state->tells_damping) return push_error(0x100);
+      values[0] = static_cast<double>(0.004F);
       return;
     case 0x2603:
       values[0] = 3.25;
@@ -247,7 +274,7 @@ const char* hdGetString(std::uint32_t what) {
 }
 
 const char* hdGetErrorString(std::uint32_t code) {
-  return code == 0x301 ? "no such device" : "fake error";
+  return code == 0x300 ? "no such device" : "fake error";
 }
 
 FakeErrorInfo hdGetError() {
@@ -258,31 +285,51 @@ FakeErrorInfo hdGetError() {
   return {code, -1, kDevice};
 }
 
+/// Asks for an update as soon as one is possible: when the stylus is put into the inkwell, and,
+/// also while everything is calibrated, when a device of the style auto has learnt something
+/// [sample: "continually refined as the device is moved"]. Until then a device that is not
+/// calibrated waits for a person [header: HD_CALIBRATION_NEEDS_MANUAL_INPUT].
 std::uint32_t hdCheckCalibration() {
-  return state->calibration;
+  const bool learns = supports(kHdAuto) && state->has_news;
+  const bool lies = supports(kHdInkwell) && state->in_inkwell && !state->calibrated;
+  if (learns || lies) return 0x5001;
+  return state->calibrated ? 0x5000 : 0x5002;
 }
 
+/// Takes one style that the device supports [header: the values are single bits]; another is an
+/// invalid enum, and an update that is not possible a device fault [assumed].
 void hdUpdateCalibration(std::uint32_t style) {
   ++state->calibration_updates;
   state->last_style = static_cast<int>(style);
-  std::uint32_t needs_update = 0x5001;
-  state->calibration.compare_exchange_strong(needs_update, 0x5000);
+  const bool is_style = style == kHdEncoderReset || style == kHdAuto || style == kHdInkwell;
+  if (!is_style || !supports(static_cast<int>(style))) return misuse(0x100);
+  if (!can_update(static_cast<int>(style)) || state->failing_updates-- > 0) {
+    return push_error(0x300);
+  }
+  // Wherever the arm is becomes the reset position [sample: "be placed at a known physical location
+  // when the reset is commanded"].
+  const bool resets = style == kHdEncoderReset;
+  state->encoder_error_mm.set(resets ? state->hand.position_mm.get() : touchtrial::Vec3{});
+  state->has_news = false;
+  state->calibrated = true;
 }
 
 void hdStartScheduler() {
   note("start");
+  inside().runs = true;
   inside().pace.start();
   inside().scheduler = std::thread(schedule);
 }
 
 void hdStopScheduler() {
   note("stop");
+  inside().runs = false;
   inside().pace.stop();
   if (!state->lazy_stop) join_scheduler();
 }
 
 void hdSetSchedulerRate(unsigned long rate_hz) {
-  if (rate_hz != 500 && rate_hz != 1000) push_error(0x101);
+  if (rate_hz != 500 && rate_hz != 1000) push_error(0x101);  // [guide] HD_INVALID_VALUE
 }
 
 unsigned long hdScheduleAsynchronous(std::uint32_t (*callback)(void*), void* data,
@@ -292,6 +339,14 @@ unsigned long hdScheduleAsynchronous(std::uint32_t (*callback)(void*), void* dat
   inside().callbacks.emplace_back(callback, data);
   return 1;
 }
+
+#ifdef FAKE_WITH_UNRESOLVED
+/// Refers to a function that no library has, as libraries of older systems do.
+void touchtrial_no_such_function();
+void hdNeverCalled() {
+  touchtrial_no_such_function();
+}
+#endif
 
 #ifndef FAKE_WITHOUT_UNSCHEDULE
 void hdUnschedule(unsigned long handle) {

@@ -1,4 +1,5 @@
-/// \file A test's settings for the fake libHD, and the calls that the fake observed.
+/// \file A test's settings for the fake libHD, and the calls that the fake observed. Where each
+/// behaviour comes from stands in fake_hd.cpp.
 #pragma once
 
 #include "device/fakes/fake_parts.hpp"
@@ -18,14 +19,23 @@ enum HdName : unsigned {
   kHdLabTouch = 8
 };
 
+/// The bits of HD_CALIBRATION_STYLE.
+enum HdStyle : int { kHdEncoderReset = 1, kHdAuto = 2, kHdInkwell = 4 };
+
 struct FakeHd {
   // Orders.
   std::atomic<unsigned> opens_by{kHdNull};
-  std::atomic<std::uint32_t> calibration{0x5000};
-  std::atomic<int> calibration_styles{4};
+  std::atomic<int> calibration_styles{kHdInkwell};  ///< those that the device supports
+  std::atomic<bool> calibrated{true};               ///< since it was plugged in
+  std::atomic<bool> in_inkwell{false};              ///< the stylus
+  std::atomic<int> failing_updates{0};              ///< of a calibration, from now on
+  std::atomic<bool> has_news{false};  ///< a device of the style auto was moved and has learnt
+  /// How far the encoders are off until a calibration: position read is the hand's less this.
+  SharedVec encoder_error_mm;
   std::atomic<std::uint32_t> next_error{0};  ///< pushed once, at the end of a frame
   std::atomic<bool> lost{false};             ///< every frame is a communication error
   std::atomic<bool> tells_temperature{true};
+  std::atomic<bool> tells_damping{true};
   std::atomic<bool> tells_usable_workspace{true};
   std::atomic<bool> tells_max_workspace{true};
   std::array<std::atomic<double>, 6> warmth{};
@@ -41,7 +51,7 @@ struct FakeHd {
   std::atomic<long> misuses{0};           ///< nested frames, forces outside, calls after the end
   std::atomic<int> calibration_updates{0};
   std::atomic<int> last_style{0};
-  SharedVec force_n;
+  SharedVec force_n;  ///< on the hand
 };
 
 /// What the fake exports beside libHD's own names.

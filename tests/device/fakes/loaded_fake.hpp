@@ -129,6 +129,11 @@ struct LoadedDhd : LoadedFake<FakeDhdExports> {
   LoadedDhd() : LoadedFake(TOUCHTRIAL_FAKE_DHD, "fake_dhd_exports") {}
 };
 
+/// libdrd, which has the functions of libdhd too.
+struct LoadedDrd : LoadedFake<FakeDhdExports> {
+  LoadedDrd() : LoadedFake(TOUCHTRIAL_FAKE_DRD, "fake_dhd_exports") {}
+};
+
 struct LoadedHd : LoadedFake<FakeHdExports> {
   LoadedHd() : LoadedFake(TOUCHTRIAL_FAKE_HD, "fake_hd_exports") {}
 };

@@ -4,8 +4,6 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,9 +13,6 @@ namespace touchtrial::device::falcon {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// \return a reply as the device writes it, built by hand
 Packet packet_of(const EncoderCounts& counts, unsigned flags) {
@@ -129,37 +124,6 @@ TEST_CASE("falcon packets: one wrong byte anywhere makes it no reply") {
   }
 }
 
-TEST_CASE("falcon motors: minus ten thousand for a newton metre, rounded") {
-  CHECK(motor_values({0.1, -0.2, 0.0}) == MotorValues{-1000, 2000, 0});
-  CHECK(motor_values({0.00004, 0.00006, -0.00006}) == MotorValues{0, -1, 1});
-}
-
-TEST_CASE("falcon motors: beyond the range all three shrink by one factor") {
-  CHECK(motor_values({-1.0, 0.0, 0.0}) == MotorValues{10000, 0, 0});
-  CHECK(motor_values({-2.0, 1.0, 0.5}) == MotorValues{10000, -5000, -2500});
-  RandomStream random(2, "falcon clamp");
-  for (int i = 0; i < 2000; ++i) {
-    const PerLeg torques = {random.uniform(-50.0, 50.0), random.uniform(-50.0, 50.0),
-                            random.uniform(-50.0, 50.0)};
-    const MotorValues values = motor_values(torques);
-    const double most =
-        std::max({std::abs(torques[0]), std::abs(torques[1]), std::abs(torques[2])});
-    const double scale = std::min(1.0, 1.0 / most);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      REQUIRE(std::abs(values[axis] + 1e4 * scale * torques[axis]) <= 0.5 + 1e-6);
-    }
-  }
-}
-
-TEST_CASE("falcon motors: torques that are not finite or too large give zero or values in range") {
-  for (const double bad : {kNan, kInfinity, -kInfinity}) {
-    CHECK(motor_values({bad, 0.1, 0.1}) == MotorValues{});
-    CHECK(motor_values({0.1, 0.1, bad}) == MotorValues{});
-  }
-  CHECK(motor_values({1e300, 0.0, 0.0}) == MotorValues{-10000, 0, 0});
-  CHECK(motor_values({1e308, 0.0, 0.0}) == MotorValues{});
-}
-
 TEST_CASE("falcon lights: the order of the colours is the user's") {
   CHECK(led_bits({true, false, false}, {0, 1, 2}) == 1);
   CHECK(led_bits({false, true, false}, {0, 1, 2}) == 2);
@@ -168,14 +132,6 @@ TEST_CASE("falcon lights: the order of the colours is the user's") {
   CHECK(led_bits({true, true, true}, {2, 0, 1}) == 7);
   CHECK(led_bits({}, {0, 1, 2}) == 0);
   CHECK(led_bits({true, true, true}, {-1, 3, 99}) == 0);
-}
-
-TEST_CASE("falcon gravity bias: added, and never beyond a newton") {
-  const Vec3 lifted = with_gravity_bias({1.0, 2.0, 3.0}, {0.0, 0.5, 0.0});
-  CHECK(lifted == Vec3{1.0, 2.5, 3.0});
-  CHECK(norm(with_gravity_bias({}, {3.0, 4.0, 0.0}) - Vec3{0.6, 0.8, 0.0}) < 1e-15);
-  CHECK(with_gravity_bias({1.0, 0.0, 0.0}, {kNan, 0.0, 0.0}) == Vec3{1.0, 0.0, 0.0});
-  CHECK(with_gravity_bias({1.0, 0.0, 0.0}, {kInfinity, 0.0, 0.0}) == Vec3{1.0, 0.0, 0.0});
 }
 
 TEST_CASE("falcon stream: one transfer with one reply") {

@@ -71,6 +71,18 @@ TEST_CASE("the udev rule names only the Falcon") {
   CHECK(rule.find("MODE=\"0666\"") == std::string::npos);
 }
 
+TEST_CASE(
+    "the udev rule of Force Dimension names the maker's devices alone, and is installed too") {
+  constexpr auto kName = "60-touchtrial-force-dimension.rules";
+  const std::string rule = text_of(kSource / "config/udev" / kName);
+  CHECK_THAT(rule, holds_text("ATTR{idVendor}==\"1451\""));
+  CHECK_THAT(rule, holds_text("TAG+=\"uaccess\""));
+  CHECK(rule.find("MODE=\"0666\"") == std::string::npos);
+  const TempFolder folder;
+  CHECK(install("--root '" + folder.path().string() + "'").status == 0);
+  CHECK(text_of(folder.path() / "etc/udev/rules.d" / kName) == rule);
+}
+
 TEST_CASE("the installer of udev rules refuses arguments that it does not know") {
   CHECK(install("--rot /tmp").status != 0);
   CHECK(install("--root").status != 0);

@@ -46,7 +46,7 @@ TEST_CASE("openhaptics: a device that does not answer is reported in the library
   fake->opens_by = 0;
   CHECK_THROWS_AS(device::OpenHapticsDevice(settings_of_fake()), DeviceError);
   CHECK_THROWS_WITH(device::OpenHapticsDevice(settings_of_fake()),
-                    holds_text("no such device (0x301)") && holds_text("plug it in"));
+                    holds_text("no such device (0x300)") && holds_text("plug it in"));
 }
 
 TEST_CASE("openhaptics: a library without one of the functions is refused by the function's name") {
@@ -72,12 +72,19 @@ TEST_CASE("openhaptics: the device describes itself") {
   CHECK(info.firmware == "1.25");
   CHECK(info.max_force_n == 3.25);
   CHECK(info.continuous_force_n == 0.875);
-  CHECK(info.max_stiffness_n_per_mm == 0.75);
+  CHECK(info.max_stiffness_n_per_mm == Approx(0.4));
+  CHECK(info.max_damping_n_s_per_mm == Approx(0.004));
   CHECK(info.max_rate_hz == 1000.0);
   CHECK_FALSE(info.simulated);
   REQUIRE(info.workspace);
   CHECK(info.workspace->least_mm == Vec3{-80.0, -60.0, -40.0});
   CHECK(info.workspace->greatest_mm == Vec3{80.0, 60.0, 30.0});
+}
+
+TEST_CASE("openhaptics: a library that does not know a limit of damping gives none") {
+  LoadedHd fake;
+  fake->tells_damping = false;
+  CHECK(device::OpenHapticsDevice(settings_of_fake()).info().max_damping_n_s_per_mm == 0.0);
 }
 
 TEST_CASE("openhaptics: without a usable workspace the device has the one that it reaches") {
@@ -118,7 +125,7 @@ TEST_CASE("openhaptics: a wall carries the hand that pushes against it") {
 
 TEST_CASE("openhaptics: without calibration the force stays zero, and the readiness says why") {
   LoadedHd fake;
-  fake->calibration = 0x5002;
+  fake->calibrated = false;
   device::OpenHapticsDevice device(settings_of_fake());
   CHECK_FALSE(next_sample(device).ready);
   CHECK(device.readiness() == device::DeviceReadiness::needs_inkwell);
@@ -126,30 +133,99 @@ TEST_CASE("openhaptics: without calibration the force stays zero, and the readin
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->frames > begun + 50; }));
   CHECK(fake->zero_forces_last >= 50);
 
-  fake->calibration = 0x5001;
+  fake->in_inkwell = true;
   REQUIRE(eventually([&] { return device.readiness() == device::DeviceReadiness::ready; }));
   CHECK(next_sample(device).ready);
   CHECK(fake->calibration_updates == 1);
-  CHECK(fake->last_style == 4);
+  CHECK(fake->last_style == fakes::kHdInkwell);
   CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().y == 1.0; }));
 }
 
-TEST_CASE("openhaptics: calibration is only done by a style that the device offers") {
+TEST_CASE("openhaptics: of the styles that a device has, auto comes before inkwell before reset") {
+  using device::DeviceReadiness;
+  const auto [styles, need] = GENERATE(table<int, DeviceReadiness>(
+      {{fakes::kHdEncoderReset | fakes::kHdAuto | fakes::kHdInkwell, DeviceReadiness::needs_homing},
+       {fakes::kHdAuto | fakes::kHdInkwell, DeviceReadiness::needs_homing},
+       {fakes::kHdEncoderReset | fakes::kHdInkwell, DeviceReadiness::needs_inkwell},
+       {fakes::kHdEncoderReset, DeviceReadiness::needs_reset},
+       {8, DeviceReadiness::needs_calibration}}));
   LoadedHd fake;
-  fake->calibration = 0x5001;
-  SECTION("automatic") {
-    fake->calibration_styles = 2;
-    device::OpenHapticsDevice device(settings_of_fake());
-    REQUIRE(eventually([&] { return device.readiness() == device::DeviceReadiness::ready; }));
-    CHECK(fake->last_style == 2);
-  }
-  SECTION("none that can be done from here") {
-    fake->calibration_styles = 1;
-    device::OpenHapticsDevice device(settings_of_fake());
-    REQUIRE(eventually([&] { return fake->frames > 200; }));
-    CHECK(device.readiness() == device::DeviceReadiness::needs_calibration);
+  fake->calibrated = false;
+  fake->calibration_styles = styles;
+  device::OpenHapticsDevice device(settings_of_fake());
+  (void)next_sample(device);
+  CHECK(device.readiness() == need);
+  fake->in_inkwell = true;
+  fake->has_news = true;
+  const bool by_itself =
+      need == DeviceReadiness::needs_homing || need == DeviceReadiness::needs_inkwell;
+  REQUIRE(eventually([&] {
+    return fake->frames > 300 && (device.readiness() == DeviceReadiness::ready) == by_itself;
+  }));
+  if (by_itself) {
+    CHECK(fake->last_style ==
+          (need == DeviceReadiness::needs_homing ? fakes::kHdAuto : fakes::kHdInkwell));
+  } else {
     CHECK(fake->calibration_updates == 0);
   }
+  CHECK(fake->misuses == 0);
+}
+
+TEST_CASE("openhaptics: an arm is reset where it is when a person says so, and never before") {
+  LoadedHd fake;
+  fake->calibration_styles = fakes::kHdEncoderReset;
+  fake->calibrated = false;
+  fake->encoder_error_mm.set({-170.0, 90.0, 40.0});
+  fake->hand.rest_at({5.0, 3.0, 1.0});
+  device::OpenHapticsDevice device(settings_of_fake());
+  REQUIRE(eventually([&] { return fake->frames > 300; }));
+  CHECK(fake->calibration_updates == 0);
+  CHECK(device.readiness() == device::DeviceReadiness::needs_reset);
+
+  const Vec3 reset_place = {12.0, -4.0, 9.0};
+  fake->hand.rest_at(reset_place);
+  device.calibrate();
+  REQUIRE(eventually([&] { return device.readiness() == device::DeviceReadiness::ready; }));
+  CHECK(fake->calibration_updates == 1);
+  CHECK(fake->last_style == fakes::kHdEncoderReset);
+  fake->hand.rest_at(reset_place + Vec3{1.0, 2.0, 3.0});
+  const device::DeviceSample sample = next_sample(device);
+  CHECK(sample.ready);
+  CHECK(norm(sample.position_mm - Vec3{1.0, 2.0, 3.0}) < 1e-9);
+
+  // Said again by mistake, it changes nothing.
+  device.calibrate();
+  (void)next_sample(device);
+  CHECK(fake->calibration_updates == 1);
+  CHECK(device.fault() == device::DeviceFault::none);
+}
+
+TEST_CASE("openhaptics: a calibration that fails is tried again, and is no fault") {
+  LoadedHd fake;
+  fake->calibrated = false;
+  fake->in_inkwell = true;
+  fake->failing_updates = 2;
+  device::OpenHapticsDevice device(settings_of_fake());
+  REQUIRE(eventually([&] { return device.readiness() == device::DeviceReadiness::ready; }));
+  CHECK(fake->calibration_updates == 3);
+  CHECK(device.fault() == device::DeviceFault::none);
+}
+
+TEST_CASE("openhaptics: what a device learns while forces are on waits until they are off") {
+  LoadedHd fake;
+  fake->calibration_styles = fakes::kHdAuto;
+  fake->encoder_error_mm.set({0.5, 0.0, 0.0});
+  fake->hand.rest_at({10.0, 0.0, 0.0});
+  device::OpenHapticsDevice device(settings_of_fake());
+  fakes::WallRun wall(device, fake.exports());
+  REQUIRE(wall.run(50).end == device::ServoEnd::time_limit);
+  fake->has_news = true;
+  CHECK(wall.run(400).end == device::ServoEnd::time_limit);
+  CHECK(fake->calibration_updates == 0);
+  CHECK(device.readiness() == device::DeviceReadiness::ready);
+  fake.exports().run_freely();
+  REQUIRE(eventually([&] { return fake->calibration_updates == 1; }));
+  CHECK(next_sample(device).position_mm == Vec3{10.0, 0.0, 0.0});
 }
 
 TEST_CASE("openhaptics: each of the library's errors becomes its own fault") {
@@ -293,7 +369,13 @@ TEST_CASE("the list of openhaptics names the connected device, and closes it") {
   CHECK(listing.model == "3D Systems Touch");
   CHECK(listing.serial == "SN-4711");
   CHECK(listing.missing.empty());
+  REQUIRE(listing.notes.size() == 1);
+  CHECK_THAT(listing.notes[0], holds_text("at most 0.4 N/mm") && holds_text("0.004 N s/mm"));
   CHECK(fake.calls() == "init disable_device ");
+}
+
+TEST_CASE("openhaptics: a library with references that nothing resolves is used all the same") {
+  CHECK_THAT(listing_with(TOUCHTRIAL_UNRESOLVED_HD).model, holds_text("Touch"));
 }
 
 TEST_CASE("the list of openhaptics says what is missing: device, library, function") {

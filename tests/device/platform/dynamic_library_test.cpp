@@ -48,6 +48,19 @@ TEST_CASE("functions are found by name, and a missing one is named") {
                     holds_text("has no function hdNoSuchThing; do this"));
 }
 
+TEST_CASE("a reference that no library has refuses a library, unless it is resolved as needed") {
+  using device::Binding;
+  using device::DynamicLibrary;
+  using device::Unload;
+  // A copy, because a library that is loaded already is not resolved again.
+  const TempFolder folder;
+  const auto file = folder.path() / "unresolved.so";
+  std::filesystem::copy_file(TOUCHTRIAL_UNRESOLVED_HD, file);
+  CHECK_THROWS_WITH(DynamicLibrary(file, Unload::when_closed, "do this"),
+                    holds_text("touchtrial_no_such_function"));
+  CHECK_NOTHROW(DynamicLibrary(file, Unload::when_closed, "do this", Binding::as_needed));
+}
+
 TEST_CASE("a truncated library is found without loading it into this process") {
   const Bytes whole = read_file(TOUCHTRIAL_FAKE_HD);
   const TempFolder folder;

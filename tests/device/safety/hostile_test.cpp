@@ -134,6 +134,7 @@ class ChainRun {
         judge_(limits_, 1.0 / rate_hz),
         chain_(limits_, 1.0 / rate_hz),
         readings_(random_),
+        has_support_(seed % 2 == 1),
         stale_ticks_(limits_.stale_s * rate_hz) {}
 
   std::int64_t run(int ticks) {
@@ -152,8 +153,9 @@ class ChainRun {
     const Vec3 force_n = hostile_force_n(random_);
     const device::DeviceSample sample = readings_.next();
     const std::int64_t ticks = random_.below(30) == 0 ? 46 : 1;
-    const bool was_faulted = chain_.faulted();
-    const device::SafeForce safe = chain_.check(force_n, sample, ticks);
+    const Vec3 support_n = has_support_ ? hostile_force_n(random_) : Vec3{};
+    const bool was_faulted = chain_.faulted() || !is_finite(support_n);
+    const device::SafeForce safe = chain_.check(force_n, sample, ticks, support_n);
     const bool is_fault = safe.verdict == device::SafetyVerdict::fault;
     judge_.see(safe.force_n, is_fault);
     hold(force_n, sample, safe.force_n, is_fault, was_faulted);
@@ -182,6 +184,7 @@ class ChainRun {
   Judge judge_;
   device::SafetyChain chain_;
   HostileReadings readings_;
+  bool has_support_;
   double stale_ticks_;
   bool may_pass_ = false;
   bool had_force_ = false;
@@ -204,8 +207,8 @@ TEST_CASE(
 
 class HostileDevice final : public device::HapticDevice {
  public:
-  HostileDevice(RandomStream& random, double max_force_n)
-      : random_(random), readings_(random), max_force_n_(max_force_n) {}
+  HostileDevice(RandomStream& random, double max_force_n, bool has_support)
+      : random_(random), readings_(random), max_force_n_(max_force_n), has_support_(has_support) {}
 
   [[nodiscard]] device::DeviceInfo info() const override {
     return {"hostile", "", max_force_n_, true};
@@ -218,6 +221,11 @@ class HostileDevice final : public device::HapticDevice {
     written.push_back(force_n);
     return random_.below(1000) == 0 ? device::DeviceStatus::fault : device::DeviceStatus::ok;
   }
+  [[nodiscard]] Vec3 support_force_n(const device::DeviceSample&) noexcept override {
+    if (!has_support_) return {};
+    return random_.below(300) == 0 ? hostile_force_n(random_)
+                                   : Vec3{0.0, random_.uniform(-3.0, 3.0), 1.0};
+  }
   void halt() noexcept override {}
   void rearm() noexcept override {}
 
@@ -227,6 +235,7 @@ class HostileDevice final : public device::HapticDevice {
   RandomStream& random_;
   HostileReadings readings_;
   double max_force_n_;
+  bool has_support_;
 };
 
 /// Small at first, so that a run engages; then hostile, and with requests to the servo.
@@ -291,7 +300,7 @@ TEST_CASE(
     device::ServoOptions options{
         .limit_ticks = 600, .fade_ticks = 100, .limits = hostile_limits(random)};
     options.rate_hz = random.uniform(1000.0, 10'000.0);
-    HostileDevice device(random, random.uniform(0.5, 8.0));
+    HostileDevice device(random, random.uniform(0.5, 8.0), seed % 2 == 1);
     device::ServoControl control;
     HostileForce force(random, control);
     CountedSamples sink;

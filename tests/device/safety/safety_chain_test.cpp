@@ -175,6 +175,68 @@ TEST_CASE("an overrun counts with the time that it took") {
   CHECK(safety.check({}, device.next()).verdict == device::SafetyVerdict::fault);
 }
 
+TEST_CASE("the gate judges the rendered force, and no support comes before it opens") {
+  device::SafetyChain safety({});
+  Readings device;
+  const Vec3 support_n{0.0, 0.0, 1.2};
+  for (int tick = 0; tick < 20; ++tick) {
+    const device::SafeForce held = safety.check({0.0, 0.0, 0.6}, device.next(), 1, support_n);
+    REQUIRE(held.force_n == Vec3{});
+  }
+  // 1.2 N of support alone would be above the gate's 0.5 N.
+  for (int tick = 0; tick < 101; ++tick) {
+    const device::SafeForce safe = safety.check({}, device.next(), 1, support_n);
+    REQUIRE(safe.verdict == device::SafetyVerdict::passed);
+    REQUIRE(safe.force_n.z == Approx(0.012 * tick).margin(1e-12));
+    REQUIRE(safe.rendered_n == Vec3{});
+  }
+  const device::SafeForce both = safety.check({0.4, 0.0, 0.0}, device.next(), 1, support_n);
+  CHECK(both.force_n == Vec3{0.4, 0.0, 1.2});
+  CHECK(both.rendered_n == Vec3{0.4, 0.0, 0.0});
+}
+
+TEST_CASE("norm, slew and thermal limits hold for the rendered force and the support together") {
+  SECTION("norm: both are shortened alike") {
+    device::SafetyChain safety(norm_limit_alone(2.5));
+    const device::SafeForce safe = safety.check({3.0, 0.0, 0.0}, {}, 1, {0.0, 0.0, 4.0});
+    CHECK(safe.verdict == device::SafetyVerdict::limited);
+    CHECK(norm(safe.force_n - Vec3{1.5, 0.0, 2.0}) < 1e-12);
+    CHECK(norm(safe.rendered_n - Vec3{1.5, 0.0, 0.0}) < 1e-12);
+  }
+  SECTION("slew: a support that jumps is followed by 0.2 N a tick") {
+    device::SafetyChain safety({.max_slew_n_per_s = 200.0});
+    Readings device;
+    static_cast<void>(engage(safety, device, {}));
+    for (int tick = 1; tick <= 5; ++tick) {
+      REQUIRE(safety.check({}, device.next(), 1, {0.0, 0.0, 1.0}).force_n.z == Approx(0.2 * tick));
+    }
+  }
+  SECTION("heat: motors that carry 3 N for a minute get no more than they can hold") {
+    device::SafetyChain safety(
+        {.max_force_n = 3.0, .continuous_force_n = 1.0, .thermal_budget_s = 1.0});
+    Readings device;
+    static_cast<void>(engage(safety, device, {}));
+    for (int tick = 0; tick < 60'000; ++tick) {
+      static_cast<void>(safety.check({}, device.next(), 1, {0.0, 0.0, 3.0}));
+    }
+    CHECK(safety.sent_n().z == Approx(1.0).epsilon(0.05));
+  }
+}
+
+TEST_CASE("a support that is not finite is a fault, and a fault takes the support away") {
+  device::SafetyChain safety({});
+  Readings device;
+  static_cast<void>(engage(safety, device, {}));
+  for (int tick = 0; tick < 20; ++tick) {
+    static_cast<void>(safety.check({}, device.next(), 1, {0.0, 0.0, 1.0}));
+  }
+  REQUIRE(safety.sent_n().z == 1.0);
+  const double bad = GENERATE(std::numeric_limits<double>::quiet_NaN(), 1e300);
+  CHECK(safety.check({}, device.next(), 1, {bad, 0.0, 0.0}).force_n == Vec3{});
+  CHECK(safety.fault() == device::SafetyFault::not_finite);
+  CHECK(safety.check({}, device.next(), 1, {0.0, 0.0, 1.0}).force_n == Vec3{});
+}
+
 TEST_CASE("unsound limits or an unsound tick let no force pass") {
   device::SafetyLimits limits;
   double tick_s = 0.001;

@@ -117,6 +117,38 @@ TEST_CASE("motors that one run has warmed are warm in the next") {
   CHECK(last_force_n() == 3.0);
 }
 
+/// Says that it exerts four fifths of the force that it was given in the tick before.
+class WeakDevice final : public device::HapticDevice {
+ public:
+  [[nodiscard]] device::DeviceInfo info() const override { return {"weak", "", 3.3, true}; }
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
+    sample.sequence = ++readings_;
+    sample.delivered_n = 0.8 * written_n_;
+    return device::DeviceStatus::ok;
+  }
+  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
+    written_n_ = force_n;
+    return device::DeviceStatus::ok;
+  }
+  void halt() noexcept override {}
+  void rearm() noexcept override {}
+
+ private:
+  std::uint64_t readings_ = 0;
+  Vec3 written_n_;
+};
+
+TEST_CASE("a run reports the share of the forces that the device says it exerted") {
+  WeakDevice weak;
+  ConstantForce force({0.1, 0.0, 0.4});
+  KeptSamples kept;
+  const device::ServoOptions options{.limit_ticks = 500};
+  CHECK(device::run_servo_in_virtual_time(weak, force, kept, options).delivered_share ==
+        Approx(0.8));
+  ScriptedDevice silent;
+  CHECK(device::run_servo_in_virtual_time(silent, force, kept, options).delivered_share == 0.0);
+}
+
 TEST_CASE("a force that is not a number ends the loop without reaching the device") {
   ScriptedDevice device;
   ConstantForce force({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
@@ -125,6 +157,26 @@ TEST_CASE("a force that is not a number ends the loop without reaching the devic
   CHECK(report.end == device::ServoEnd::fault);
   CHECK(report.ticks == 0);
   CHECK(device.written == std::vector<Vec3>{{}});
+}
+
+TEST_CASE("a device's support is sent with every force, fades with it, and is no contact") {
+  ScriptedDevice device;
+  device.support_n = {0.0, 0.0, 1.0};
+  ConstantForce force({0.5, 0.0, 0.0});
+  KeptSamples kept;
+  device::LatestValue<device::ServoParameters> parameters({0.0});  // strength off: still carried
+  device::VirtualClock clock;
+  const device::ServoReport report = device::run_servo(
+      device, force, kept, {.limit_ticks = 3, .fade_ticks = 4, .limits = norm_limit_alone()}, clock,
+      {.parameters = &parameters});
+  CHECK(report.end == device::ServoEnd::time_limit);
+  CHECK(report.contact_ticks == 0);
+  CHECK(report.limited_ticks == 0);
+  CHECK(report.force_limit_n == Approx(3.3 - 1.0));  // what is left for the texture
+  const std::vector<Vec3> expected = {{0, 0, 1},   {0, 0, 1},    {0, 0, 1}, {0, 0, 0.75},
+                                      {0, 0, 0.5}, {0, 0, 0.25}, {0, 0, 0}, {0, 0, 0}};
+  CHECK(device.written == expected);
+  for (const device::ServoSample& sample : kept.samples) CHECK(sample.force_n == Vec3{});
 }
 
 TEST_CASE("a lost device ends the loop with a fault") {

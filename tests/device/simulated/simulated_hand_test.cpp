@@ -141,6 +141,38 @@ TEST_CASE("a hand's motion is a function of its seed") {
   }
 }
 
+TEST_CASE(
+    "a hand holds the device that it is given: heavier, stiffer to move, read in whole steps") {
+  device::DeviceModel device;
+  device.mass_kg = 0.3;
+  device.coulomb_n = 0.1;
+  device.position_step_mm = 0.05;
+  device.max_force_n = 2.0;
+  device::HandOptions options;
+  options.explore_s = 3.0;
+  RandomStream random(1, "simulated_hand_test");
+  const device::ExplorationPath path(kPlane, {.duration_s = options.explore_s}, random);
+  device::SimulatedHand pushed(options, path, device);
+  device::SimulatedHand free(options, path, device);
+  CHECK(pushed.info().max_force_n == 2.0);
+  device::DeviceSample at;
+  device::DeviceSample otherwise;
+  double greatest_mm = 0.0;
+  for (int tick = 0; tick < 2500; ++tick) {
+    // The device delivers 2 N of these 4 N, on a spring of 0.2 N/mm with friction of 0.1 N.
+    REQUIRE(pushed.write({4.0, 0.0, 0.0}) == device::DeviceStatus::ok);
+    REQUIRE(free.write({}) == device::DeviceStatus::ok);
+    REQUIRE(pushed.read(at) == device::DeviceStatus::ok);
+    REQUIRE(free.read(otherwise) == device::DeviceStatus::ok);
+    REQUIRE(std::abs(at.position_mm.x / 0.05 - std::round(at.position_mm.x / 0.05)) < 1e-9);
+    if (tick > 2000) {
+      greatest_mm = std::max(greatest_mm, at.position_mm.x - otherwise.position_mm.x);
+    }
+  }
+  CHECK(greatest_mm > 2.0 / 0.2 - 2.0 * 0.1 / 0.2 - 0.05);
+  CHECK(greatest_mm < 2.0 / 0.2 + 2.0 * 0.1 / 0.2 + 0.05);
+}
+
 TEST_CASE("a hand refuses impossible options") {
   device::HandOptions weightless;
   weightless.mass_kg = 0.0;
@@ -148,6 +180,12 @@ TEST_CASE("a hand refuses impossible options") {
   device::HandOptions pulling;
   pulling.push_n = -0.1;
   CHECK_THROWS_AS(hand_with(pulling), std::invalid_argument);
+  device::DeviceModel impossible;
+  impossible.coulomb_n = -1.0;
+  RandomStream random(1, "simulated_hand_test");
+  CHECK_THROWS_AS(
+      device::SimulatedHand({}, device::ExplorationPath(kPlane, {}, random), impossible),
+      std::invalid_argument);
 }
 
 TEST_CASE("the simulated device is always present, and still strokes after a minute") {

@@ -67,6 +67,20 @@ TEST_CASE("a station names a missing file that the device needs, and waits for i
   CHECK(station.make_ready() == session::SupplyState::ready);
 }
 
+TEST_CASE("a device is calibrated at its reset position once somebody says that it is there") {
+  Bench bench;
+  bench.cable.needs_reset = true;
+  CHECK(bench.station.make_ready() == session::SupplyState::not_yet);
+  CHECK(bench.cable.needs_reset);
+  CHECK_THAT(bench.helper.needs.back(), holds_text("reset position") && holds_text("press h"));
+  bench.helper.resets = true;
+  CHECK(bench.station.make_ready() == session::SupplyState::not_yet);
+  CHECK_FALSE(bench.cable.needs_reset);
+  CHECK(bench.helper.consents == 0);
+  CHECK(bench.station.make_ready() == session::SupplyState::ready);
+  CHECK(bench.helper.consents == 1);
+}
+
 TEST_CASE("a lost device is opened again and armed again") {
   Bench bench;
   REQUIRE(bench.until_settled() == session::SupplyState::ready);

@@ -47,6 +47,7 @@ session::Attendant::Says Helper::attend(const std::string& need) {
     return Says::arm;
   }
   needs.push_back(need);
+  if (resets) return Says::at_reset;
   if (plugs_in && needs.size() % 2 == 0) {
     cable_.plugged = true;
     cable_.homed = true;

@@ -18,7 +18,8 @@ namespace touchtrial {
 struct Cable {
   std::atomic<bool> plugged{true};
   std::atomic<bool> homed{true};
-  std::atomic<int> pull_at_tick{-1};  ///< the cable comes off in this tick, once
+  std::atomic<bool> needs_reset{false};  ///< until somebody says that the arm is at its place
+  std::atomic<int> pull_at_tick{-1};     ///< the cable comes off in this tick, once
   std::atomic<int> opened{0};
   std::atomic<int> writes_unarmed{0};     ///< forces other than zero while halted
   std::atomic<int> strong_writes{0};      ///< forces other than zero
@@ -41,8 +42,10 @@ class FakeDevice final : public device::HapticDevice {
     return lost_ ? device::DeviceFault::link_lost : device::DeviceFault::none;
   }
   [[nodiscard]] device::DeviceReadiness readiness() const noexcept override {
+    if (cable_.needs_reset) return device::DeviceReadiness::needs_reset;
     return cable_.homed ? device::DeviceReadiness::ready : device::DeviceReadiness::needs_homing;
   }
+  void calibrate() noexcept override { cable_.needs_reset = false; }
   /// Begins a new exploration: raises the hand.
   void lift() noexcept { tick_ = 0; }
 
@@ -64,6 +67,7 @@ class Helper final : public session::Attendant {
   std::vector<std::string> needs;
   bool gives_up = false;
   bool plugs_in = true;
+  bool resets = false;  ///< puts the arm at its place and says so
   int consents = 0;
 
  private:

@@ -331,5 +331,73 @@ TEST_CASE("a real-time session on the machine's own clock records how late its t
   CHECK(traces == 5);
 }
 
+/// Before each exploration, a hand that presses as told and strokes too slowly, until somebody has
+/// seen it.
+class SeenExplorer final : public session::Explorer {
+ public:
+  SeenExplorer(session::Explorer& inner, std::function<bool()> is_seen)
+      : inner_(inner), is_seen_(std::move(is_seen)) {}
+
+  [[nodiscard]] bool in_real_time() const noexcept override { return true; }
+  [[nodiscard]] session::Exploration explore(const engine::RenderingModel& model,
+                                             const PlaneGeometry& plane,
+                                             session::Participant& participant,
+                                             const device::ServoOptions& options,
+                                             store::Trace& trace) override {
+    constexpr double kMmATick = 0.02;
+    for (std::int64_t tick = 0; tick < 1000; ++tick) {
+      participant.feel({{kMmATick * static_cast<double>(tick), 4.0, -1.5}, {0.0, 0.0, 0.6}, tick});
+    }
+    device::ServoControl control;
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+    while (!is_seen_() && std::chrono::steady_clock::now() < give_up) {
+      participant.exploring(control);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return inner_.explore(model, plane, participant, options, trace);
+  }
+
+ private:
+  session::Explorer& inner_;
+  std::function<bool()> is_seen_;
+};
+
+class HandWatcher final : public session::Experimenter {
+ public:
+  void show(const session::SessionStatus& status) override {
+    if (status.hand) {
+      seen = status.hand;
+      stage = status.stage;
+    }
+    shown_last = status.hand;
+  }
+
+  std::optional<session::HandLevels> seen;
+  std::string stage;
+  std::optional<session::HandLevels> shown_last;
+};
+
+TEST_CASE("the experimenter sees force and speed of the hand while a plane is on, and only then") {
+  Laboratory lab;
+  HandWatcher watcher;
+  SeenExplorer explorer(lab.explorer, [&] { return watcher.seen.has_value(); });
+  REQUIRE(lab.station.make_ready() == session::SupplyState::ready);
+  store::SessionOpening opening;
+  opening.participant = "P001";
+  opening.enrolment = 1;
+  lab.session.open({}, opening, "{}");
+  (void)session::run_session(lab.session, {.key = lab.study.key(),
+                                           .source = lab.source,
+                                           .participant = lab.person,
+                                           .clock = lab.clock,
+                                           .explorer = explorer,
+                                           .devices = lab.station,
+                                           .experimenter = watcher});
+  REQUIRE(watcher.seen);
+  CHECK(watcher.seen == session::HandLevels{session::HandLevel::right, session::HandLevel::low});
+  CHECK(watcher.stage == "exploring");
+  CHECK_FALSE(watcher.shown_last);
+}
+
 }  // namespace
 }  // namespace touchtrial

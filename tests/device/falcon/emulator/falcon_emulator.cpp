@@ -85,7 +85,18 @@ void FalconEmulator::serve_boot_loader(std::span<const std::uint8_t> bytes) {
 void FalconEmulator::serve_firmware(std::span<const std::uint8_t> bytes) {
   if (!chip_.is_set_for_running()) return;
   if (chip_.latency_ms() != 1) complain("the latency timer is not at 1 ms while running");
-  for (const RunningFalcon::Packet& reply : running_->receive(bytes)) deliver(reply);
+  chip_.run_out();
+  const std::vector<RunningFalcon::Packet> replies = running_->receive(bytes);
+  if (!replies.empty()) deliver_late();
+  for (const RunningFalcon::Packet& reply : replies) deliver(reply);
+}
+
+void FalconEmulator::deliver_late() {
+  for (const RunningFalcon::Packet& reply : late_) {
+    chip_.to_host(reply);
+    chip_.run_out();
+  }
+  late_.clear();
 }
 
 void FalconEmulator::deliver(const RunningFalcon::Packet& reply) {
@@ -94,6 +105,9 @@ void FalconEmulator::deliver(const RunningFalcon::Packet& reply) {
   } else if (to_shorten_ > 0) {
     --to_shorten_;
     chip_.to_host(std::span(reply).first(kept_of_short_));
+  } else if (to_delay_ > 0) {
+    --to_delay_;
+    late_.push_back(reply);
   } else {
     chip_.to_host(reply);
   }
@@ -127,6 +141,11 @@ void FalconEmulator::shorten_replies(int count, std::size_t kept) {
   kept_of_short_ = std::min<std::size_t>(kept, RunningFalcon::kPacketSize - 1);
 }
 
+void FalconEmulator::delay_replies(int count) {
+  const std::scoped_lock lock(mutex_);
+  to_delay_ = count;
+}
+
 void FalconEmulator::send_garbage(std::span<const std::uint8_t> bytes) {
   const std::scoped_lock lock(mutex_);
   chip_.to_host(bytes);
@@ -140,6 +159,7 @@ void FalconEmulator::stick_encoders(bool stuck) {
 void FalconEmulator::unplug() {
   const std::scoped_lock lock(mutex_);
   plugged_ = false;
+  late_.clear();
   chip_.power_up();
   if (runs()) running_->cut_cable();
 }
@@ -198,9 +218,9 @@ std::array<std::int16_t, 3> FalconEmulator::motors() const {
   return runs() ? running_->motors() : std::array<std::int16_t, 3>{};
 }
 
-unsigned FalconEmulator::leds() const {
+Lamps FalconEmulator::lamps() const {
   const std::scoped_lock lock(mutex_);
-  return runs() ? running_->leds() : 0;
+  return runs() ? running_->lamps() : Lamps{};
 }
 
 int FalconEmulator::loads() const {

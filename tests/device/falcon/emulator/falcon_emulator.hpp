@@ -2,7 +2,8 @@
 /// hand on the grip. It knows nothing of the driver and shares no code with it. A carrier of
 /// transfers (a shim of usbfs, a test) calls `control`, `bulk_out` and `bulk_in`.
 ///
-/// Time is virtual: each command to the running Falcon is one millisecond of the hand's time.
+/// Time is virtual: each command to the running Falcon is one millisecond of the hand's time, in
+/// which the chip's latency timer runs out.
 ///
 /// Threads: any thread may call every function; one mutex guards all. The emulator calls the hand's
 /// function under it, on the thread of `bulk_out`; that function must not call back.
@@ -54,6 +55,9 @@ class FalconEmulator {
   /// Cuts the ends off this many replies.
   /// \param kept  bytes of each, 0 to 15
   void shorten_replies(int count, std::size_t kept);
+  /// Keeps this many replies back, each until the host has sent one more command. Then it comes in
+  /// a USB packet of its own before that command's reply.
+  void delay_replies(int count);
   /// Sends bytes to the host at once, without a command.
   void send_garbage(std::span<const std::uint8_t> bytes);
   void stick_encoders(bool stuck);
@@ -77,9 +81,9 @@ class FalconEmulator {
   [[nodiscard]] Vec3 position_mm() const;         ///< of the grip, device frame
   [[nodiscard]] Vec3 force_n() const;             ///< of the motors on the hand, device frame
   [[nodiscard]] std::array<std::int16_t, 3> motors() const;
-  [[nodiscard]] unsigned leds() const;  ///< three bits
-  [[nodiscard]] int loads() const;      ///< of firmware, that began since power came on
-  [[nodiscard]] Bytes image() const;    ///< of the last load
+  [[nodiscard]] Lamps lamps() const;
+  [[nodiscard]] int loads() const;    ///< of firmware, that began since power came on
+  [[nodiscard]] Bytes image() const;  ///< of the last load
   /// Every control request that was not stalled, in order.
   [[nodiscard]] std::vector<ControlRequest> requests() const;
   /// \return what would damage a real device, or what it would silently misread, one line each;
@@ -94,6 +98,7 @@ class FalconEmulator {
   void serve_boot_loader(std::span<const std::uint8_t> bytes);
   void serve_firmware(std::span<const std::uint8_t> bytes);
   void deliver(const RunningFalcon::Packet& reply);
+  void deliver_late();
   void complain(const std::string& what);
   [[nodiscard]] bool runs() const { return running_.has_value(); }
 
@@ -104,6 +109,8 @@ class FalconEmulator {
   BootLoader boot_loader_;
   std::optional<RunningFalcon> running_;
   bool plugged_ = true;
+  std::vector<RunningFalcon::Packet> late_;
+  int to_delay_ = 0;
   int to_drop_ = 0;
   int to_shorten_ = 0;
   std::size_t kept_of_short_ = 0;

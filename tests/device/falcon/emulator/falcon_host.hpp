@@ -58,9 +58,13 @@ class FalconHost {
   std::optional<Reply> exchange(const Command& command) {
     const Packet packet = encode_command(command);
     static_cast<void>(falcon_.bulk_out(packet));
-    std::vector<std::uint8_t> transfer;
-    static_cast<void>(falcon_.bulk_in(64, transfer));
-    if (stream_.push_transfer(transfer) == 0) return std::nullopt;
+    int replies = 0;
+    do {
+      std::vector<std::uint8_t> transfer;
+      static_cast<void>(falcon_.bulk_in(64, transfer));
+      replies += stream_.push_transfer(transfer);
+    } while (falcon_.waiting() > 0);
+    if (replies == 0) return std::nullopt;
     return stream_.newest();
   }
 

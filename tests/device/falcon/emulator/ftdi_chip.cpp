@@ -9,7 +9,7 @@ bool FtdiChip::control(const ControlRequest& r) {
   switch (r.request) {
     case kReset:
       if (r.value > 2) return false;
-      if (r.value != 2) to_host_.clear();
+      if (r.value != 2) take(to_host_.size());
       return true;
     case kModemControl:
       set_modem_lines(r.value);
@@ -54,17 +54,28 @@ void FtdiChip::to_host(std::span<const std::uint8_t> bytes) {
   to_host_.insert(to_host_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(fits));
 }
 
+std::size_t FtdiChip::next_packet(std::size_t most) const {
+  const std::size_t end = packet_ends_.empty() ? to_host_.size() : packet_ends_.front();
+  return std::min({most, end, to_host_.size()});
+}
+
+void FtdiChip::take(std::size_t count) {
+  to_host_.erase(to_host_.begin(), to_host_.begin() + static_cast<std::ptrdiff_t>(count));
+  for (std::size_t& end : packet_ends_) end -= std::min(end, count);
+  while (!packet_ends_.empty() && packet_ends_.front() == 0) packet_ends_.pop_front();
+}
+
 std::vector<std::uint8_t> FtdiChip::bulk_in(std::size_t most) {
   constexpr std::size_t kStatus = 2;
   constexpr std::size_t kPayload = 62;
   std::vector<std::uint8_t> transfer;
   while (transfer.size() + kStatus <= most) {
-    const std::size_t room = most - transfer.size() - kStatus;
-    const auto size = static_cast<std::ptrdiff_t>(std::min({room, kPayload, to_host_.size()}));
+    const std::size_t size = next_packet(std::min(most - transfer.size() - kStatus, kPayload));
     transfer.insert(transfer.end(), {0x01, 0x60});
-    transfer.insert(transfer.end(), to_host_.begin(), to_host_.begin() + size);
-    to_host_.erase(to_host_.begin(), to_host_.begin() + size);
-    if (size < static_cast<std::ptrdiff_t>(kPayload) || to_host_.empty()) break;
+    transfer.insert(transfer.end(), to_host_.begin(),
+                    to_host_.begin() + static_cast<std::ptrdiff_t>(size));
+    take(size);
+    if (size < kPayload || to_host_.empty()) break;
   }
   return transfer;
 }

@@ -48,6 +48,12 @@ class FtdiChip {
   ///@}
 
   void to_host(std::span<const std::uint8_t> bytes);
+  /// The latency timer runs out: what waits now goes in a USB packet before all that comes later.
+  /// Source: FTDI's application note on latency (AN232B-04): a short packet goes to the host when
+  /// the timer has run out, here 1 ms, and a host exchanges no more often.
+  void run_out() {
+    if (!to_host_.empty()) packet_ends_.push_back(to_host_.size());
+  }
   /// \return one bulk IN transfer: packets of 64 bytes, each with two status bytes, up to a shorter
   ///   one; two bytes alone if nothing waits
   [[nodiscard]] std::vector<std::uint8_t> bulk_in(std::size_t most);
@@ -60,7 +66,11 @@ class FtdiChip {
   [[nodiscard]] bool is_plain() const { return data_ == 8 && !flow_ && !rts_; }
   void set_modem_lines(std::uint16_t value);
 
+  [[nodiscard]] std::size_t next_packet(std::size_t most) const;
+  void take(std::size_t count);
+
   std::deque<std::uint8_t> to_host_;
+  std::deque<std::size_t> packet_ends_;  ///< counts of `to_host_` after which a packet ends
   int divisor_ = 0;
   int data_ = 0;
   int latency_ms_ = 16;

@@ -1,6 +1,7 @@
 #include "device/falcon/emulator/hand_on_falcon.hpp"
 
 #include "device/falcon/emulator/falcon_host.hpp"
+#include "device/falcon/falcon_motors.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -45,7 +46,7 @@ struct FlatWallServo {
     const Vec3 plane_mm = device::to_plane_direction(
         to_device_mm(pose.native_m) - placement.origin_mm, placement.orientation);
     const Vec3 force_n = device::to_device_direction(wall_force_n(plane_mm), placement.orientation);
-    motors = motor_values(torques_nm(pose.jacobian, force_n).value());
+    motors = FalconMotors({}).command(torques_nm(pose.jacobian, force_n).value(), {}).values;
     return plane_mm;
   }
 };

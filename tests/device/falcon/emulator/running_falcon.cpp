@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 namespace touchtrial::device::falcon {
@@ -54,12 +55,6 @@ void RunningFalcon::forget_homing() {
   origin_ = kUnhomedOrigin;
 }
 
-void RunningFalcon::cut_cable() {
-  received_.clear();
-  motors_.fill(0);
-  force_n_ = {};
-}
-
 Vec3 RunningFalcon::position_mm() const {
   return 1000.0 * (native_m_ - Vec3{0.0, 0.0, kCentreM});
 }
@@ -99,11 +94,13 @@ void RunningFalcon::take_command() {
     const auto value = motor_value(std::span(received_).subspan(1 + 4 * axis, 4));
     if (!value) complain("a motor value that is none");
     motors_[axis] = value.value_or(0);
+    if (std::abs(int{motors_[axis]}) > kMostMotorValue) complain("a motor value beyond 4,095");
   }
   const int flags = nibble(received_[13]);
   if (flags < 0) complain("flags that are none");
   homing_ = flags >= 0 && flags % 2 == 1;
-  leds_ = flags < 0 ? 0U : static_cast<unsigned>(flags) >> 1U;
+  const unsigned bits = flags < 0 ? 0U : static_cast<unsigned>(flags);
+  lamps_ = {.red = (bits & 0x08U) != 0, .green = (bits & 0x02U) != 0, .blue = (bits & 0x04U) != 0};
   if (!homing_) complain("a command without homing");
   if (!all_homed() && motors_ != std::array<std::int16_t, 3>{}) complain("force before homing");
 }

@@ -1,5 +1,6 @@
 #include "core/random.hpp"
 #include "device/falcon/emulator/falcon_host.hpp"
+#include "device/falcon/falcon_motors.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
@@ -51,11 +52,11 @@ TEST_CASE("emulated falcon: the hand feels the force that the driver's kinematic
   host.set_up_for_running();
   RandomStream random(2, "falcon forces");
   for (int i = 0; i < 500; ++i) {
-    const Vec3 force_n = {random.uniform(-4.0, 4.0), random.uniform(-4.0, 4.0),
-                          random.uniform(-4.0, 4.0)};
+    const Vec3 force_n = {random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0),
+                          random.uniform(-2.0, 2.0)};
     const Pose pose = forward_kinematics(theta1_of_counts(host.exchange({}).value().counts));
     const PerLeg torques = torques_nm(pose.jacobian, force_n).value();
-    REQUIRE(host.exchange({motor_values(torques), 0, true}));
+    REQUIRE(host.exchange({FalconMotors({}).command(torques, {}).values, 0, true}));
     // The resolution of encoders and motor values.
     REQUIRE(norm(felt - force_n) < 0.02);
     REQUIRE(falcon.force_n() == felt);
@@ -105,16 +106,56 @@ TEST_CASE("emulated falcon: force before homing causes a complaint") {
   CHECK(falcon.complaints() == std::vector<std::string>{"force before homing"});
 }
 
-TEST_CASE("emulated falcon: buttons are reported, lights are set") {
+TEST_CASE("emulated falcon: buttons are reported") {
   FalconEmulator falcon(homed_falcon());
   FalconHost host(falcon);
   host.set_up_for_running();
   falcon.press(kButtonForward | kButtonMinus);
-  CHECK(host.exchange({{}, 5, true})->buttons == (kButtonForward | kButtonMinus));
-  CHECK(falcon.leds() == 5);
+  CHECK(host.exchange({})->buttons == (kButtonForward | kButtonMinus));
   falcon.press(0);
-  CHECK(host.exchange({{}, 2, true})->buttons == 0);
-  CHECK(falcon.leds() == 2);
+  CHECK(host.exchange({})->buttons == 0);
+}
+
+TEST_CASE("emulated falcon: 0x02 of byte 13 is the green lamp, 0x04 the blue, 0x08 the red") {
+  FalconEmulator falcon(homed_falcon());
+  FalconHost host(falcon);
+  host.set_up_for_running();
+  Packet packet = encode_command({});
+  for (unsigned flags = 0; flags < 16; flags += 2) {
+    packet[13] = static_cast<std::uint8_t>(0x41U + flags + 1U);
+    CHECK(falcon.bulk_out(packet) == UsbStatus::ok);
+    CHECK(falcon.lamps() == Lamps{(flags & 8U) != 0, (flags & 2U) != 0, (flags & 4U) != 0});
+  }
+}
+
+TEST_CASE("emulated falcon: a motor value beyond 4,095 causes a complaint") {
+  FalconEmulator falcon(homed_falcon());
+  FalconHost host(falcon);
+  host.set_up_for_running();
+  CHECK(host.exchange({{4095, -4095, 0}, 0, true}));
+  CHECK(falcon.complaints().empty());
+  CHECK(host.exchange({{0, 0, -4096}, 0, true}));
+  CHECK(falcon.complaints() == std::vector<std::string>{"a motor value beyond 4,095"});
+}
+
+TEST_CASE("emulated falcon: a late reply comes before the next one, in a packet of its own") {
+  int tick = 0;
+  FalconEmulator falcon(homed_falcon(), [&](Vec3) { return Vec3{1.0 * tick++, 0.0, 0.0}; });
+  FalconHost host(falcon);
+  host.set_up_for_running();
+  falcon.delay_replies(1);
+  const Packet packet = encode_command({});
+  CHECK(falcon.bulk_out(packet) == UsbStatus::ok);
+  CHECK(falcon.waiting() == 0);
+  CHECK(falcon.bulk_out(packet) == UsbStatus::ok);
+  FalconStream stream;
+  std::vector<std::uint8_t> transfer;
+  for (const double x_mm : {1.0, 2.0}) {
+    CHECK(falcon.bulk_in(64, transfer) == UsbStatus::ok);
+    REQUIRE(stream.push_transfer(transfer) == 1);
+    CHECK(norm(position_of(stream.newest()) - Vec3{x_mm, 0.0, 0.0}) < 0.06);
+  }
+  CHECK(falcon.waiting() == 0);
 }
 
 TEST_CASE("emulated falcon: replies can be dropped, shortened and surrounded by garbage") {
@@ -149,7 +190,7 @@ TEST_CASE("emulated falcon: stuck encoders stand still while the hand moves on")
   CHECK(host.exchange({})->counts != first);
 }
 
-TEST_CASE("emulated falcon: an unplugged one is gone, and its motors are limp") {
+TEST_CASE("emulated falcon: an unplugged one is gone, and its motors may push on") {
   const bool keeps_power = GENERATE(false, true);
   FalconEmulator falcon(homed_falcon());
   FalconHost host(falcon);
@@ -162,7 +203,7 @@ TEST_CASE("emulated falcon: an unplugged one is gone, and its motors are limp") 
   CHECK(falcon.bulk_out(encode_command({})) == UsbStatus::gone);
   CHECK(falcon.bulk_in(64, bytes) == UsbStatus::gone);
   CHECK(bytes.empty());
-  CHECK(norm(falcon.force_n()) == 0.0);
+  CHECK(norm(falcon.force_n()) > 0.5);
   CHECK_FALSE(falcon.plugged());
   falcon.replug(keeps_power);
   CHECK(falcon.plugged());

@@ -39,7 +39,9 @@ void EmulatorTransport::start_stream(FtdiStreamSink& sink) {
 }
 
 bool EmulatorTransport::post(std::span<const std::uint8_t> bytes) noexcept {
-  return emulator_.bulk_out(bytes) == UsbStatus::ok;
+  if (emulator_.bulk_out(bytes) != UsbStatus::ok) return false;
+  if (sink_ != nullptr) sink_->sent();
+  return true;
 }
 
 void EmulatorTransport::serve(std::chrono::microseconds /*at_most*/) noexcept {
@@ -75,7 +77,12 @@ class LockstepPace final : public FalconPace {
     state_->changed.notify_all();
     state_->changed.wait(lock, [&] { return state_->may_go || state_->ended; });
     state_->resting = state_->may_go = false;
-    state_->now = time;
+    state_->now = std::max(state_->now, time);
+  }
+
+  void waited(Time time) noexcept override {
+    const std::lock_guard lock(state_->mutex);
+    state_->now += time;
   }
 
   void end() noexcept override {
@@ -95,6 +102,11 @@ Lockstep::~Lockstep() = default;
 
 std::unique_ptr<FalconPace> Lockstep::pace() {
   return std::make_unique<LockstepPace>(state_);
+}
+
+FalconPace::Time Lockstep::now() const noexcept {
+  const std::lock_guard lock(state_->mutex);
+  return state_->now;
 }
 
 void Lockstep::step() noexcept {

@@ -24,7 +24,7 @@ inline std::vector<std::uint8_t> dummy_firmware() {
 }
 
 inline std::filesystem::path write_dummy_firmware(const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "falcon-firmware.bin";
+  const std::filesystem::path file = folder / "nvent_firmware.bin";
   const std::vector<std::uint8_t> image = dummy_firmware();
   std::ofstream(file, std::ios::binary)
       .write(reinterpret_cast<const char*>(image.data()),
@@ -69,6 +69,9 @@ class Lockstep {
   void step() noexcept;
   /// Runs this many.
   void steps(int count) noexcept;
+  /// The USB thread's time: a millisecond for each exchange with a reply, and the limit for one
+  /// without.
+  [[nodiscard]] FalconPace::Time now() const noexcept;
 
   struct State;
 
@@ -78,7 +81,7 @@ class Lockstep {
 
 /// The same device, with one exchange for each tick of the servo: every `read` runs one, which
 /// sends the force of the last `write`.
-class LockstepDevice final : public device::HapticDevice {
+class LockstepDevice : public device::HapticDevice {
  public:
   /// \param device,lockstep  must outlive this
   LockstepDevice(device::HapticDevice& device, Lockstep& lockstep) noexcept
@@ -91,6 +94,9 @@ class LockstepDevice final : public device::HapticDevice {
   }
   [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
     return device_.write(force_n);
+  }
+  [[nodiscard]] Vec3 support_force_n(const device::DeviceSample& sample) noexcept override {
+    return device_.support_force_n(sample);
   }
   void halt() noexcept override { device_.halt(); }
   void rearm() noexcept override { device_.rearm(); }

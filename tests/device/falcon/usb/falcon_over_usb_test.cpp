@@ -113,6 +113,64 @@ TEST_CASE("through libusb buttons arrive and damage is survived") {
   CHECK(norm(sample.position_mm) < 0.06);
 }
 
+TEST_CASE("a force that the device did not take is never felt after a halt") {
+  PluggedFalcon falcon;
+  Lockstep lockstep;
+  const auto device = open_in_lockstep(lockstep);
+  lockstep.steps(2);
+  falcon.usb.stick_out(true);
+  REQUIRE(device->write({0.0, 0.0, 1.0}) == device::DeviceStatus::ok);
+  lockstep.step();
+  device->halt();
+  lockstep.step();
+  const std::uint64_t before = falcon.emulator.exchanges();
+  falcon.usb.stick_out(false);
+  // What waited on the bus goes out at once, and carries no force.
+  CHECK(falcon.emulator.exchanges() == before + 1);
+  CHECK(falcon.emulator.motors() == std::array<std::int16_t, 3>{});
+  lockstep.steps(3);
+  CHECK(device->fault() == device::DeviceFault::none);
+  CHECK(falcon.emulator.motors() == std::array<std::int16_t, 3>{});
+  device::DeviceSample sample;
+  REQUIRE(device->read(sample) == device::DeviceStatus::ok);
+  const std::uint64_t sequence = sample.sequence;
+  lockstep.steps(3);
+  REQUIRE(device->read(sample) == device::DeviceStatus::ok);
+  CHECK(sample.sequence == sequence + 3);
+}
+
+TEST_CASE("a device that takes no packets for 15 ms is a lost link, and closes") {
+  PluggedFalcon falcon;
+  Lockstep lockstep;
+  auto device = open_in_lockstep(lockstep);
+  lockstep.steps(2);
+  REQUIRE(device->write({0.0, 0.0, 1.0}) == device::DeviceStatus::ok);
+  lockstep.step();
+  falcon.usb.stick_out(true);
+  const auto began = lockstep.now() + FalconDevice::kPeriod;
+  lockstep.steps(FtdiTransport::kMostStuck);
+  CHECK(device->fault() == device::DeviceFault::none);
+  CHECK(lockstep.now() - began == FtdiTransport::kMostStuck * FalconDevice::kReplyLimit);
+  lockstep.step();
+  CHECK(device->fault() == device::DeviceFault::link_lost);
+  device.reset();
+  CHECK(falcon.usb.open_handles() == 0);
+}
+
+TEST_CASE("closing clears an endpoint that refuses packets, so that the zeros go out") {
+  PluggedFalcon falcon;
+  Lockstep lockstep;
+  auto device = open_in_lockstep(lockstep);
+  lockstep.steps(2);
+  REQUIRE(device->write({0.0, 0.0, 1.0}) == device::DeviceStatus::ok);
+  lockstep.step();
+  REQUIRE(norm(falcon.emulator.force_n()) > 0.5);
+  falcon.usb.halt_out();
+  device.reset();
+  CHECK(falcon.emulator.motors() == std::array<std::int16_t, 3>{});
+  CHECK(falcon.usb.open_handles() == 0);
+}
+
 TEST_CASE("in real time exchanges continue by themselves") {
   PluggedFalcon falcon;
   FalconDevice device(open_usb_falcon(""), {});

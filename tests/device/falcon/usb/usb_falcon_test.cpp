@@ -45,7 +45,9 @@ class Collector final : public FtdiStreamSink {
   void receive(std::span<const std::uint8_t> transfer) noexcept override {
     bytes.insert(bytes.end(), transfer.begin() + 2, transfer.end());
   }
+  void sent() noexcept override { ++sent_packets; }
   std::vector<std::uint8_t> bytes;
+  int sent_packets = 0;
 };
 
 std::string refusal(const std::string& serial = "") {
@@ -193,16 +195,67 @@ TEST_CASE("the stream keeps a read queued: one packet after another arrives") {
   CHECK_FALSE(transport->lost());
 }
 
-TEST_CASE("a packet is refused, not queued, while the previous one is under way") {
+TEST_CASE("a packet that the device does not take is replaced by the newest, never sent late") {
   Loopback model;
-  const ShimmedUsbDevice device(model);
+  ShimmedUsbDevice device(model);
   const auto transport = open_usb_falcon("");
   Collector collector;
   transport->start_stream(collector);
+  device.stick_out(true);
+  for (std::uint8_t i = 1; i <= FtdiTransport::kMostStuck; ++i) {
+    CHECK(transport->post({&i, 1}));
+    transport->serve(milliseconds(0));
+  }
+  CHECK(collector.sent_packets == 0);
+  device.stick_out(false);
+  CHECK(serve_until(*transport, [&] { return !collector.bytes.empty(); }));
+  CHECK(collector.bytes == std::vector<std::uint8_t>{FtdiTransport::kMostStuck});
+  CHECK(collector.sent_packets == 1);
+  // One that was taken begins the count anew.
+  device.stick_out(true);
+  const std::array<std::uint8_t, 1> byte = {7};
+  for (int i = 0; i < FtdiTransport::kMostStuck; ++i) CHECK(transport->post(byte));
+  CHECK_FALSE(transport->lost());
+  CHECK_FALSE(transport->post(byte));
+  CHECK(transport->lost());
+}
+
+TEST_CASE("a device that takes no packets does not hold up its closing") {
+  Loopback model;
+  ShimmedUsbDevice device(model);
+  auto transport = open_usb_falcon("");
+  Collector collector;
+  transport->start_stream(collector);
+  device.stick_out(true);
   const std::array<std::uint8_t, 1> byte = {7};
   CHECK(transport->post(byte));
-  CHECK_FALSE(transport->post(byte));
-  CHECK(serve_until(*transport, [&] { return transport->post(byte); }));
+  transport->stop_stream();
+  CHECK(transport->send(byte, milliseconds(5)) == 0);
+  device.stick_out(false);
+  CHECK(model.packets.empty());
+  CHECK(transport->send(byte, milliseconds(1000)) == 1);
+  CHECK(model.packets.size() == 1);
+  transport.reset();
+  CHECK(device.open_handles() == 0);
+}
+
+TEST_CASE("an endpoint that refuses packets is cleared, in the stream and out of it") {
+  Loopback model;
+  ShimmedUsbDevice device(model);
+  const auto transport = open_usb_falcon("");
+  const std::array<std::uint8_t, 1> byte = {7};
+  device.halt_out();
+  CHECK(transport->send(byte, milliseconds(1000)) == 1);
+  Collector collector;
+  transport->start_stream(collector);
+  CHECK(serve_until(*transport, [&] { return collector.bytes.size() == 1; }));
+  device.halt_out();
+  CHECK(transport->post(byte));
+  CHECK(serve_until(*transport, [&] {
+    static_cast<void>(transport->post(byte));
+    return collector.bytes.size() >= 2;
+  }));
+  CHECK_FALSE(transport->lost());
 }
 
 TEST_CASE("unplugging during the stream loses the link, and closing it is clean") {
@@ -236,6 +289,7 @@ TEST_CASE(
   if (served) CHECK(serve_until(*transport, [&] { return transport->lost(); }));
   transport->stop_stream();
   CHECK(transport->lost());
+  CHECK_THROWS_AS(transport->send(byte, milliseconds(5)), DeviceError);
   transport.reset();
   CHECK(device.open_handles() == 0);
 }

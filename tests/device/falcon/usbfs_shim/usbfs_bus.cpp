@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/eventfd.h>
@@ -17,6 +18,7 @@ namespace {
 constexpr std::string_view kNodes = "/dev/bus/usb/";
 constexpr std::string_view kAttributes = "/sys/bus/usb/devices/";
 constexpr int kPipeBytes = 4096;
+constexpr unsigned kBulkOut = 0x02;
 
 int failed(int error) {
   errno = error;
@@ -77,10 +79,9 @@ void UsbfsBus::remove(const std::shared_ptr<BusDevice>& device) {
   device->claimed_by = -1;
   for (auto& [descriptor, handle] : handles_) {
     if (handle.device != device) continue;
-    while (!handle.waiting.empty()) {
-      usbdevfs_urb& urb = *handle.waiting.front();
-      handle.waiting.pop_front();
-      complete(handle, urb, -ESHUTDOWN, 0);
+    for (auto* queue : {&handle.stuck, &handle.waiting}) {
+      for (usbdevfs_urb* urb : *queue) complete(handle, *urb, -ESHUTDOWN, 0);
+      queue->clear();
     }
     system_close(handle.reader);
     handle.reader = -1;
@@ -91,7 +92,7 @@ void UsbfsBus::remove(const std::shared_ptr<BusDevice>& device) {
 void UsbfsBus::change(const std::function<void()>& action) {
   const std::lock_guard lock(mutex_);
   action();
-  serve_all_reads();
+  serve_all();
 }
 
 int UsbfsBus::handles_of(const BusDevice& device) {
@@ -118,7 +119,7 @@ int UsbfsBus::open_node(const std::string& path) {
   if (pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC) != 0) return -1;
   fcntl(ends[1], F_SETPIPE_SZ, kPipeBytes);
   fill_pipe(ends[1]);
-  handles_[ends[1]] = BusHandle{*device, ends[0], false, {}, {}};
+  handles_[ends[1]] = BusHandle{*device, ends[0], false, {}, {}, {}};
   return ends[1];
 }
 
@@ -173,6 +174,9 @@ int UsbfsBus::ioctl(int descriptor, unsigned long request, void* argument) {
       if (!handle.device->kernel_driver) return failed(ENODATA);
       std::strcpy(static_cast<usbdevfs_getdriver*>(argument)->driver, "ftdi_sio");
       return 0;
+    case USBDEVFS_CLEAR_HALT:
+      if (*static_cast<unsigned*>(argument) == kBulkOut) handle.device->out_halted = false;
+      return 0;
     case USBDEVFS_IOCTL:
       return driver_request(handle, *static_cast<usbdevfs_ioctl*>(argument));
     default:
@@ -211,12 +215,25 @@ int UsbfsBus::submit(BusHandle& handle, usbdevfs_urb& urb) {
     complete(handle, urb, length ? 0 : -EPIPE, length.value_or(0));
   } else if ((urb.endpoint & 0x80U) != 0) {
     handle.waiting.push_back(&urb);
+  } else if (handle.device->out_stuck) {
+    handle.stuck.push_back(&urb);
   } else {
-    model.bulk_out(bytes);
-    complete(handle, urb, 0, bytes.size());
+    write(handle, urb);
   }
   serve_reads(handle);
   return 0;
+}
+
+void UsbfsBus::write(BusHandle& handle, usbdevfs_urb& urb) {
+  if (handle.device->out_halted) return complete(handle, urb, -EPIPE, 0);
+  const auto size = static_cast<std::size_t>(urb.buffer_length);
+  handle.device->model->bulk_out({static_cast<std::uint8_t*>(urb.buffer), size});
+  complete(handle, urb, 0, size);
+}
+
+void UsbfsBus::serve_writes(BusHandle& handle) {
+  if (handle.device->out_stuck) return;
+  for (usbdevfs_urb* urb : std::exchange(handle.stuck, {})) write(handle, *urb);
 }
 
 void UsbfsBus::serve_reads(BusHandle& handle) {
@@ -230,8 +247,11 @@ void UsbfsBus::serve_reads(BusHandle& handle) {
   }
 }
 
-void UsbfsBus::serve_all_reads() {
-  for (auto& [descriptor, handle] : handles_) serve_reads(handle);
+void UsbfsBus::serve_all() {
+  for (auto& [descriptor, handle] : handles_) {
+    serve_writes(handle);
+    serve_reads(handle);
+  }
 }
 
 void UsbfsBus::complete(BusHandle& handle, usbdevfs_urb& urb, int status, std::size_t length) {
@@ -261,11 +281,14 @@ int UsbfsBus::reap(BusHandle& handle, void* argument) {
 }
 
 int UsbfsBus::discard(BusHandle& handle, usbdevfs_urb* urb) {
-  const auto found = std::ranges::find(handle.waiting, urb);
-  if (found == handle.waiting.end()) return failed(EINVAL);
-  handle.waiting.erase(found);
-  complete(handle, *urb, -ENOENT, 0);
-  return 0;
+  for (auto* queue : {&handle.stuck, &handle.waiting}) {
+    const auto found = std::ranges::find(*queue, urb);
+    if (found == queue->end()) continue;
+    queue->erase(found);
+    complete(handle, *urb, -ENOENT, 0);
+    return 0;
+  }
+  return failed(EINVAL);
 }
 
 std::vector<UsbIdentity> UsbfsBus::present() {

@@ -20,8 +20,10 @@ struct BusDevice {
   bool permitted = true;
   bool used_elsewhere = false;
   bool kernel_driver = false;
-  bool deaf = false;    ///< keeps completed transfers
-  int claimed_by = -1;  ///< the handle's descriptor
+  bool deaf = false;        ///< keeps completed transfers
+  bool out_stuck = false;   ///< the bulk OUT endpoint answers NAK
+  bool out_halted = false;  ///< ... or STALL, until it is cleared
+  int claimed_by = -1;      ///< the handle's descriptor
 };
 
 /// An open node. Its descriptor is the writing end of a pipe that is kept full, so that POLLOUT
@@ -31,6 +33,7 @@ struct BusHandle {
   int reader = -1;  ///< -1: unplugged
   bool signalled = false;
   std::deque<usbdevfs_urb*> waiting;  ///< reads without data yet
+  std::deque<usbdevfs_urb*> stuck;    ///< writes that the device has not taken yet
   std::deque<usbdevfs_urb*> completed;
 };
 
@@ -47,7 +50,7 @@ class UsbfsBus {
 
   void add(const std::shared_ptr<BusDevice>& device);
   void remove(const std::shared_ptr<BusDevice>& device);
-  /// Runs under the lock, then serves waiting reads.
+  /// Runs under the lock, then serves waiting writes and reads.
   void change(const std::function<void()>& action);
   [[nodiscard]] int handles_of(const BusDevice& device);
 
@@ -77,8 +80,10 @@ class UsbfsBus {
   int discard(BusHandle& handle, usbdevfs_urb* urb);
   int driver_request(BusHandle& handle, usbdevfs_ioctl& request);
   void complete(BusHandle& handle, usbdevfs_urb& urb, int status, std::size_t length);
+  void write(BusHandle& handle, usbdevfs_urb& urb);
+  void serve_writes(BusHandle& handle);
   void serve_reads(BusHandle& handle);
-  void serve_all_reads();
+  void serve_all();
   void tell(const std::string& action, const UsbIdentity& identity);
 
   std::mutex mutex_;

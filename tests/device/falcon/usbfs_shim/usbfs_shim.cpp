@@ -40,6 +40,14 @@ void ShimmedUsbDevice::deafen(bool deaf) {
   UsbfsBus::instance().change([&] { device_->deaf = deaf; });
 }
 
+void ShimmedUsbDevice::stick_out(bool stuck) {
+  UsbfsBus::instance().change([&] { device_->out_stuck = stuck; });
+}
+
+void ShimmedUsbDevice::halt_out() {
+  UsbfsBus::instance().change([&] { device_->out_halted = true; });
+}
+
 void ShimmedUsbDevice::attach_kernel_driver(bool is_attached) {
   UsbfsBus::instance().change([&] { device_->kernel_driver = is_attached; });
 }

@@ -35,6 +35,10 @@ class ShimmedUsbDevice {
   void use_elsewhere(bool used);  ///< whether another program has claimed it
   void attach_kernel_driver(bool is_attached);
   void deafen(bool deaf);  ///< whether the bus keeps transfers that ended
+  /// Whether the device takes no packets (it answers NAK): bulk OUT transfers stay under way.
+  void stick_out(bool stuck);
+  /// The device refuses packets (STALL) until its bulk OUT endpoint is cleared.
+  void halt_out();
   [[nodiscard]] bool has_kernel_driver() const;
   [[nodiscard]] bool is_claimed() const;
   [[nodiscard]] int open_handles() const;  ///< that libusb has not closed

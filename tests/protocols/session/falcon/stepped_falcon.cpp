@@ -54,7 +54,8 @@ device::DeviceStatus SteppedFalcon::write(Vec3 force_n) noexcept {
 }
 
 session::Attendant::Says Experimenter::attend(const std::string& need) {
-  strongest_n = std::max(strongest_n, norm(falcon_.emulator.force_n()));
+  // What the motors of an unplugged Falcon do is unknown, and beyond anyone's reach.
+  if (falcon_.plugged) strongest_n = std::max(strongest_n, norm(falcon_.emulator.force_n()));
   if (need.empty()) {
     ++consents;
     return Says::arm;

@@ -41,6 +41,9 @@ class SteppedFalcon final : public device::HapticDevice {
   [[nodiscard]] device::DeviceInfo info() const override { return falcon_->info(); }
   [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override;
   [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override;
+  [[nodiscard]] Vec3 support_force_n(const device::DeviceSample& sample) noexcept override {
+    return falcon_->support_force_n(sample);
+  }
   void halt() noexcept override { falcon_->halt(); }
   void rearm() noexcept override { falcon_->rearm(); }
   [[nodiscard]] device::DeviceFault fault() const noexcept override { return falcon_->fault(); }

@@ -1,0 +1,469 @@
+// device accept: a person tries a device step by step, guided, and its certificate is written.
+#include "app/attended_run.hpp"
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "app/device_accept_page.hpp"
+#include "app/device_words.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/text.hpp"
+#include "core/version.hpp"
+#include "device/acceptance/accelerometer.hpp"
+#include "device/acceptance/acceptance.hpp"
+#include "device/acceptance/rehearsal.hpp"
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <spdlog/spdlog.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace touchtrial::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kRefused = 1;
+constexpr double kNewtonsPerGram = 0.001 * device::kStandardGravityMS2;
+/// Longer than a run, so that it never ends before its last sample.
+constexpr double kMoreTimeS = 2.0;
+constexpr int kPollMs = 100;
+
+struct AcceptArguments {
+  std::string driver;
+  fs::path settings;
+  fs::path certificate;
+  std::string emulated;  ///< name or file of a device model
+  std::vector<std::string> skip;
+  std::vector<std::string> records;  ///< LABEL=FILE of an accelerometer
+  bool thermal = false;
+  bool silence = false;
+  bool json = false;
+};
+
+/// The person or a signal ended the acceptance.
+struct AcceptanceStopped {};
+
+/// Lines of standard input, which a signal interrupts.
+class AcceptanceAnswers {
+ public:
+  /// \throws UsageError at the end of the input
+  std::string next() {
+    while (true) {
+      const std::size_t end = text_.find('\n');
+      if (end != std::string::npos) {
+        std::string line = text_.substr(0, end);
+        text_.erase(0, end + 1);
+        return line;
+      }
+      if (device::StopOnSignals::asked()) throw AcceptanceStopped{};
+      read_more();
+    }
+  }
+
+ private:
+  void read_more() {
+    pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    if (::poll(&input, 1, kPollMs) <= 0) return;
+    std::array<char, 512> bytes{};
+    const ssize_t got = ::read(STDIN_FILENO, bytes.data(), bytes.size());
+    if (got < 0 && errno == EINTR) return;
+    if (got <= 0) {
+      throw UsageError(
+          "standard input ended during the acceptance; answer every prompt; nothing was written");
+    }
+    text_.append(bytes.data(), static_cast<std::size_t>(got));
+  }
+
+  std::string text_;
+};
+
+/// Suspends this program for two seconds, three seconds from now, by a shell of its own.
+class Suspension {
+ public:
+  Suspension() {
+    const std::string script = fmt::format("sleep 3; kill -STOP {0}; sleep 2; kill -CONT {0}",
+                                           static_cast<long>(::getpid()));
+    std::string shell = "sh";
+    std::string option = "-c";
+    std::string text = script;
+    const std::array<char*, 4> words = {shell.data(), option.data(), text.data(), nullptr};
+    has_child_ = ::posix_spawnp(&child_, "sh", nullptr, nullptr, words.data(), environ) == 0;
+  }
+  ~Suspension() {
+    if (has_child_) ::waitpid(child_, nullptr, 0);
+  }
+  Suspension(const Suspension&) = delete;
+  Suspension& operator=(const Suspension&) = delete;
+  [[nodiscard]] bool works() const noexcept { return has_child_; }
+
+ private:
+  pid_t child_ = -1;
+  bool has_child_ = false;
+};
+
+/// A device on a cable, and the person at the terminal. Prompts go to standard error: standard
+/// output holds the result only.
+class TerminalAcceptance final : public device::AcceptanceBench, public device::AcceptancePerson {
+ public:
+  explicit TerminalAcceptance(const AcceptArguments& arguments)
+      : settings_(device::device_settings_for(arguments.settings)),
+        opened_(arguments.driver, settings_, {100.0, 100.0}),
+        limits_(
+            device::limits_on(opened_.device().info(),
+                              device::stricter_of({}, settings_.use_of(arguments.driver).limits))),
+        run_(opened_, with_motors(opened_.device()), limits_, device::kServoRateHz, false) {
+    tell(
+        "Before each step this program says what it will do. Enter goes on, s leaves the step out, "
+        "q ends.\nCtrl-C switches the force off at once, at any time.\n");
+    run_.wait_until_ready(kReadyLimitS);
+    require_going_on();
+    info_ = opened_.device().info();
+  }
+
+  [[nodiscard]] device::DeviceInfo info() const override { return info_; }
+  [[nodiscard]] device::SafetyLimits limits() const override { return limits_; }
+
+  [[nodiscard]] device::ServoReport run(const std::string& name,
+                                        device::Measurement& measurement) override {
+    const auto report = run_.run([&](std::int64_t) { return name; }, measurement,
+                                 measurement.seconds() + kMoreTimeS,
+                                 [&] { return measurement.done(); }, &measurement);
+    if (!report) throw AcceptanceStopped{};
+    require_going_on();
+    return *report;
+  }
+
+  [[nodiscard]] std::optional<device::ServoReport> run_suspended(
+      device::Measurement& measurement) override {
+    const Suspension suspension;
+    if (!suspension.works()) return std::nullopt;
+    return run("suspend", measurement);
+  }
+
+  [[nodiscard]] device::Consent ready(const device::Prompt& prompt) override {
+    while (true) {
+      const std::string answer = answer_to("\n" + prompt.text + "\n[Enter, s, q] ");
+      if (answer.empty()) return device::Consent::go;
+      if (answer == "s") return device::Consent::skip;
+      if (answer == "q") throw AcceptanceStopped{};
+      tell("press Enter to go on, or type s to leave this out, or q to end\n");
+    }
+  }
+
+  [[nodiscard]] std::optional<double> weight_n(device::DeviceAxis axis, double least_n,
+                                               double most_n) override {
+    const std::string range =
+        fmt::format("{:.0f} to {:.0f} g, or {:.2f} to {:.2f} N", least_n / kNewtonsPerGram,
+                    std::floor(most_n / kNewtonsPerGram), least_n, most_n);
+    tell(fmt::format("\nAxis {}. {}\n", device::name_of(axis), hanging_on(axis)));
+    while (true) {
+      const std::string line = answer_to(fmt::format(
+          "weight in g, or reading of a spring scale in N as in 1.2N ({}; s: none): ", range));
+      if (line == "s") return std::nullopt;
+      if (line == "q") throw AcceptanceStopped{};
+      if (const auto force_n = newtons_in(line);
+          force_n && *force_n >= least_n * (1.0 - 1e-9) && *force_n <= most_n) {
+        return force_n;
+      }
+      tell("that is not a weight in this range\n");
+    }
+  }
+
+  [[nodiscard]] std::optional<double> temperature_c(const std::string& question) override {
+    while (true) {
+      const std::string line = answer_to(question + " (Enter: no thermometer): ");
+      if (line.empty()) return std::nullopt;
+      const auto value = number_in<double>(line);
+      if (value && *value > -50.0 && *value < 200.0) return value;
+      tell("that is not a temperature\n");
+    }
+  }
+
+  [[nodiscard]] std::string saw(const std::string& question) override {
+    return one_line(answer_to(question));
+  }
+
+  void tell(const std::string& text) override {
+    std::cerr << text << (text.ends_with('\n') || text.ends_with(' ') ? "" : "\n") << std::flush;
+  }
+
+ private:
+  static device::HapticDevice& with_motors(device::HapticDevice& device) {
+    const device::DeviceInfo info = device.info();
+    if (info.simulated || info.visual || !info.workspace) {
+      throw DeviceError(info.name +
+                        ": has no motors that could be accepted; name a device that touchtrial "
+                        "device list finds on a cable, or rehearse with --emulate");
+    }
+    return device;
+  }
+
+  static std::optional<double> newtons_in(const std::string& line) {
+    if (line.ends_with('N')) return number_in<double>(line.substr(0, line.size() - 1));
+    const auto mass_g = number_in<double>(line);
+    if (!mass_g) return std::nullopt;
+    return *mass_g * kNewtonsPerGram;
+  }
+
+  static const char* hanging_on(device::DeviceAxis axis) {
+    switch (axis) {
+      case device::DeviceAxis::x:
+        return "Lead a string horizontally to the right, over a pulley at the handle's height, and "
+               "hang a weight on its end; or pull to the right with a spring scale.";
+      case device::DeviceAxis::y:
+        return "Hang a weight straight down from the handle; or pull down with a spring scale.";
+      case device::DeviceAxis::z:
+        break;
+    }
+    return "Lead a string horizontally towards you, over a pulley at the handle's height, and hang "
+           "a weight on its end; or pull towards you with a spring scale.";
+  }
+
+  void require_going_on() const {
+    if (run_.stop() != AttendedStop::none) throw AcceptanceStopped{};
+  }
+
+  std::string answer_to(const std::string& question) {
+    tell(question);
+    return answers_.next();
+  }
+
+  device::DeviceSettings settings_;
+  OpenedDevice opened_;
+  device::SafetyLimits limits_;
+  AttendedRun run_;
+  device::DeviceInfo info_;
+  AcceptanceAnswers answers_;
+};
+
+/// "about 95 %" of a measured number, or "-".
+std::string measured_cell(const std::optional<device::Measured>& measured, int digits,
+                          double factor = 1.0) {
+  if (!measured) return "not measured";
+  return fmt::format("{:.{}f} +- {:.{}f}", factor * measured->value, digits,
+                     factor * measured->error, digits);
+}
+
+std::string acceptance_summary(const device::Certificate& certificate) {
+  std::string text;
+  if (!certificate.emulated.empty()) {
+    text += "REHEARSAL on an emulated device (" + certificate.emulated +
+            "): proves the program, not a device\n";
+  }
+  if (certificate.rest) {
+    text += fmt::format("at rest:      noise {:.4f} mm, drift {:.3f} mm\n",
+                        certificate.rest->noise_mm, certificate.rest->drift_mm);
+  }
+  text += "encoder step: " + measured_cell(certificate.step_mm, 4) + " mm\n";
+  for (const device::AxisResult& axis : certificate.axes) {
+    text += fmt::format(
+        "axis {}:       delivers {} % of the command; friction {} N; mass {} kg; delay {} ms\n",
+        device::name_of(axis.axis), measured_cell(axis.scale(), 1, 100.0),
+        measured_cell(axis.friction_n, 3), measured_cell(axis.mass_kg, 3),
+        measured_cell(axis.delay_ms, 1));
+  }
+  if (certificate.wall) {
+    text += fmt::format(
+        "wall:         stable at {:.2f} N/mm{}; ended by {}\n", certificate.wall->stable_n_per_mm,
+        certificate.wall->oscillates_n_per_mm > 0.0
+            ? fmt::format(", swings at {:.2f} N/mm", certificate.wall->oscillates_n_per_mm)
+            : "",
+        certificate.wall->ended);
+  }
+  for (const device::Observation& one : certificate.observed) {
+    text += one.what + ": " + one.saw + "\n";
+  }
+  if (!certificate.not_measured.empty()) text += "not measured:\n";
+  for (const device::NotMeasured& one : certificate.not_measured) {
+    text += "  " + one.what + ": " + one.why + "\n";
+  }
+  for (const std::string& failure : certificate.failures()) text += "FAILED: " + failure + "\n";
+  return text + (certificate.passed() ? "passed\n" : "FAILED\n");
+}
+
+/// A model's name as a part of a file's.
+std::string file_word(std::string name) {
+  for (char& letter : name) {
+    const bool is_plain = (letter >= '0' && letter <= '9') || (letter >= 'a' && letter <= 'z') ||
+                          (letter >= 'A' && letter <= 'Z') || letter == '-' || letter == '_';
+    if (!is_plain) letter = '_';
+  }
+  return name;
+}
+
+fs::path certificate_path(const AcceptArguments& arguments, const std::string& name) {
+  if (!arguments.certificate.empty()) return arguments.certificate;
+  return name + "-certificate.json";
+}
+
+/// "falcon-model.json" beside "falcon-certificate.json", with this ending in place of
+/// "-certificate.json".
+fs::path file_beside(const fs::path& certificate, const std::string& ending) {
+  std::string stem = certificate.stem().string();
+  const std::string usual = "-certificate";
+  if (ending != ".html" && stem.ends_with(usual)) stem.resize(stem.size() - usual.size());
+  return certificate.parent_path() / (stem + ending);
+}
+
+/// The spectra of the records that the arguments name.
+std::vector<device::SpectrumResult> spectra_of(const AcceptArguments& arguments) {
+  std::vector<device::SpectrumResult> spectra;
+  for (const std::string& record : arguments.records) {
+    const std::size_t equals = record.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == record.size()) {
+      throw UsageError("--accelerometer " + in_quotes(record) +
+                       ": give WHAT=FILE, for instance wall=wall.csv");
+    }
+    spectra.push_back(
+        {record.substr(0, equals),
+         device::acceleration_bands(device::read_accelerometer_csv(record.substr(equals + 1)))});
+  }
+  return spectra;
+}
+
+int write_results(const AcceptArguments& arguments, device::Acceptance acceptance,
+                  const device::DeviceInfo& info) {
+  device::Certificate& certificate = acceptance.certificate;
+  certificate.program = std::string(program_version());
+  certificate.made = std::chrono::floor<std::chrono::seconds>(
+      std::chrono::sys_time<std::chrono::nanoseconds>(utc_now()));
+  const fs::path path = certificate_path(
+      arguments, certificate.emulated.empty() ? arguments.driver
+                                              : "emulated-" + file_word(certificate.emulated));
+  const std::string json = device::certificate_json(certificate);
+  replace_file(path, json);
+  replace_file(file_beside(path, ".html"), acceptance_page(acceptance));
+  replace_file(file_beside(path, "-model.json"),
+               device::device_model_json(device::model_of(certificate, info)));
+  if (arguments.json) {
+    print(json);
+  } else {
+    print(acceptance_summary(certificate) +
+          fmt::format("{}: SHA-256 {}\n", path.string(), to_hex(sha256_of_file(path))));
+  }
+  return certificate.passed() ? 0 : kRefused;
+}
+
+device::AcceptanceOptions options_of(const AcceptArguments& arguments) {
+  device::AcceptanceOptions options;
+  options.skip.insert(arguments.skip.begin(), arguments.skip.end());
+  options.thermal = arguments.thermal;
+  options.silence = arguments.silence;
+  return options;
+}
+
+int rehearse_on_model(const AcceptArguments& arguments,
+                      std::vector<device::SpectrumResult> spectra) {
+  const device::DeviceModel model = device::device_model(arguments.emulated);
+  device::Acceptance acceptance = device::rehearse_acceptance(model, options_of(arguments));
+  acceptance.certificate.spectra = std::move(spectra);
+  return write_results(arguments, std::move(acceptance), device::ModelledDevice(model).info());
+}
+
+int accept_on_cable(const AcceptArguments& arguments, std::vector<device::SpectrumResult> spectra) {
+  std::optional<device::Acceptance> acceptance;
+  device::DeviceInfo info;
+  try {
+    TerminalAcceptance terminal(arguments);
+    info = terminal.info();
+    acceptance = device::accept_device(terminal, terminal, options_of(arguments));
+  } catch (const AcceptanceStopped&) {
+    if (device::StopOnSignals::asked()) {
+      std::cerr << "touchtrial: " << device::StopOnSignals::message() << "; nothing was written\n";
+      return device::StopOnSignals::exit_code();
+    }
+    throw DeviceError("the acceptance was stopped; nothing was written");
+  }
+  acceptance->certificate.spectra = std::move(spectra);
+  return write_results(arguments, std::move(*acceptance), info);
+}
+
+std::atomic<pid_t> acceptance_process{-1};
+
+extern "C" void pass_on_to_acceptance(int signal) {
+  const pid_t process = acceptance_process.load();
+  if (process > 0) ::kill(process, signal);
+}
+
+/// Does the work in a process of its own: when that is suspended, the shell, which waits for this
+/// one, does not take the terminal away. Called before there are threads.
+/// \return the exit code, in both processes
+int in_own_process(const std::function<int()>& work) {
+  static_assert(std::atomic<pid_t>::is_always_lock_free, "a signal handler reads it");
+  const pid_t process = ::fork();
+  if (process <= 0) return work();
+  acceptance_process.store(process);
+  // The terminal sends these to both.
+  for (const int signal : {SIGINT, SIGQUIT, SIGTSTP}) {
+    static_cast<void>(std::signal(signal, SIG_IGN));
+  }
+  for (const int signal : {SIGTERM, SIGHUP}) {
+    static_cast<void>(std::signal(signal, pass_on_to_acceptance));
+  }
+  int status = 0;
+  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  constexpr int kBySignal = 128;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : kBySignal + WTERMSIG(status);
+}
+
+int accept_one(const AcceptArguments& arguments) {
+  if (arguments.driver.empty() == arguments.emulated.empty()) {
+    throw UsageError(
+        "device accept: name a driver, as touchtrial device list does, or a model with --emulate");
+  }
+  std::vector<device::SpectrumResult> spectra = spectra_of(arguments);
+  if (!arguments.emulated.empty()) return rehearse_on_model(arguments, std::move(spectra));
+  if (!arguments.silence) return accept_on_cable(arguments, std::move(spectra));
+  return in_own_process([&] { return accept_on_cable(arguments, std::move(spectra)); });
+}
+
+}  // namespace
+
+void add_device_accept_command(CLI::App& device, Action& action) {
+  auto arguments = std::make_shared<AcceptArguments>();
+  CLI::App* command = device.add_subcommand(
+      "accept",
+      "Try a device step by step: signs, forces, friction, mass, delay, walls; writes its "
+      "certificate, without which no session runs");
+  command->add_option("NAME", arguments->driver, "Driver, as touchtrial device list names it");
+  command->add_option(
+      "--emulate", arguments->emulated,
+      "Rehearse on a device model (name or file) in virtual time; proves no device");
+  add_settings_option(*command, arguments->settings);
+  command->add_option("--certificate", arguments->certificate,
+                      "Certificate to write (default: NAME-certificate.json)");
+  command->add_option("--skip", arguments->skip, "Step to leave out; may be repeated")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(std::vector<std::string>(device::kAcceptanceSteps.begin(),
+                                                     device::kAcceptanceSteps.end())));
+  command
+      ->add_option("--accelerometer", arguments->records,
+                   "WHAT=FILE, a CSV record at the stylus (time_s,x_m_s2,y_m_s2,z_m_s2) while it "
+                   "felt WHAT; may be repeated")
+      ->type_name("WHAT=FILE")
+      ->allow_extra_args(false);
+  command->add_flag("--thermal", arguments->thermal, "Also hold a weight for twenty minutes");
+  command->add_flag(
+      "--silence", arguments->silence,
+      "Also watch what the device does when the program stops or the cable is pulled");
+  add_json_flag(*command, arguments->json);
+  command->callback([=, &action] { action = [=] { return accept_one(*arguments); }; });
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,224 @@
+#include "app/device_accept_page.hpp"
+
+#include "analysis/figures/style.hpp"
+#include "analysis/page/document.hpp"
+#include "core/errors.hpp"
+#include "core/utc.hpp"
+
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace touchtrial::app {
+namespace {
+
+using analysis::Cell;
+
+std::string number_cell(const std::optional<device::Measured>& measured, int digits,
+                        double factor = 1.0) {
+  if (!measured) return "-";
+  return fmt::format("{:.{}f} ± {:.{}f}", factor * measured->value, digits,
+                     factor * measured->error, digits);
+}
+
+std::string push_cell(const std::optional<device::PushResult>& push) {
+  if (!push) return "-";
+  if (!push->moved) return fmt::format("no motion at {:.1f} N", push->force_n);
+  return fmt::format("{:+.1f} mm at {:.1f} N", push->along_mm, push->force_n);
+}
+
+analysis::Table table_of_axes(const device::Certificate& certificate) {
+  analysis::Table table{"axes",
+                        "Each axis of the device frame (x right, y up, z towards the person). "
+                        "Numbers have the half-width of their interval of about 95 %.",
+                        {{"axis", analysis::Align::left},
+                         {"push along it", analysis::Align::right},
+                         {"push against it", analysis::Align::right},
+                         {"delivered, %", analysis::Align::right},
+                         {"friction, N", analysis::Align::right},
+                         {"mass, kg", analysis::Align::right},
+                         {"damping, N s/m", analysis::Align::right},
+                         {"delay, ms", analysis::Align::right}}};
+  for (const device::AxisResult& axis : certificate.axes) {
+    table.rows.push_back({Cell(std::string(device::name_of(axis.axis))), Cell(push_cell(axis.plus)),
+                          Cell(push_cell(axis.minus)), Cell(number_cell(axis.scale(), 1, 100.0)),
+                          Cell(number_cell(axis.friction_n, 3)), Cell(number_cell(axis.mass_kg, 3)),
+                          Cell(number_cell(axis.viscous_n_s_per_m, 1)),
+                          Cell(number_cell(axis.delay_ms, 1))});
+  }
+  return table;
+}
+
+analysis::Definitions device_figures(const device::Certificate& certificate) {
+  analysis::Definitions figures;
+  auto& entries = figures.entries;
+  if (certificate.rest) {
+    entries.emplace_back("noise and drift at rest",
+                         fmt::format("{:.4f} mm and {:.3f} mm", certificate.rest->noise_mm,
+                                     certificate.rest->drift_mm));
+  }
+  if (certificate.step_mm) {
+    entries.emplace_back("encoder step", number_cell(certificate.step_mm, 4) + " mm");
+  }
+  if (certificate.wall) {
+    const device::WallResult& wall = *certificate.wall;
+    entries.emplace_back("stiffest stable wall", fmt::format("{:.2f} N/mm; the trials ended by {}",
+                                                             wall.stable_n_per_mm, wall.ended));
+    if (wall.oscillates_n_per_mm > 0.0) {
+      // b = K (T/2 + delay) at the edge; T is one tick.
+      const auto delay = certificate.mean_of(&device::AxisResult::delay_ms);
+      const double damping = wall.oscillates_n_per_mm * (0.5 + (delay ? delay->value : 0.0));
+      entries.emplace_back("first wall that swings",
+                           fmt::format("{:.2f} N/mm, where {}K (T/2 + delay) is {:.2f} N s/m",
+                                       wall.oscillates_n_per_mm,
+                                       delay ? "" : "(delay unknown, taken as 0) ", damping));
+    }
+  }
+  if (certificate.warm) {
+    entries.emplace_back("load's force at first, and after twenty minutes",
+                         fmt::format("{:.3f} N and {:.3f} N", certificate.warm->before_n,
+                                     certificate.warm->after_n));
+  }
+  for (const device::Observation& one : certificate.observed) {
+    entries.emplace_back(one.what, one.saw);
+  }
+  return figures;
+}
+
+struct PlotWords {
+  std::string id;
+  std::string caption;
+  std::string alt;
+  std::string x;
+  std::string y;
+};
+
+/// Lines of one kind, one for each axis.
+analysis::Picture lines_picture(const PlotWords& words,
+                                const std::vector<device::AxisCurves>& curves,
+                                std::vector<std::pair<double, double>> device::AxisCurves::*part) {
+  const analysis::Sheet sheet{16.0, 8.0, false};
+  analysis::Margins margins;
+  margins.left_cm = 1.7;
+  margins.top_cm = 1.1;
+  margins.bottom_cm = 1.25;
+  std::string data;
+  std::string plot;
+  std::vector<analysis::LegendEntry> entries;
+  std::size_t series = 0;
+  for (const device::AxisCurves& one : curves) {
+    if ((one.*part).empty()) continue;
+    std::vector<std::vector<double>> rows;
+    for (const auto& [x, y] : one.*part) rows.push_back({x, y});
+    const std::string name(device::name_of(one.axis));
+    data += analysis::data_block("axis_" + name, rows);
+    plot += fmt::format("{}$axis_{} using 1:2 with lines lw 1.5 lc rgb '{}' notitle",
+                        series == 0 ? "plot " : ", ", name, analysis::series_colour(series));
+    entries.push_back({analysis::LegendEntry::Kind::line,
+                       std::string(analysis::series_colour(series)), 7, "axis " + name});
+    ++series;
+  }
+  if (series == 0) return {};
+  const analysis::Legend legend(sheet, margins.left_cm, entries);
+  analysis::Figure figure = analysis::figure_on(sheet, words.id, words.alt);
+  figure.caption = words.caption;
+  figure.script =
+      data + analysis::sheet_head(sheet) + analysis::panel_at(sheet, margins) +
+      fmt::format("set xlabel '{}' offset 0, 0.4\nset ylabel '{}'\n", words.x, words.y) +
+      legend.script() + plot + "\n";
+  analysis::Picture picture{words.id, words.caption, words.alt, ""};
+  try {
+    picture.svg = analysis::drawn(figure, analysis::FigureFormat::svg);
+  } catch (const Error& error) {
+    spdlog::warn("{}", error.what());
+  }
+  return picture;
+}
+
+void add_lines(analysis::Section& section, analysis::Picture picture) {
+  if (!picture.id.empty()) section.blocks.emplace_back(std::move(picture));
+}
+
+analysis::Table spectrum_table(const device::SpectrumResult& spectrum, std::size_t number) {
+  analysis::Table table{
+      "spectrum-" + std::to_string(number),
+      "Acceleration at the stylus: " + spectrum.felt,
+      {{"band, Hz", analysis::Align::left}, {"root mean square, m/s²", analysis::Align::right}}};
+  for (const device::BandResult& band : spectrum.bands) {
+    table.rows.push_back({Cell(fmt::format("{:.0f} to {:.0f}", band.from_hz, band.to_hz)),
+                          Cell(fmt::format("{:.4f}", band.acceleration_m_s2))});
+  }
+  return table;
+}
+
+analysis::Section results_of(const device::Acceptance& acceptance) {
+  analysis::Section section{"results", "Results", {}};
+  section.blocks.emplace_back(table_of_axes(acceptance.certificate));
+  section.blocks.emplace_back(device_figures(acceptance.certificate));
+  add_lines(section, lines_picture({"friction",
+                                    "Slow strokes: commanded force without the load over the "
+                                    "handle's place. Half the height of a loop is friction.",
+                                    "Commanded force over place, a loop for each axis.",
+                                    "place, mm", "force, N"},
+                                   acceptance.curves, &device::AxisCurves::loop));
+  add_lines(section,
+            lines_picture({"delay",
+                           "How sharply the path bends at a time after the push turns "
+                           "round. The highest point is the delay, where soft arms "
+                           "keep the fit of mass and damping from telling it.",
+                           "Bend over delay, a line for each axis.", "delay, ms", "bend, mm"},
+                          acceptance.curves, &device::AxisCurves::by_delay));
+  std::size_t number = 0;
+  for (const device::SpectrumResult& spectrum : acceptance.certificate.spectra) {
+    section.blocks.emplace_back(spectrum_table(spectrum, ++number));
+  }
+  return section;
+}
+
+analysis::Section verdict_of(const device::Certificate& certificate) {
+  analysis::Section section{"verdict", "Verdict", {}};
+  const std::vector<std::string> failures = certificate.failures();
+  section.blocks.emplace_back(analysis::Cited{
+      failures.empty() ? "Every requirement of a session with people was measured and is met."
+                       : "No session with people runs on this device.",
+      {},
+      failures.empty() ? "Passed." : "Failed."});
+  if (!failures.empty()) section.blocks.emplace_back(analysis::Warnings{failures, "Why"});
+  if (!certificate.not_measured.empty()) {
+    analysis::Definitions missing;
+    for (const device::NotMeasured& one : certificate.not_measured) {
+      missing.entries.emplace_back(one.what, one.why);
+    }
+    section.blocks.emplace_back(analysis::Subheading{"not-measured", "Not measured"});
+    section.blocks.emplace_back(std::move(missing));
+  }
+  return section;
+}
+
+}  // namespace
+
+std::string acceptance_page(const device::Acceptance& acceptance) {
+  const device::Certificate& certificate = acceptance.certificate;
+  analysis::Document document;
+  document.title = "Acceptance of " + certificate.driver +
+                   (certificate.model.empty() ? "" : ", " + certificate.model);
+  if (!certificate.emulated.empty()) {
+    document.stamp = "REHEARSAL";
+    document.banners.push_back("REHEARSAL on an emulated device (" + certificate.emulated +
+                               "): proves the program, not a device.");
+  }
+  document.header.entries = {{"driver", certificate.driver},
+                             {"model", certificate.model},
+                             {"serial number", certificate.serial},
+                             {"firmware", certificate.firmware},
+                             {"made", utc_text(certificate.made.time_since_epoch())},
+                             {"program", certificate.program}};
+  document.about = "This certificate";
+  document.sections = {verdict_of(certificate), results_of(acceptance)};
+  document.colophon = "The numbers are in the JSON file beside this page, which sessions read.";
+  return analysis::page_html(document);
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,116 @@
+/// \file The acceptance of a device: which runs follow each other, what a person does in each, and
+/// what the results are. Source: docs/devices/acceptance.md.
+#pragma once
+
+#include "device/acceptance/certificate.hpp"
+#include "device/acceptance/measurement.hpp"
+#include "device/safety/safety_limits.hpp"
+#include "device/servo/servo.hpp"
+
+#include <array>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace touchtrial::device {
+
+/// The steps, in their order, by the names that a person may leave out. Without `push` nothing that
+/// follows is possible: a hold pulls a device with a wrong sign away from its place.
+inline constexpr std::array<std::string_view, 7> kAcceptanceSteps = {
+    "rest", "steps", "push", "strokes", "weights", "shake", "wall"};
+
+/// What a person does with the handle during a run.
+enum class Stance {
+  lying,     ///< nothing: it lies or is held still
+  moving,    ///< moves it slowly along all axes
+  holding,   ///< holds it lightly, so that it can give way
+  free,      ///< brings it to the middle and lets go
+  loaded,    ///< the same with a weight on it
+  pressing,  ///< presses it down on a floor
+  guarding,  ///< holds it firmly and watches
+};
+
+/// What is to be done before a run.
+struct Prompt {
+  std::string_view step;  ///< one of kAcceptanceSteps, or "thermal", "silence"
+  Stance stance = Stance::lying;
+  DeviceAxis axis = DeviceAxis::y;  ///< of the run, where it has one
+  std::string text;                 ///< for the person
+};
+
+enum class Consent {
+  go,
+  skip,  ///< this run, or the rest of a row of trials
+};
+
+/// The person, or who stands in. Every function may throw to end the acceptance.
+class AcceptancePerson {
+ public:
+  virtual ~AcceptancePerson() = default;
+  /// Asks for the stance, and for consent to the run. No force acts before it returns.
+  [[nodiscard]] virtual Consent ready(const Prompt& prompt) = 0;
+  /// Asks for a force along an axis: a weight, or what a spring scale shows.
+  /// \return N, in the range; nothing: the person has none
+  [[nodiscard]] virtual std::optional<double> weight_n(DeviceAxis axis, double least_n,
+                                                       double most_n) = 0;
+  /// \return a temperature in degrees Celsius; nothing: there is no thermometer
+  [[nodiscard]] virtual std::optional<double> temperature_c(const std::string& question) = 0;
+  /// \return what the person saw, in their words; empty: nothing
+  [[nodiscard]] virtual std::string saw(const std::string& question) = 0;
+  virtual void tell(const std::string& result) = 0;
+};
+
+/// The device under its servo.
+class AcceptanceBench {
+ public:
+  virtual ~AcceptanceBench() = default;
+  [[nodiscard]] virtual DeviceInfo info() const = 0;
+  /// In force for every run.
+  [[nodiscard]] virtual SafetyLimits limits() const = 0;
+  /// \param name  of the run, at most 8 letters
+  /// \throws touchtrial::Error if a person or a signal stopped it
+  [[nodiscard]] virtual ServoReport run(const std::string& name, Measurement& measurement) = 0;
+  /// The same, while the system suspends the program for two seconds.
+  /// \return nothing where that is not possible
+  [[nodiscard]] virtual std::optional<ServoReport> run_suspended(Measurement& /*measurement*/) {
+    return std::nullopt;
+  }
+};
+
+struct AcceptanceOptions {
+  std::set<std::string, std::less<>> skip{};  ///< of kAcceptanceSteps
+  bool thermal = false;                       ///< twenty minutes under a load
+  bool silence = false;  ///< what the device does when program or cable are gone
+};
+
+/// Curves of one axis, for pictures.
+struct AxisCurves {
+  DeviceAxis axis = DeviceAxis::y;
+  std::vector<std::pair<double, double>> loop{};      ///< StrokeFigures::loop
+  std::vector<std::pair<double, double>> by_delay{};  ///< ShakeFigures::by_delay
+};
+
+struct Acceptance {
+  Certificate certificate;  ///< `program`, `made`, `emulated` and `spectra` are the caller's
+  std::vector<AxisCurves> curves;
+};
+
+/// The greatest force of a push, of a shake and of a weight on this device.
+struct AcceptanceForces {
+  double push_n = 0.0;
+  double hold_n = 0.0;    ///< of the norm while the handle is held: 60 % of the peak
+  double weight_n = 0.0;  ///< of a weight and the handle's own load together
+  HoldGains gains;        ///< below the greatest stiffness and damping that the maker states
+};
+[[nodiscard]] AcceptanceForces acceptance_forces(const DeviceInfo& device,
+                                                 const SafetyLimits& limits) noexcept;
+
+/// Runs the acceptance. A wrong sign and a fault end it at once, with a certificate that says so.
+/// \throws whatever bench and person throw
+[[nodiscard]] Acceptance accept_device(AcceptanceBench& bench, AcceptancePerson& person,
+                                       const AcceptanceOptions& options);
+
+}  // namespace touchtrial::device

@@ -1,0 +1,160 @@
+/// \file The certificate of an acceptance: its results, their judgement, and its file, to which
+/// sessions refer by its hash. Format: docs/data-dictionary.md.
+#pragma once
+
+#include "core/hash.hpp"
+#include "device/acceptance/motion_figures.hpp"
+#include "device/haptic_device.hpp"
+#include "device/model/device_model.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::device {
+
+inline constexpr double kStandardGravityMS2 = 9.80665;
+
+/// \name What fails a device. Sources: docs/devices/acceptance.md.
+///@{
+inline constexpr double kForceTolerance = 0.10;  ///< share of the force
+inline constexpr double kMostNoiseMm = 0.1;      ///< of a handle that lies still
+inline constexpr double kMostDriftMm = 0.5;
+inline constexpr double kMostStepMm = 0.1;
+inline constexpr double kMostFrictionN = 0.7;  ///< the push of a stroke
+inline constexpr double kMostDelayMs = 5.0;
+inline constexpr double kMostWarmDrift = 0.10;  ///< share of the load, over twenty minutes
+///@}
+/// An older certificate causes a warning.
+inline constexpr std::chrono::hours kCertificateAge{24 * 180};
+
+/// A push along an axis until the handle moved.
+struct PushResult {
+  double force_n = 0.0;    ///< of the last step of 0.1 N
+  bool moved = false;      ///< by 2 mm
+  double along_mm = 0.0;   ///< moved in the force's direction; negative: against it
+  double across_mm = 0.0;  ///< moved across it, >= 0
+};
+
+/// A known force held by the device.
+struct WeighResult {
+  double expected_n = 0.0;  ///< of the weight or the spring scale, > 0
+  double measured_n = 0.0;  ///< commanded with it, beyond that without it, >= 0
+  double error_n = 0.0;     ///< of measured_n
+};
+
+/// What one axis showed; a part that was not measured is absent.
+struct AxisResult {
+  DeviceAxis axis = DeviceAxis::y;
+  std::optional<PushResult> plus{};   ///< force in the axis' direction
+  std::optional<PushResult> minus{};  ///< force against it
+  std::optional<WeighResult> weight{};
+  std::optional<double> load_n{};        ///< that the empty handle needs along the axis
+  std::optional<Measured> friction_n{};  ///< of slow strokes; at the handle, as the two below
+  std::optional<Measured> mass_kg{};
+  std::optional<Measured> viscous_n_s_per_m{};
+  std::optional<Measured> delay_ms{};
+
+  /// Delivered force over commanded force.
+  [[nodiscard]] std::optional<Measured> scale() const;
+};
+
+/// A wall that became stiffer from trial to trial.
+struct WallResult {
+  double stable_n_per_mm = 0.0;      ///< the stiffest that did not oscillate; 0: none
+  double oscillates_n_per_mm = 0.0;  ///< the first that did; 0: none did
+  std::string ended;                 ///< why the trials ended
+};
+
+/// The force that a load needs, before and after twenty minutes.
+struct WarmResult {
+  double before_n = 0.0;
+  double after_n = 0.0;
+  std::optional<double> before_c{};  ///< temperature of the motors' housing, typed in
+  std::optional<double> after_c{};
+};
+
+/// What a person saw.
+struct Observation {
+  std::string what;
+  std::string saw;
+};
+
+/// Accelerations at the stylus in a band, from an accelerometer.
+struct BandResult {
+  double from_hz = 0.0;
+  double to_hz = 0.0;
+  double acceleration_m_s2 = 0.0;  ///< root mean square
+};
+struct SpectrumResult {
+  std::string felt;  ///< "wall", or a texture's label
+  std::vector<BandResult> bands;
+};
+
+/// What was not measured, and why.
+struct NotMeasured {
+  std::string what;
+  std::string why;
+};
+
+struct Certificate {
+  std::string driver;
+  std::string model;
+  std::string serial;
+  std::string firmware;
+  std::string program;              ///< version
+  std::chrono::sys_seconds made{};  ///< UTC
+  std::string emulated{};           ///< name of the device model of a rehearsal; empty: a device
+  std::string fault{};              ///< of the device, which ended the acceptance; empty: none
+  std::optional<RestFigures> rest{};
+  std::optional<Measured> step_mm{};
+  std::vector<AxisResult> axes{};  ///< those that were tried, in the order of kDeviceAxes
+  std::optional<WallResult> wall{};
+  std::optional<WarmResult> warm{};
+  std::vector<Observation> observed{};
+  std::vector<SpectrumResult> spectra{};
+  std::vector<NotMeasured> not_measured{};
+
+  /// \return why the device is refused, a line each; empty: it passed. The rest, the signs and the
+  ///   forces of all three axes must have been measured.
+  [[nodiscard]] std::vector<std::string> failures() const;
+  [[nodiscard]] bool passed() const { return failures().empty(); }
+  /// \return the largest factor between delivered and commanded force; 1 if none was measured
+  [[nodiscard]] double largest_scale() const;
+  /// \return the mean over the axes that have it
+  [[nodiscard]] std::optional<Measured> mean_of(std::optional<Measured> AxisResult::*part) const;
+};
+
+/// \return the content of its file: JSON, indented
+[[nodiscard]] std::string certificate_json(const Certificate& certificate);
+
+/// A certificate and the SHA-256 of its file, which a session stores.
+struct ReadCertificate {
+  Certificate certificate;
+  Digest hash{};
+};
+
+/// \throws FileError if it cannot be read, StudyError with the JSON pointer if it is not a
+///   certificate, or claims more than its measurements show
+[[nodiscard]] ReadCertificate read_certificate(const std::filesystem::path& path);
+
+/// Compares a certificate with the device of a session.
+/// \return a warning if the certificate is older than kCertificateAge or of another firmware, else
+///   ""
+/// \throws DeviceError with the remedy if it is of an emulated device, did not pass, or has another
+///   driver, model or serial number
+[[nodiscard]] std::string check_certificate(const Certificate& certificate,
+                                            const DeviceInfo& device, std::chrono::sys_seconds now);
+
+/// \param stiffness_n_per_mm  of a study's wall
+/// \throws DeviceError with the remedy if a wall of this stiffness oscillated in the acceptance
+void require_stable(const Certificate& certificate, double stiffness_n_per_mm);
+
+/// \return a device model with what was measured, for planning and rehearsals; what was not stays
+///   zero, which leaves its stage out
+/// \param device  force limits and workspace; the values of a rehearsal are derived, not measured
+[[nodiscard]] DeviceModel model_of(const Certificate& certificate, const DeviceInfo& device);
+
+}  // namespace touchtrial::device

@@ -1,0 +1,268 @@
+#include "device/acceptance/measurement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace touchtrial::device {
+namespace {
+
+constexpr double kRestMm = 0.3;         ///< a handle that stays within this is at rest
+constexpr double kRestS = 0.4;          ///< when it does so for this long
+constexpr double kLongestWaitS = 10.0;  ///< for that
+constexpr double kSmoothShare = 0.05;   ///< of a new reading: about 20 ms
+constexpr double kPushReachMm = 15.0;
+constexpr double kStrokeReachMm = 40.0;
+constexpr double kSupportRampS = 1.0;
+constexpr double kHeldSwingMm = 0.6;
+constexpr double kTurnAtMm = 22.0;  ///< shaken strokes turn round here at the latest
+constexpr double kTurnAtMmS = 400.0;
+constexpr double kLongestPushS = 0.15;
+constexpr double kShortestPushS = 0.008;
+constexpr double kCentringNPerMm = 0.02;
+constexpr double kHighPassHz = 12.0;
+constexpr double kSwingsWithinS = 0.45;  ///< eight half swings: at least 9 Hz, more than a hand
+constexpr double kTwoPi = 6.283185307179586;
+
+/// From 0 up to 1, down to -1 and back, once in a period.
+double triangle(double periods) noexcept {
+  const double phase = periods - std::floor(periods);
+  if (phase < 0.25) return 4.0 * phase;
+  return phase < 0.75 ? 2.0 - 4.0 * phase : 4.0 * phase - 4.0;
+}
+
+Vec3 shortened_to(Vec3 force_n, double most_n) noexcept {
+  const double size_n = norm(force_n);
+  return size_n <= most_n ? force_n : (most_n / size_n) * force_n;
+}
+
+}  // namespace
+
+std::string_view name_of(DeviceAxis axis) noexcept {
+  if (axis == DeviceAxis::x) return "x";
+  return axis == DeviceAxis::y ? "y" : "z";
+}
+
+Vec3 direction_of(DeviceAxis axis) noexcept {
+  return {axis == DeviceAxis::x ? 1.0 : 0.0, axis == DeviceAxis::y ? 1.0 : 0.0,
+          axis == DeviceAxis::z ? 1.0 : 0.0};
+}
+
+Measurement::Measurement(double seconds, double most_n, double reach_mm)
+    : seconds_(seconds), most_n_(most_n), reach_mm_(reach_mm) {
+  // A run ends with a fade, and begins before the device is ready.
+  samples_.reserve(static_cast<std::size_t>((seconds + 2.0) * kServoRateHz));
+}
+
+Vec3 Measurement::force_n(const DeviceSample& sample) noexcept {
+  if (!sample.ready || done()) return {};
+  if (ticks_ == 0) start_mm_ = sample.position_mm;
+  if (norm(sample.position_mm - start_mm_) > reach_mm_) {
+    ran_away_ = true;
+    finish();
+    return {};
+  }
+  const double time_s = static_cast<double>(ticks_++) * kServoTickS;
+  const Vec3 force = next_n(sample, time_s);
+  return done() ? Vec3{} : shortened_to(force, most_n_);
+}
+
+void Measurement::record(const ServoSample& sample) noexcept {
+  if (samples_.size() < samples_.capacity()) samples_.push_back(sample);
+}
+
+bool SwingDetector::swings(double place_mm, double time_s) noexcept {
+  const double share = 1.0 - std::exp(-kTwoPi * kHighPassHz * kServoTickS);
+  if (!has_place_) {
+    has_place_ = true;
+    slow_mm_[0] = place_mm;
+  }
+  slow_mm_[0] += share * (place_mm - slow_mm_[0]);
+  const double first_mm = place_mm - slow_mm_[0];
+  // A steady motion leaves a constant behind the first filter and nothing behind the second.
+  slow_mm_[1] += share * (first_mm - slow_mm_[1]);
+  const double fast_mm = first_mm - slow_mm_[1];
+  if (std::abs(fast_mm) >= least_mm_ && fast_mm * peak_mm_ <= 0.0) {
+    const std::size_t at = half_swings_++ % peaks_mm_.size();
+    times_s_[at] = time_s;
+    peak_mm_ = peaks_mm_[at] = fast_mm;
+    if (half_swings_ >= peaks_mm_.size()) {
+      const std::size_t oldest = half_swings_ % peaks_mm_.size();
+      const std::size_t before = (at + peaks_mm_.size() - 1) % peaks_mm_.size();
+      return time_s - times_s_[oldest] < kSwingsWithinS &&
+             std::abs(peaks_mm_[before]) > 0.5 * std::abs(peaks_mm_[oldest]);
+    }
+  } else if (std::abs(fast_mm) > std::abs(peak_mm_) && half_swings_ > 0) {
+    peak_mm_ = peaks_mm_[(half_swings_ - 1) % peaks_mm_.size()] = fast_mm;
+  }
+  return false;
+}
+
+Listening::Listening(double seconds)
+    : Measurement(seconds, 0.0, std::numeric_limits<double>::infinity()) {}
+
+Vec3 Listening::next_n(const DeviceSample& /*sample*/, double time_s) noexcept {
+  if (time_s >= seconds()) finish();
+  return {};
+}
+
+AxisPush::AxisPush(DeviceAxis axis, double most_n)
+    : Measurement(2.0 * (kLongestWaitS + kStepS * kMostN / kStepN + 1.0), std::min(most_n, kMostN),
+                  kPushReachMm),
+      direction_(direction_of(axis)),
+      most_step_n_(std::min(most_n, kMostN)) {}
+
+Vec3 AxisPush::next_n(const DeviceSample& sample, double time_s) noexcept {
+  if (!has_place_) {
+    has_place_ = true;
+    smooth_mm_ = from_mm_ = sample.position_mm;
+  }
+  smooth_mm_ = smooth_mm_ + kSmoothShare * (sample.position_mm - smooth_mm_);
+  if (!pushes_) {
+    await_rest(time_s);
+    return {};
+  }
+  const double step = std::floor((time_s - since_s_) / kStepS) + 1.0;
+  const double force_n = std::min(step * kStepN, most_step_n_);
+  if (norm(smooth_mm_ - from_mm_) >= kMovedMm) {
+    end_push(true, force_n);
+    waited_s_ = since_s_ = time_s;
+    return {};
+  }
+  if (step * kStepN > most_step_n_ + 0.5 * kStepN) {
+    end_push(false, most_step_n_);
+    waited_s_ = since_s_ = time_s;
+    return {};
+  }
+  return static_cast<double>(sign_) * force_n * direction_;
+}
+
+void AxisPush::await_rest(double time_s) noexcept {
+  if (norm(smooth_mm_ - from_mm_) > kRestMm) {
+    from_mm_ = smooth_mm_;
+    since_s_ = time_s;
+  }
+  if (time_s - since_s_ >= kRestS) {
+    figures_.came_to_rest = true;
+    pushes_ = true;
+    from_mm_ = smooth_mm_;
+    since_s_ = time_s;
+  } else if (time_s - waited_s_ > kLongestWaitS) {
+    figures_.came_to_rest = false;
+    finish();
+  }
+}
+
+void AxisPush::end_push(bool moved, double force_n) noexcept {
+  const Push push{force_n, moved, smooth_mm_ - from_mm_};
+  pushes_ = false;
+  const bool is_against =
+      moved && static_cast<double>(sign_) * dot(push.moved_mm, direction_) <= 0.0;
+  if (sign_ > 0) {
+    figures_.plus = push;
+  } else {
+    figures_.minus = push;
+  }
+  if (sign_ < 0 || is_against) {
+    finish();
+    return;
+  }
+  sign_ = -1;
+  from_mm_ = smooth_mm_;
+}
+
+SlowStrokes::SlowStrokes(DeviceAxis axis, Vec3 support_n, const HoldGains& gains, double most_n,
+                         double hold_s)
+    : Measurement(hold_s + kPeriods * kPeriodS, most_n, kStrokeReachMm),
+      axis_(axis),
+      support_n_(support_n),
+      gains_(gains),
+      hold_s_(hold_s),
+      detectors_{SwingDetector(kHeldSwingMm), SwingDetector(kHeldSwingMm),
+                 SwingDetector(kHeldSwingMm)} {}
+
+Vec3 SlowStrokes::next_n(const DeviceSample& sample, double time_s) noexcept {
+  if (time_s >= seconds()) {
+    finish();
+    return {};
+  }
+  const Vec3 at_mm = sample.position_mm;
+  const bool swings_x = detectors_[0].swings(at_mm.x, time_s);
+  const bool swings_y = detectors_[1].swings(at_mm.y, time_s);
+  const bool swings_z = detectors_[2].swings(at_mm.z, time_s);
+  if (swings_x || swings_y || swings_z) {
+    swung_ = true;
+    finish();
+    return {};
+  }
+  const double stroke = time_s < hold_s_ ? 0.0 : triangle((time_s - hold_s_) / kPeriodS);
+  const Vec3 place_mm = start_mm() + (kAmplitudeMm * stroke) * direction_of(axis_);
+  return std::min(1.0, time_s / kSupportRampS) * support_n_ +
+         gains_.spring_n_per_mm * (place_mm - sample.position_mm) -
+         gains_.damper_n_s_per_mm * sample.velocity_mm_s;
+}
+
+ShakenStrokes::ShakenStrokes(DeviceAxis axis, Vec3 support_n, double push_n, const HoldGains& gains,
+                             double most_n)
+    : Measurement(begins_s() + kShakeS, most_n, kStrokeReachMm),
+      axis_(axis),
+      support_n_(support_n),
+      push_n_(push_n),
+      gains_(gains) {}
+
+Vec3 ShakenStrokes::next_n(const DeviceSample& sample, double time_s) noexcept {
+  if (time_s >= seconds()) {
+    finish();
+    return {};
+  }
+  const Vec3 held_n = std::min(1.0, time_s / kSupportRampS) * support_n_ +
+                      gains_.spring_n_per_mm * (start_mm() - sample.position_mm) -
+                      gains_.damper_n_s_per_mm * sample.velocity_mm_s;
+  if (time_s < begins_s()) return held_n;
+  const Vec3 axis = direction_of(axis_);
+  const double along_mm = dot(sample.position_mm - start_mm(), axis);
+  const double along_mm_s = dot(sample.velocity_mm_s, axis);
+  const double gone = (time_s - begins_s()) / kShakeS;
+  const double way_mm = kLongestMm + gone * (kShortestMm - kLongestMm);
+  const double pushed_s = time_s - turned_s_;
+  const auto sign = static_cast<double>(sign_);
+  const bool is_far = sign * along_mm > kTurnAtMm;
+  const bool is_long = sign * (along_mm - turned_mm_) > way_mm || sign * along_mm_s > kTurnAtMmS ||
+                       pushed_s > kLongestPushS;
+  if (is_far || (is_long && pushed_s > kShortestPushS)) {
+    sign_ = -sign_;
+    turned_s_ = time_s;
+    turned_mm_ = along_mm;
+  }
+  const double push_n = static_cast<double>(sign_) * push_n_ - kCentringNPerMm * along_mm;
+  const Vec3 across_n = held_n - (dot(held_n, axis)) * axis;
+  return across_n + (dot(support_n_, axis) + push_n) * axis;
+}
+
+WallTrial::WallTrial(double stiffness_n_per_mm, double least_mm, double most_n)
+    : Measurement(kTrialS, most_n, std::numeric_limits<double>::infinity()),
+      stiffness_(stiffness_n_per_mm),
+      detector_(least_mm) {}
+
+Vec3 WallTrial::next_n(const DeviceSample& sample, double time_s) noexcept {
+  if (time_s >= seconds()) finish();
+  const double height_mm = sample.position_mm.y - (start_mm().y - kDepthMm);
+  const bool swings_now = detector_.swings(height_mm, time_s);
+  if (contact_s_ > 0.0 && swings_now) {
+    oscillated_ = true;
+    finish();
+    return {};
+  }
+  if (height_mm >= 0.0) return {};
+  contact_s_ += kServoTickS;
+  return {0.0, -stiffness_ * height_mm, 0.0};
+}
+
+SteadyPush::SteadyPush(double seconds) : Measurement(seconds, kForceN, 200.0) {}
+
+Vec3 SteadyPush::next_n(const DeviceSample& /*sample*/, double time_s) noexcept {
+  if (time_s >= seconds()) finish();
+  return {0.0, -kForceN, 0.0};
+}
+
+}  // namespace touchtrial::device

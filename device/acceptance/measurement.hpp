@@ -1,0 +1,238 @@
+/// \file The runs of an acceptance: each is force source and sample sink in one, for one run of the
+/// servo. Source: docs/devices/acceptance.md.
+#pragma once
+
+#include "core/vec.hpp"
+#include "device/servo/servo.hpp"
+
+#include <array>
+#include <atomic>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial::device {
+
+/// Axes of the device frame, in the order in which they are tried: along y a weight hangs straight
+/// down, along the others it pulls over a pulley.
+enum class DeviceAxis { y, x, z };
+inline constexpr std::array kDeviceAxes = {DeviceAxis::y, DeviceAxis::x, DeviceAxis::z};
+/// "x", "y" or "z"
+[[nodiscard]] std::string_view name_of(DeviceAxis axis) noexcept;
+/// \return a vector of length 1
+[[nodiscard]] Vec3 direction_of(DeviceAxis axis) noexcept;
+
+/// One run. Belongs to the servo's thread while it lasts, except `done`. Until the device is ready
+/// it sends no force and its time stands still.
+class Measurement : public ForceSource, public SampleSink {
+ public:
+  Measurement(const Measurement&) = delete;
+  Measurement& operator=(const Measurement&) = delete;
+
+  /// The longest time that the run takes.
+  [[nodiscard]] double seconds() const noexcept { return seconds_; }
+  /// Whether it has all that it needs, or has given up; from then on its force is zero.
+  [[nodiscard]] bool done() const noexcept { return done_.load(std::memory_order_acquire); }
+  /// Whether the handle left the place of the measurement, so that the force was switched off.
+  [[nodiscard]] bool ran_away() const noexcept { return ran_away_; }
+  /// Every tick of the run, in order.
+  [[nodiscard]] std::span<const ServoSample> samples() const noexcept { return samples_; }
+
+  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept final;
+  void record(const ServoSample& sample) noexcept final;
+
+ protected:
+  /// \param seconds  > 0
+  /// \param most_n  of the force's norm, >= 0
+  /// \param reach_mm  further from its start the handle has run away
+  Measurement(double seconds, double most_n, double reach_mm);
+
+  /// \param time_s  since the first ready sample
+  [[nodiscard]] virtual Vec3 next_n(const DeviceSample& sample, double time_s) noexcept = 0;
+  void finish() noexcept { done_.store(true, std::memory_order_release); }
+  /// The place of the first ready sample.
+  [[nodiscard]] Vec3 start_mm() const noexcept { return start_mm_; }
+
+ private:
+  double seconds_;
+  double most_n_;
+  double reach_mm_;
+  std::int64_t ticks_ = 0;
+  Vec3 start_mm_;
+  bool ran_away_ = false;
+  std::atomic<bool> done_{false};
+  std::vector<ServoSample> samples_;
+};
+
+/// Tells an oscillation from a hand's motion: eight half swings within 0.45 s, of which none has
+/// faded to half of the first, behind a high-pass of second order at 12 Hz. Private to this folder.
+class SwingDetector {
+ public:
+  /// \param least_mm  smaller swings are none
+  explicit SwingDetector(double least_mm) noexcept : least_mm_(least_mm) {}
+  /// Called at every tick.
+  [[nodiscard]] bool swings(double place_mm, double time_s) noexcept;
+
+ private:
+  double least_mm_;
+  bool has_place_ = false;
+  std::array<double, 2> slow_mm_{};   ///< states of the high-pass
+  double peak_mm_ = 0.0;              ///< of the present half swing, signed
+  std::array<double, 8> peaks_mm_{};  ///< of the last half swings
+  std::array<double, 8> times_s_{};
+  std::size_t half_swings_ = 0;
+};
+
+/// Sends no force: the handle lies still, or a person moves it.
+class Listening final : public Measurement {
+ public:
+  explicit Listening(double seconds);
+
+ private:
+  [[nodiscard]] Vec3 next_n(const DeviceSample& sample, double time_s) noexcept override;
+};
+
+/// Pushes along an axis in steps of kStepN until the handle has moved by kMovedMm, first one way
+/// and then the other. A handle that moves against the force ends it at once.
+class AxisPush final : public Measurement {
+ public:
+  static constexpr double kStepN = 0.1;
+  static constexpr double kStepS = 0.2;    ///< time of a step
+  static constexpr double kMovedMm = 2.0;  ///< which ends a push
+  static constexpr double kMostN = 1.5;    ///< whatever the device can do
+
+  struct Push {
+    double force_n = 0.0;  ///< of the last step
+    bool moved = false;    ///< by kMovedMm; else that force was not enough
+    Vec3 moved_mm;
+  };
+  struct Figures {
+    bool came_to_rest = false;  ///< without force, so that motion tells of the force
+    std::optional<Push> plus;
+    std::optional<Push> minus;
+  };
+
+  /// \param most_n  > 0; more than kMostN counts as that
+  AxisPush(DeviceAxis axis, double most_n);
+  /// After the run.
+  [[nodiscard]] const Figures& figures() const noexcept { return figures_; }
+
+ private:
+  [[nodiscard]] Vec3 next_n(const DeviceSample& sample, double time_s) noexcept override;
+  void await_rest(double time_s) noexcept;
+  void end_push(bool moved, double force_n) noexcept;
+
+  Vec3 direction_;
+  double most_step_n_;
+  int sign_ = 1;
+  bool pushes_ = false;
+  double since_s_ = 0.0;   ///< when rest or push began
+  double waited_s_ = 0.0;  ///< when the wait for rest began
+  bool has_place_ = false;
+  Vec3 smooth_mm_;  ///< position without the encoder's noise
+  Vec3 from_mm_;    ///< place of rest
+  Figures figures_;
+};
+
+/// A spring and a damper that hold the handle at a place.
+struct HoldGains {
+  double spring_n_per_mm = 0.3;
+  double damper_n_s_per_mm = 0.003;
+};
+
+/// Holds the handle and moves it slowly to and fro along an axis, so that friction, whose sign
+/// follows the motion, can be told from a load, whose sign does not. A handle that begins to swing
+/// is let go.
+class SlowStrokes final : public Measurement {
+ public:
+  static constexpr double kPeriodS = 3.0;
+  static constexpr double kAmplitudeMm = 5.0;  ///< of the triangle that the held place follows
+  static constexpr double kSpeedMmS = 4.0 * kAmplitudeMm / kPeriodS;
+  static constexpr int kPeriods = 3;
+  static constexpr double kLettingGoS = 2.5;  ///< before the strokes: the hand lets go
+
+  /// \param support_n  known load, which is carried without the spring
+  /// \param most_n  of the force's norm
+  /// \param hold_s  how long the handle is held before the strokes, >= kLettingGoS
+  SlowStrokes(DeviceAxis axis, Vec3 support_n, const HoldGains& gains, double most_n,
+              double hold_s = kLettingGoS);
+
+  [[nodiscard]] DeviceAxis axis() const noexcept { return axis_; }
+  [[nodiscard]] double hold_s() const noexcept { return hold_s_; }
+  [[nodiscard]] bool swung() const noexcept { return swung_; }
+
+ private:
+  [[nodiscard]] Vec3 next_n(const DeviceSample& sample, double time_s) noexcept override;
+
+  DeviceAxis axis_;
+  Vec3 support_n_;
+  HoldGains gains_;
+  double hold_s_;
+  bool swung_ = false;
+  std::array<SwingDetector, 3> detectors_;
+};
+
+/// Pushes the free handle to and fro along an axis by a constant force that turns round after ever
+/// shorter ways: a chirp whose frequency is the handle's own. Across the axis it is held.
+class ShakenStrokes final : public Measurement {
+ public:
+  static constexpr double kShakeS = 10.0;
+  static constexpr double kLongestMm = 16.0;
+  static constexpr double kShortestMm = 5.0;
+
+  /// \param push_n  > 0
+  ShakenStrokes(DeviceAxis axis, Vec3 support_n, double push_n, const HoldGains& gains,
+                double most_n);
+
+  [[nodiscard]] DeviceAxis axis() const noexcept { return axis_; }
+  [[nodiscard]] double push_n() const noexcept { return push_n_; }
+  /// Samples from here on are shaken.
+  [[nodiscard]] static constexpr double begins_s() noexcept { return SlowStrokes::kLettingGoS; }
+
+ private:
+  [[nodiscard]] Vec3 next_n(const DeviceSample& sample, double time_s) noexcept override;
+
+  DeviceAxis axis_;
+  Vec3 support_n_;
+  double push_n_;
+  HoldGains gains_;
+  int sign_ = 1;
+  double turned_s_ = 0.0;
+  double turned_mm_ = 0.0;
+};
+
+/// A floor below the handle, on which a person presses. An oscillation ends it at once.
+class WallTrial final : public Measurement {
+ public:
+  static constexpr double kTrialS = 6.0;
+  static constexpr double kDepthMm = 3.0;  ///< of the floor below the handle's first place
+
+  /// \param least_mm  a swing smaller than this is none
+  WallTrial(double stiffness_n_per_mm, double least_mm, double most_n);
+
+  [[nodiscard]] bool oscillated() const noexcept { return oscillated_; }
+  /// Time in contact.
+  [[nodiscard]] double contact_s() const noexcept { return contact_s_; }
+
+ private:
+  [[nodiscard]] Vec3 next_n(const DeviceSample& sample, double time_s) noexcept override;
+
+  double stiffness_;
+  SwingDetector detector_;
+  double contact_s_ = 0.0;
+  bool oscillated_ = false;
+};
+
+/// A small constant force, while somebody watches what the device does.
+class SteadyPush final : public Measurement {
+ public:
+  static constexpr double kForceN = 0.3;
+
+  explicit SteadyPush(double seconds);
+
+ private:
+  [[nodiscard]] Vec3 next_n(const DeviceSample& sample, double time_s) noexcept override;
+};
+
+}  // namespace touchtrial::device

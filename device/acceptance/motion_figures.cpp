@@ -1,0 +1,643 @@
+#include "device/acceptance/motion_figures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+namespace touchtrial::device {
+namespace {
+
+/// Motion counts where it exceeds so many encoder steps.
+constexpr double kStepsOfMotion = 5.0;
+constexpr double kMostLeftOut = 0.02;  ///< share of ticks that a servo may have missed
+constexpr double kUnknownStepMm = 0.01;
+
+/// \name Floors of stated errors: what the scatter of one run does not show
+///@{
+constexpr double kLoadFloorN = 0.01;
+constexpr double kFrictionFloorN = 0.02;
+constexpr double kFrictionShare = 0.10;
+constexpr double kMassFloorKg = 0.003;
+constexpr double kMassShare = 0.05;
+constexpr double kViscousFloor = 0.3;
+constexpr double kDelayFloorMs = 0.5;
+///@}
+
+/// One axis at every tick: those that the servo left out are filled in.
+struct EvenSeries {
+  std::vector<double> position_mm;
+  std::vector<double> force_n;
+  double left_out = 0.0;  ///< share
+};
+
+EvenSeries even_series(std::span<const ServoSample> samples, Vec3 axis) {
+  EvenSeries series;
+  std::size_t filled = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double place_mm = dot(samples[i].position_mm, axis);
+    if (i > 0) {
+      const std::int64_t gap = samples[i].tick - samples[i - 1].tick;
+      const double from_mm = dot(samples[i - 1].position_mm, axis);
+      for (std::int64_t k = 1; k < gap; ++k, ++filled) {
+        const double share = static_cast<double>(k) / static_cast<double>(gap);
+        series.position_mm.push_back(from_mm + share * (place_mm - from_mm));
+        series.force_n.push_back(dot(samples[i - 1].force_n, axis));
+      }
+    }
+    series.position_mm.push_back(place_mm);
+    series.force_n.push_back(dot(samples[i].force_n, axis));
+  }
+  if (!series.position_mm.empty()) {
+    series.left_out = static_cast<double>(filled) / static_cast<double>(series.position_mm.size());
+  }
+  return series;
+}
+
+std::size_t ticks_of(double seconds) {
+  return static_cast<std::size_t>(std::llround(seconds * kServoRateHz));
+}
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// The standard error of the mean; 0 for fewer than two values.
+double standard_error_of(const std::vector<double>& values) {
+  if (values.size() < 2) return 0.0;
+  const double mean = mean_of(values);
+  double squares = 0.0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const auto n = static_cast<double>(values.size());
+  return std::sqrt(squares / (n - 1.0) / n);
+}
+
+double quantile_of(std::vector<double>& values, double share) {
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+/// The step along one axis, as far as this axis moved.
+struct AxisStep {
+  bool moved = false;
+  bool resolved = false;
+  double step_mm = 0.0;  ///< if not resolved: the median change, which the step does not exceed
+  double spread_mm = 0.0;
+};
+
+AxisStep axis_step(const EvenSeries& series) {
+  constexpr std::size_t kHalf = 25;  // ticks to either side, for the speed
+  constexpr double kSlowestMmS = 1.0;
+  constexpr std::size_t kFewest = 100;
+  std::vector<double> changes;
+  std::size_t moving = 0;
+  const std::vector<double>& x = series.position_mm;
+  for (std::size_t i = kHalf; i + kHalf < x.size(); ++i) {
+    const double mm_s = (x[i + kHalf] - x[i - kHalf]) / (2.0 * kHalf * kServoTickS);
+    if (std::abs(mm_s) < kSlowestMmS) continue;
+    ++moving;
+    const double change = std::abs(x[i] - x[i - 1]);
+    if (change > 1e-9) changes.push_back(change);
+  }
+  AxisStep step;
+  if (moving < kFewest || changes.size() < kFewest / 2) return step;
+  step.moved = true;
+  step.step_mm = quantile_of(changes, 0.5);
+  step.spread_mm = 0.5 * (quantile_of(changes, 0.75) - quantile_of(changes, 0.25));
+  const auto alike = std::ranges::count_if(changes, [&](double change) {
+    return std::abs(change - step.step_mm) < 0.05 * step.step_mm;
+  });
+  const double unchanged = 1.0 - static_cast<double>(changes.size()) / static_cast<double>(moving);
+  step.resolved =
+      unchanged > 0.3 || static_cast<double>(alike) > 0.6 * static_cast<double>(changes.size());
+  return step;
+}
+
+constexpr std::size_t kUnknowns = 4;
+using FitRow = std::array<double, kUnknowns>;
+using FitMatrix = std::array<FitRow, kUnknowns>;
+
+/// Inverts the first n rows and columns of a symmetric, positive matrix by Gauss-Jordan.
+/// \return whether it could
+bool invert(FitMatrix& a, std::size_t n) {
+  FitMatrix inverse{};
+  for (std::size_t i = 0; i < n; ++i) inverse[i][i] = 1.0;
+  for (std::size_t column = 0; column < n; ++column) {
+    std::size_t best = column;
+    for (std::size_t row = column; row < n; ++row) {
+      if (std::abs(a[row][column]) > std::abs(a[best][column])) best = row;
+    }
+    if (!(std::abs(a[best][column]) > 1e-30)) return false;
+    std::swap(a[best], a[column]);
+    std::swap(inverse[best], inverse[column]);
+    const double pivot = a[column][column];
+    for (std::size_t k = 0; k < n; ++k) {
+      a[column][k] /= pivot;
+      inverse[column][k] /= pivot;
+    }
+    for (std::size_t row = 0; row < n; ++row) {
+      const double factor = a[row][column];
+      if (row == column || factor == 0.0) continue;
+      for (std::size_t k = 0; k < n; ++k) {
+        a[row][k] -= factor * a[column][k];
+        inverse[row][k] -= factor * inverse[column][k];
+      }
+    }
+  }
+  a = inverse;
+  return true;
+}
+
+constexpr int kEarliestDelay = -2;  ///< ticks
+constexpr int kLatestDelay = 30;
+constexpr std::size_t kDelays = kLatestDelay - kEarliestDelay + 1;
+
+/// One window: means with the smooth weight, SI units.
+struct Window {
+  double acceleration = 0.0;
+  double velocity = 0.0;
+  double way = 0.0;                       ///< +1 or -1
+  std::array<double, kDelays> force_n{};  ///< by delay in ticks
+
+  /// Between whole ticks, as if forces went straight from one to the next.
+  [[nodiscard]] double force_at(double delay) const {
+    const double at = delay - kEarliestDelay;
+    const auto below =
+        static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(kDelays - 2)));
+    const double share = at - static_cast<double>(below);
+    return (1.0 - share) * force_n[below] + share * force_n[below + 1];
+  }
+};
+
+/// The weight (1 - u^2)^3 and its derivatives, sampled, and normalised so that a parabola's
+/// acceleration and a line's velocity are exact.
+struct WindowWeight {
+  explicit WindowWeight(std::size_t half_ticks) : half(half_ticks) {
+    const auto w = static_cast<double>(half);
+    double sum = 0.0;
+    double second_sum = 0.0;
+    double first_sum = 0.0;
+    for (std::size_t i = 0; i <= 2 * half; ++i) {
+      const double t = static_cast<double>(i) - w;
+      const double u = t / w;
+      const double v = 1.0 - u * u;
+      value.push_back(v * v * v);
+      first.push_back(-6.0 * u * v * v);
+      second.push_back(-6.0 * v * v + 24.0 * u * u * v);
+      sum += value.back();
+      const double t_s = t * kServoTickS;
+      first_sum += first.back() * t_s;
+      second_sum += second.back() * 0.5 * t_s * t_s;
+    }
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      value[i] /= sum;
+      first[i] /= first_sum;
+      second[i] /= second_sum;
+    }
+  }
+  std::size_t half;
+  std::vector<double> value;
+  std::vector<double> first;
+  std::vector<double> second;
+};
+
+/// +1 or -1 if the handle moves one way in all of the window, else 0.
+double way_in(const std::vector<double>& x, std::size_t middle, std::size_t half, double step_mm) {
+  constexpr std::size_t kLocal = 4;
+  const double change_mm = x[middle + half] - x[middle - half];
+  if (std::abs(change_mm) <= kStepsOfMotion * step_mm) return 0.0;
+  const double way = change_mm > 0.0 ? 1.0 : -1.0;
+  for (std::size_t i = middle - half; i <= middle + half; ++i) {
+    if (way * (x[i + kLocal] - x[i - kLocal]) <= 1.01 * step_mm) return 0.0;
+  }
+  return way;
+}
+
+/// Ticks from `from` to before `end`.
+struct TickRange {
+  std::size_t from = 0;
+  std::size_t end = 0;
+};
+
+std::vector<Window> windows_in(const EvenSeries& series, TickRange ticks, std::size_t half,
+                               double step_mm) {
+  constexpr std::size_t kEdge = 8;
+  const WindowWeight weight(half);
+  const std::vector<double>& x = series.position_mm;
+  std::vector<Window> windows;
+  const std::size_t first = ticks.from + half + static_cast<std::size_t>(kLatestDelay) + kEdge;
+  for (std::size_t middle = first; middle + half + kEdge < ticks.end; middle += half / 2) {
+    Window window;
+    window.way = way_in(x, middle, half, step_mm);
+    if (window.way == 0.0) continue;
+    for (std::size_t i = 0; i <= 2 * half; ++i) {
+      const double offset_m = 0.001 * (x[middle - half + i] - x[middle]);
+      window.acceleration += weight.second[i] * offset_m;
+      window.velocity += weight.first[i] * offset_m;
+      const auto at = static_cast<std::ptrdiff_t>(middle - half + i);
+      for (std::size_t k = 0; k < kDelays; ++k) {
+        const std::ptrdiff_t sent = at - (kEarliestDelay + static_cast<std::ptrdiff_t>(k));
+        window.force_n[k] += weight.value[i] * series.force_n[static_cast<std::size_t>(sent)];
+      }
+    }
+    windows.push_back(window);
+  }
+  return windows;
+}
+
+/// The acceleration as a sum of the force without friction, the speed and a constant: the unknowns
+/// are 1 / m, an offset and -b / m. The acceleration is what noise and soft arms disturb, so it is
+/// the side that is explained.
+struct LinearFit {
+  FitRow unknowns{};
+  double squares = 0.0;
+  bool solved = false;
+};
+
+/// \param n  unknowns: 3, or 2 without damping
+LinearFit fit_at(const std::vector<Window>& windows, double friction_n, double delay,
+                 std::size_t n) {
+  FitMatrix normal{};
+  FitRow right{};
+  const auto row_of = [&](const Window& window) {
+    return FitRow{window.force_at(delay) - friction_n * window.way, 1.0, window.velocity, 0.0};
+  };
+  for (const Window& window : windows) {
+    const FitRow row = row_of(window);
+    for (std::size_t i = 0; i < n; ++i) {
+      right[i] += row[i] * window.acceleration;
+      for (std::size_t k = 0; k < n; ++k) normal[i][k] += row[i] * row[k];
+    }
+  }
+  LinearFit fit;
+  if (!invert(normal, n)) return fit;
+  fit.solved = true;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < n; ++k) fit.unknowns[i] += normal[i][k] * right[k];
+  }
+  for (const Window& window : windows) {
+    const FitRow row = row_of(window);
+    double residual = -window.acceleration;
+    for (std::size_t i = 0; i < n; ++i) residual += row[i] * fit.unknowns[i];
+    fit.squares += residual * residual;
+  }
+  return fit;
+}
+
+/// Standard errors of the unknowns, and behind them that of the delay.
+std::optional<FitRow> standard_errors(const std::vector<Window>& windows, const LinearFit& fit,
+                                      double friction_n, double delay, std::size_t n) {
+  FitMatrix normal{};
+  for (const Window& window : windows) {
+    const double slope = window.force_at(delay - 0.5) - window.force_at(delay + 0.5);
+    FitRow row = {window.force_at(delay) - friction_n * window.way, 1.0, window.velocity, 0.0};
+    row[n] = fit.unknowns[0] * slope;
+    for (std::size_t i = 0; i <= n; ++i) {
+      for (std::size_t k = 0; k <= n; ++k) normal[i][k] += row[i] * row[k];
+    }
+  }
+  if (!invert(normal, n + 1)) return std::nullopt;
+  // Neighbouring windows share half of their samples.
+  const double variance = 2.0 * fit.squares / static_cast<double>(windows.size() - kUnknowns);
+  FitRow errors{};
+  for (std::size_t i = 0; i <= n; ++i) {
+    errors[i] = std::sqrt(std::max(variance * normal[i][i], 0.0));
+  }
+  return errors;
+}
+
+struct WindowFit {
+  FitRow unknowns{};
+  FitRow errors{};
+  double unexplained = 0.0;
+  std::size_t windows = 0;
+  double delay_ticks = 0.0;
+  double delay_error_ticks = 0.0;  ///< standard error
+};
+
+/// \param n  as in fit_at
+std::optional<WindowFit> best_fit(const std::vector<Window>& windows, double friction_n,
+                                  std::size_t n) {
+  constexpr double kFine = 0.25;  // ticks
+  double squares = 0.0;
+  for (const Window& window : windows) squares += window.acceleration * window.acceleration;
+  double best_delay = kEarliestDelay;
+  LinearFit best;
+  for (double delay = kEarliestDelay; delay <= kLatestDelay; delay += kFine) {
+    const LinearFit fit = fit_at(windows, friction_n, delay, n);
+    if (!fit.solved) return std::nullopt;
+    if (best.solved && fit.squares >= best.squares) continue;
+    best = fit;
+    best_delay = delay;
+  }
+  const std::optional<FitRow> errors = standard_errors(windows, best, friction_n, best_delay, n);
+  if (!errors || !(best.unknowns[0] > 0.0)) return std::nullopt;
+  // A force acts until the next tick, on average half a tick after it was sent.
+  return WindowFit{best.unknowns,  *errors,          std::sqrt(best.squares / squares),
+                   windows.size(), best_delay - 0.5, (*errors)[n]};
+}
+
+/// The fits with windows of several lengths.
+struct WindowFits {
+  std::optional<WindowFit> best;       ///< of those without negative damping
+  std::optional<Measured> delay_ms{};  ///< if the fits agree, as they do for a rigid handle
+};
+
+WindowFits fits_of(const std::vector<std::vector<Window>>& by_length, double friction_n) {
+  constexpr double kRigidUnexplained = 0.02;
+  constexpr double kAgreeingTicks = 0.5;
+  WindowFits fits;
+  std::vector<WindowFit> free;
+  for (const std::vector<Window>& windows : by_length) {
+    std::optional<WindowFit> fit = best_fit(windows, friction_n, 3);
+    if (!fit) continue;
+    free.push_back(*fit);
+    // No device has negative damping: where soft arms feign it, there is none in the fit.
+    if (fit->unknowns[2] > 0.0) fit = best_fit(windows, friction_n, 2);
+    if (fit && (!fits.best || fit->unexplained < fits.best->unexplained)) fits.best = fit;
+  }
+  if (free.empty()) return fits;
+  const auto [least, greatest] =
+      std::ranges::minmax(free, {}, [](const WindowFit& fit) { return fit.delay_ticks; });
+  const WindowFit& clearest = *std::ranges::min_element(free, {}, &WindowFit::unexplained);
+  const double spread = greatest.delay_ticks - least.delay_ticks;
+  if (clearest.unexplained > kRigidUnexplained || spread > kAgreeingTicks) return fits;
+  const double ms = 1000.0 * kServoTickS;
+  fits.delay_ms = Measured{clearest.delay_ticks * ms,
+                           (2.0 * clearest.delay_error_ticks + spread) * ms + kDelayFloorMs};
+  return fits;
+}
+
+/// A turn of the push: when it happened, to a fraction of a tick where the slew limit stretched it.
+std::vector<double> turns_in(const EvenSeries& series, TickRange ticks, double push_n,
+                             std::size_t apart) {
+  constexpr std::size_t kLongest = 6;  // ticks of a turn
+  const std::vector<double>& f = series.force_n;
+  std::vector<std::size_t> begins;
+  for (std::size_t i = ticks.from + 1; i + kLongest < ticks.end; ++i) {
+    const bool goes_on = !begins.empty() && i - begins.back() < kLongest;
+    if (!goes_on && std::abs(f[i] - f[i - 1]) > 0.4 * push_n) begins.push_back(i);
+  }
+  std::vector<double> turns;
+  for (std::size_t k = 1; k + 1 < begins.size(); ++k) {
+    const std::size_t i = begins[k];
+    if (i - begins[k - 1] < apart || begins[k + 1] - i < apart) continue;
+    const double from_n = f[i - 1];
+    const double to_n = f[i + kLongest - 1];
+    if (std::abs(to_n - from_n) < push_n) continue;
+    double late = 0.0;
+    for (std::size_t j = i; j < i + kLongest; ++j) late += (to_n - f[j]) / (to_n - from_n);
+    turns.push_back(static_cast<double>(i) + late);
+  }
+  return turns;
+}
+
+/// The squares that least squares with the first n of these basis functions explain; nothing if
+/// they are not independent.
+std::optional<double> explained_by(FitMatrix normal, const FitRow& right, std::size_t n) {
+  if (!invert(normal, n)) return std::nullopt;
+  double squares = 0.0;
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t b = 0; b < n; ++b) squares += right[a] * normal[a][b] * right[b];
+  }
+  return squares;
+}
+
+/// What a bend in the middle explains of a stretch of the path beyond a parabola, mm^2 a tick. It
+/// is greatest where the path does bend: a stretch beside that place is a parabola, and one that
+/// holds it elsewhere is none with a bend in the middle.
+std::optional<double> bend_at(const std::vector<double>& x, double bend, double half) {
+  FitMatrix normal{};
+  FitRow right{};
+  const auto first = static_cast<std::size_t>(std::ceil(bend - half));
+  const auto last = static_cast<std::size_t>(std::floor(bend + half));
+  for (std::size_t i = first; i <= last; ++i) {
+    const double t = (static_cast<double>(i) - bend) / half;
+    const double after = std::max(t, 0.0);
+    const FitRow row = {1.0, t, t * t, after * after};
+    for (std::size_t a = 0; a < 4; ++a) {
+      right[a] += row[a] * (x[i] - x[first]);
+      for (std::size_t b = 0; b < 4; ++b) normal[a][b] += row[a] * row[b];
+    }
+  }
+  const auto with = explained_by(normal, right, 4);
+  const auto without = explained_by(normal, right, 3);
+  if (!with || !without) return std::nullopt;
+  return std::max(*with - *without, 0.0) / static_cast<double>(last - first + 1);
+}
+
+struct BendingDelay {
+  double ticks = 0.0;
+  double error_ticks = 0.0;  ///< standard error
+  std::vector<std::pair<double, double>> by_delay;
+};
+
+/// The delay after which the path bends when the push turns round: while the handle goes on one
+/// way, friction is constant, and nothing else bends it so sharply.
+std::optional<BendingDelay> bending_delay(const EvenSeries& series, TickRange ticks,
+                                          std::span<const double> turns, double half) {
+  constexpr double kEarliest = -2.0;
+  constexpr double kLatest = 14.0;
+  constexpr double kFine = 0.25;
+  constexpr auto kPlaces = static_cast<std::size_t>((kLatest - kEarliest) / kFine) + 1;
+  constexpr std::size_t kFewestTurns = 8;
+  const auto delay_of = [&](std::ptrdiff_t place) {
+    return kEarliest + kFine * static_cast<double>(place);
+  };
+  std::vector<double> sums(kPlaces, 0.0);
+  std::vector<double> best_of_turn;
+  for (const double turn : turns) {
+    if (turn < static_cast<double>(ticks.from) + 2.0 * half) continue;
+    if (turn + kLatest + 2.0 * half > static_cast<double>(ticks.end)) continue;
+    std::vector<double> bends(kPlaces);
+    for (std::size_t k = 0; k < kPlaces; ++k) {
+      const double at = turn + delay_of(static_cast<std::ptrdiff_t>(k));
+      const auto bend = bend_at(series.position_mm, at, half);
+      if (!bend) return std::nullopt;
+      bends[k] = *bend;
+    }
+    best_of_turn.push_back(delay_of(std::ranges::max_element(bends) - bends.begin()));
+    for (std::size_t k = 0; k < kPlaces; ++k) sums[k] += bends[k];
+  }
+  if (best_of_turn.size() < kFewestTurns) return std::nullopt;
+  const auto best = std::ranges::max_element(sums) - sums.begin();
+  if (best == 0 || best + 1 == static_cast<std::ptrdiff_t>(kPlaces)) return std::nullopt;
+  BendingDelay delay;
+  delay.ticks = delay_of(best);
+  // From quartiles, as single turns may bend elsewhere: 1.25 times the deviation over 1.35.
+  const double spread = quantile_of(best_of_turn, 0.75) - quantile_of(best_of_turn, 0.25);
+  delay.error_ticks = 0.93 * spread / std::sqrt(static_cast<double>(best_of_turn.size()));
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    delay.by_delay.emplace_back(1000.0 * kServoTickS * delay_of(static_cast<std::ptrdiff_t>(k)),
+                                std::sqrt(sums[k] / static_cast<double>(best_of_turn.size())));
+  }
+  return delay;
+}
+
+/// Short stretches are not disturbed by soft arms, long ones less by encoder steps; how far they
+/// disagree belongs to the error.
+std::optional<Measured> delay_by_turns(const EvenSeries& series, TickRange ticks, double push_n,
+                                       std::vector<std::pair<double, double>>& by_delay) {
+  constexpr double kShortHalf = 5.0;  // ticks
+  constexpr double kLongHalf = 8.0;
+  const std::vector<double> turns =
+      turns_in(series, ticks, push_n, static_cast<std::size_t>(kLongHalf) + 2);
+  const auto near = bending_delay(series, ticks, turns, kShortHalf);
+  const auto far = bending_delay(series, ticks, turns, kLongHalf);
+  if (!near || !far) return std::nullopt;
+  by_delay = near->by_delay;
+  const double ms = 1000.0 * kServoTickS;
+  return Measured{
+      near->ticks * ms,
+      (2.0 * near->error_ticks + 0.5 * std::abs(near->ticks - far->ticks)) * ms + kDelayFloorMs};
+}
+
+ShakeOrWhy no_shake(std::string why) {
+  return {std::nullopt, std::move(why)};
+}
+
+}  // namespace
+
+std::optional<RestFigures> rest_figures(std::span<const ServoSample> samples) {
+  constexpr std::size_t kSettling = 500;
+  constexpr std::size_t kFewest = 1000;
+  if (samples.size() < kSettling + kFewest) return std::nullopt;
+  const auto still = samples.subspan(kSettling);
+  Vec3 halves[2];
+  double squares = 0.0;
+  const std::size_t half = still.size() / 2;
+  const Vec3 first_mm = still.front().position_mm;
+  for (std::size_t i = 0; i < 2 * half; ++i) {
+    const Vec3 offset = still[i].position_mm - first_mm;
+    halves[i < half ? 0 : 1] = halves[i < half ? 0 : 1] + offset;
+    squares += dot(offset, offset);
+  }
+  const auto n = static_cast<double>(2 * half);
+  const Vec3 mean = (1.0 / n) * (halves[0] + halves[1]);
+  return RestFigures{std::sqrt(std::max(squares / n - dot(mean, mean), 0.0)),
+                     norm((2.0 / n) * (halves[1] - halves[0]))};
+}
+
+MeasuredOrWhy encoder_step_mm(std::span<const ServoSample> samples) {
+  AxisStep coarsest;
+  bool all_resolved = true;
+  for (const DeviceAxis axis : kDeviceAxes) {
+    const AxisStep step = axis_step(even_series(samples, direction_of(axis)));
+    if (!step.moved) {
+      return {std::nullopt, "the handle was not moved along axis " + std::string(name_of(axis))};
+    }
+    all_resolved = all_resolved && step.resolved;
+    if (step.step_mm > coarsest.step_mm) coarsest = step;
+  }
+  if (!all_resolved) {
+    return {std::nullopt,
+            "readings change by every amount: noise or a filter hides the steps, or they are finer "
+            "than " +
+                std::to_string(coarsest.step_mm) + " mm"};
+  }
+  return {Measured{coarsest.step_mm, coarsest.spread_mm + 0.05 * coarsest.step_mm}};
+}
+
+StrokesOrWhy stroke_figures(const SlowStrokes& strokes, double step_mm) {
+  constexpr std::size_t kHalf = 50;  // ticks to either side, for the speed
+  const Vec3 axis = direction_of(strokes.axis());
+  if (strokes.ran_away()) return {std::nullopt, "the handle left its place"};
+  if (strokes.swung()) {
+    return {std::nullopt, "the held handle swings: delay, or soft arms; nothing may hold it"};
+  }
+  const EvenSeries series = even_series(strokes.samples(), axis);
+  const std::vector<double>& x = series.position_mm;
+  const std::size_t from = ticks_of(strokes.hold_s());
+  const std::size_t period = ticks_of(SlowStrokes::kPeriodS);
+  const std::size_t end = from + SlowStrokes::kPeriods * period;
+  if (x.size() < end) return {std::nullopt, "the run ended early"};
+  if (series.left_out > kMostLeftOut) return {std::nullopt, "the servo left out too many ticks"};
+  std::vector<double> sums;
+  std::vector<double> differences;
+  StrokeFigures figures;
+  const auto [least, greatest] = std::minmax_element(x.begin() + static_cast<std::ptrdiff_t>(from),
+                                                     x.begin() + static_cast<std::ptrdiff_t>(end));
+  const double middle_mm = 0.5 * (*least + *greatest);
+  if (*greatest - *least <= kStepsOfMotion * step_mm) {
+    return {std::nullopt, "the handle moved less than five encoder steps"};
+  }
+  for (int p = 0; p < SlowStrokes::kPeriods; ++p) {
+    double force_n[2] = {};
+    std::size_t ticks[2] = {};
+    for (std::size_t i = from + static_cast<std::size_t>(p) * period;
+         i < from + static_cast<std::size_t>(p + 1) * period; ++i) {
+      const double phase = static_cast<double>(i - from) / static_cast<double>(period) - p;
+      const bool is_back = phase >= 0.25 && phase < 0.75;
+      const double way = is_back ? -1.0 : 1.0;
+      const std::size_t to = std::min(i + kHalf, x.size() - 1);
+      const double mm_s = way * (x[to] - x[i - kHalf]) / (2.0 * kHalf * kServoTickS);
+      if (mm_s < 0.5 * SlowStrokes::kSpeedMmS || mm_s > 2.0 * SlowStrokes::kSpeedMmS) continue;
+      force_n[is_back ? 1 : 0] += series.force_n[i];
+      ++ticks[is_back ? 1 : 0];
+    }
+    if (std::min(ticks[0], ticks[1]) < period / 15) {
+      return {std::nullopt, "the handle did not follow the strokes: it sticks, or a hand held it"};
+    }
+    const double there = force_n[0] / static_cast<double>(ticks[0]);
+    const double back = force_n[1] / static_cast<double>(ticks[1]);
+    sums.push_back(0.5 * (there + back));
+    differences.push_back(0.5 * (there - back));
+  }
+  figures.load_n = {mean_of(sums), 2.0 * standard_error_of(sums) + kLoadFloorN};
+  const double friction_n = mean_of(differences);
+  figures.friction_n = {friction_n, 2.0 * standard_error_of(differences) + kFrictionFloorN +
+                                        kFrictionShare * std::abs(friction_n)};
+  for (std::size_t i = from; i < end; i += 10) {
+    figures.loop.emplace_back(x[i] - middle_mm, series.force_n[i] - figures.load_n.value);
+  }
+  return {figures, ""};
+}
+
+ShakeOrWhy shake_figures(const ShakenStrokes& strokes, double friction_n, double step_mm) {
+  constexpr std::array<std::size_t, 4> kHalves = {8, 12, 20, 32};
+  constexpr std::size_t kFewestWindows = 60;
+  if (strokes.ran_away()) return no_shake("the handle left its place");
+  const EvenSeries series = even_series(strokes.samples(), direction_of(strokes.axis()));
+  if (series.left_out > kMostLeftOut) return no_shake("the servo left out too many ticks");
+  const std::size_t from = ticks_of(ShakenStrokes::begins_s());
+  const std::size_t end = from + ticks_of(ShakenStrokes::kShakeS) - 1;
+  if (series.position_mm.size() < end) return no_shake("the run ended early");
+  const double least_mm = step_mm > 0.0 ? step_mm : kUnknownStepMm;
+  std::vector<std::vector<Window>> by_length;
+  for (const std::size_t half : kHalves) {
+    std::vector<Window> windows = windows_in(series, {from, end}, half, least_mm);
+    if (windows.size() >= kFewestWindows) by_length.push_back(std::move(windows));
+  }
+  if (by_length.empty()) {
+    return no_shake("the handle moved too little: less than five encoder steps at a time");
+  }
+  // Slow strokes take what damping adds at their speed for friction.
+  WindowFits fits = fits_of(by_length, friction_n);
+  if (fits.best) {
+    const double viscous = std::max(-fits.best->unknowns[2] / fits.best->unknowns[0], 0.0);
+    fits = fits_of(by_length, friction_n - 0.001 * SlowStrokes::kSpeedMmS * viscous);
+  }
+  const std::optional<WindowFit>& best = fits.best;
+  if (!best) return no_shake("the handle's motion does not tell its mass");
+  if (best->unexplained > kMostUnexplained) {
+    return no_shake(
+        "the motion does not follow the force: a hand held the handle, it struck "
+        "something, or its arms are soft");
+  }
+  ShakeFigures figures;
+  figures.unexplained = best->unexplained;
+  figures.windows = best->windows;
+  const double mass_kg = 1.0 / best->unknowns[0];
+  const double viscous = std::max(-best->unknowns[2] * mass_kg, 0.0);
+  figures.mass_kg = {mass_kg, 2.0 * best->errors[0] * mass_kg * mass_kg + kMassFloorKg +
+                                  (kMassShare + 0.5 * best->unexplained) * mass_kg};
+  figures.viscous_n_s_per_m = {
+      viscous, 2.0 * best->errors[2] * mass_kg + kViscousFloor + 0.1 * std::abs(viscous)};
+  figures.delay_ms = delay_by_turns(series, {from, end}, strokes.push_n(), figures.by_delay);
+  if (fits.delay_ms) figures.delay_ms = fits.delay_ms;
+  return {figures, ""};
+}
+
+}  // namespace touchtrial::device

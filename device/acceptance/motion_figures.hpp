@@ -1,0 +1,80 @@
+/// \file What the motion of a handle tells about its device: noise, steps, load, friction, mass and
+/// delay from recorded runs. Pure functions. Source: docs/devices/acceptance.md.
+#pragma once
+
+#include "core/vec.hpp"
+#include "device/acceptance/measurement.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace touchtrial::device {
+
+/// A measured number, and the half-width of the interval that is stated for it: twice the standard
+/// error from the scatter, and a floor for what scatter does not show.
+struct Measured {
+  double value = 0.0;
+  double error = 0.0;  ///< >= 0
+};
+
+/// Either a measured number, or why there is none.
+struct MeasuredOrWhy {
+  std::optional<Measured> measured;
+  std::string why{};  ///< empty if it was measured
+};
+
+struct RestFigures {
+  double noise_mm = 0.0;  ///< standard deviation of the position, all axes together
+  double drift_mm = 0.0;  ///< from the mean place of the first half to that of the second
+};
+/// \param samples  of a handle that lies still; the first half second is left out
+/// \return nothing if there are fewer than 1000 samples
+[[nodiscard]] std::optional<RestFigures> rest_figures(std::span<const ServoSample> samples);
+
+/// The smallest difference between readings.
+/// \param samples  of a handle that a person moves slowly along all three axes
+[[nodiscard]] MeasuredOrWhy encoder_step_mm(std::span<const ServoSample> samples);
+
+/// What the slow strokes of one run took.
+struct StrokeFigures {
+  Measured load_n;      ///< commanded along the axis against what pulls, either way of motion
+  Measured friction_n;  ///< half the difference between the two ways
+  /// Place along the axis from the middle, and commanded force without the load, for a picture.
+  std::vector<std::pair<double, double>> loop{};
+};
+struct StrokesOrWhy {
+  std::optional<StrokeFigures> figures;
+  std::string why{};
+};
+/// \param step_mm  encoder step; strokes must exceed five of them; 0: not known
+[[nodiscard]] StrokesOrWhy stroke_figures(const SlowStrokes& strokes, double step_mm);
+
+/// The parameters of m a = F(t - delay) - f sign(v) - b v + c, along one axis, by least squares
+/// over windows in which the handle moves one way by more than five encoder steps. Both sides are
+/// integrated with a smooth weight, whose derivatives stand in for those of the position: encoder
+/// steps are never differentiated.
+struct ShakeFigures {
+  Measured mass_kg;
+  Measured viscous_n_s_per_m;
+  /// From a force's tick to the bend that it makes in the path; nothing: too few turns were clear.
+  std::optional<Measured> delay_ms;
+  double unexplained = 0.0;  ///< of the acceleration, as a share (root mean squares)
+  std::size_t windows = 0;
+  /// Delay in ms, and what a bend after it explains of the path around turns, mm (root mean
+  /// square).
+  std::vector<std::pair<double, double>> by_delay{};
+};
+struct ShakeOrWhy {
+  std::optional<ShakeFigures> figures;
+  std::string why{};
+};
+/// More than this share unexplained: something else moved the handle.
+inline constexpr double kMostUnexplained = 0.3;
+/// \param friction_n  of slow strokes, in commanded newtons
+[[nodiscard]] ShakeOrWhy shake_figures(const ShakenStrokes& strokes, double friction_n,
+                                       double step_mm);
+
+}  // namespace touchtrial::device

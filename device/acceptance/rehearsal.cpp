@@ -1,0 +1,105 @@
+#include "device/acceptance/rehearsal.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace touchtrial::device {
+namespace {
+
+/// The scripted person's hand and weights.
+constexpr double kRehearsedWeightN = 1.0;
+constexpr double kWayMm = 8.0;  ///< of slow motion to either side
+constexpr double kLongestWayS = 6.0;
+constexpr double kPressN = 0.7;
+constexpr double kLettingGoS = 1.8;  ///< within the two seconds that the prompts give
+
+double seconds_of(std::chrono::nanoseconds time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+Vec3 same_on_all(double value) {
+  return {value, value, value};
+}
+
+}  // namespace
+
+Rehearsal::Rehearsal(const DeviceModel& model)
+    : device_(model), middle_mm_(device_.dynamics().true_position_mm()) {
+  device_.set_hand([this](double time_s, Vec3 position_mm, Vec3 /*velocity_mm_s*/) {
+    return hand(time_s, position_mm);
+  });
+}
+
+ServoReport Rehearsal::run(const std::string& /*name*/, Measurement& measurement) {
+  device_.place(middle_mm_);
+  began_s_ = seconds_of(device_.now());
+  ServoOptions options;
+  options.limit_ticks = std::llround(measurement.seconds() * kServoRateHz) + 1;
+  options.limits = limits();
+  return run_servo_in_virtual_time(device_, measurement, measurement, options);
+}
+
+Consent Rehearsal::ready(const Prompt& prompt) {
+  stance_ = prompt.stance;
+  axis_ = prompt.axis;
+  return Consent::go;
+}
+
+std::optional<double> Rehearsal::weight_n(DeviceAxis /*axis*/, double /*least_n*/, double most_n) {
+  weight_n_ = std::min(kRehearsedWeightN, most_n);
+  return weight_n_;
+}
+
+std::optional<double> Rehearsal::temperature_c(const std::string& /*question*/) {
+  return std::nullopt;
+}
+
+std::string Rehearsal::saw(const std::string& /*question*/) {
+  return "";
+}
+
+DeviceDynamics::Outside Rehearsal::letting_go(double time_s, Vec3 off_mm) const {
+  const double share = std::max(0.0, 1.0 - (time_s - began_s_) / kLettingGoS);
+  return {(share * 0.5) * off_mm, 0.0, same_on_all(share * 0.02)};
+}
+
+DeviceDynamics::Outside Rehearsal::hand(double time_s, Vec3 position_mm) const {
+  const Vec3 weight_carried = {0.0, device_.model().planted.gravity_n, 0.0};
+  const Vec3 off_mm = middle_mm_ - position_mm;
+  switch (stance_) {
+    case Stance::lying:
+    case Stance::guarding:
+      return {1.0 * off_mm + weight_carried, 0.2, same_on_all(0.03)};
+    case Stance::moving: {
+      const double phase = 2.0 * std::acos(-1.0) * (time_s - began_s_) / kLongestWayS;
+      const Vec3 way_mm = {kWayMm * std::sin(phase), kWayMm * std::sin(1.2 * phase),
+                           kWayMm * std::sin(1.5 * phase)};
+      return {0.5 * (off_mm + way_mm) + weight_carried, 0.1, same_on_all(0.01)};
+    }
+    case Stance::holding:
+      return {0.05 * off_mm + weight_carried, 0.05, same_on_all(0.003)};
+    case Stance::free:
+      return letting_go(time_s, off_mm);
+    case Stance::loaded: {
+      // Down along y, over a pulley to the right or towards the person along the others.
+      const double sign = axis_ == DeviceAxis::y ? -1.0 : 1.0;
+      const DeviceDynamics::Outside hand = letting_go(time_s, off_mm);
+      return {hand.force_n + sign * weight_n_ * direction_of(axis_),
+              weight_n_ / kStandardGravityMS2, hand.damping_n_s_per_mm};
+    }
+    case Stance::pressing:
+      break;
+  }
+  return {
+      weight_carried + Vec3{0.1 * off_mm.x, -kPressN, 0.1 * off_mm.z}, 0.1, {0.004, 0.008, 0.004}};
+}
+
+Acceptance rehearse_acceptance(const DeviceModel& model, const AcceptanceOptions& options) {
+  Rehearsal rehearsal(model);
+  Acceptance acceptance = accept_device(rehearsal, rehearsal, options);
+  acceptance.certificate.emulated = model.name;
+  return acceptance;
+}
+
+}  // namespace touchtrial::device

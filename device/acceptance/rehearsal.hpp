@@ -1,0 +1,53 @@
+/// \file A rehearsal of an acceptance: a device model in virtual time, and a person who does what
+/// the prompts say. It proves the program, and no device.
+#pragma once
+
+#include "device/acceptance/acceptance.hpp"
+#include "device/model/device_model.hpp"
+
+#include <string>
+#include <vector>
+
+namespace touchtrial::device {
+
+/// Bench and person in one. Not thread-safe.
+class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
+ public:
+  /// \throws std::invalid_argument as ModelledDevice
+  explicit Rehearsal(const DeviceModel& model);
+
+  [[nodiscard]] DeviceInfo info() const override { return device_.info(); }
+  [[nodiscard]] SafetyLimits limits() const override { return {}; }
+  [[nodiscard]] ServoReport run(const std::string& name, Measurement& measurement) override;
+
+  [[nodiscard]] Consent ready(const Prompt& prompt) override;
+  [[nodiscard]] std::optional<double> weight_n(DeviceAxis axis, double least_n,
+                                               double most_n) override;
+  [[nodiscard]] std::optional<double> temperature_c(const std::string& question) override;
+  [[nodiscard]] std::string saw(const std::string& question) override;
+  void tell(const std::string& result) override { told_.push_back(result); }
+
+  /// Every result, a line each.
+  [[nodiscard]] const std::vector<std::string>& told() const noexcept { return told_; }
+
+ private:
+  [[nodiscard]] DeviceDynamics::Outside hand(double time_s, Vec3 position_mm) const;
+
+  /// A hand that lets go, from the run's beginning on.
+  [[nodiscard]] DeviceDynamics::Outside letting_go(double time_s, Vec3 off_mm) const;
+
+  ModelledDevice device_;
+  Vec3 middle_mm_;
+  Stance stance_ = Stance::lying;
+  DeviceAxis axis_ = DeviceAxis::y;
+  double weight_n_ = 0.0;
+  double began_s_ = 0.0;
+  std::vector<std::string> told_;
+};
+
+/// Rehearses with a model.
+/// \return with `emulated` set
+[[nodiscard]] Acceptance rehearse_acceptance(const DeviceModel& model,
+                                             const AcceptanceOptions& options);
+
+}  // namespace touchtrial::device

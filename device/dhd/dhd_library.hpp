@@ -1,0 +1,138 @@
+/// \file The part of Force Dimension's library that the driver uses, declared from its public
+/// documentation: nothing of the vendor's kit is needed to build. And where a machine has it.
+/// Private to this folder.
+#pragma once
+
+#include "device/platform/dynamic_library.hpp"
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace touchtrial::device::dhd {
+
+/// Most functions return a number below 0 for an error, 0 for success, 2 if the motors gave less
+/// force than requested (no fault), or this one if the call came too soon and gave the same values
+/// again.
+constexpr int kTimeGuard = 1;
+
+/// The status and places in it. Longer than any version's, so that a newer library stays inside.
+using Status = std::array<int, 32>;
+constexpr std::size_t kConnected = 1;
+constexpr std::size_t kReset = 3;  ///< the device waits for its calibration
+constexpr std::size_t kForce = 5;  ///< force is switched on
+constexpr std::size_t kError = 9;
+constexpr std::size_t kGravity = 10;        ///< the library adds the weight to every force
+constexpr std::size_t kForceOffCause = 14;  ///< of the last time that force went off, however old
+
+/// Causes for which the device itself switches force off; the other causes are a person's act (its
+/// button) or ours.
+constexpr int kOffByVelocity = 2;
+constexpr int kOffByWatchdog = 3;
+constexpr int kOffByUnplugging = 5;
+
+constexpr int kRecommendedTimeGuard = -1;
+/// The device switches force off if no command came for so many times 125 us: 10 ms.
+constexpr unsigned char kWatchdog = 80;
+/// Joints of the largest device, as arrays of joint values have them. The first three are the arms.
+constexpr std::size_t kJoints = 8;
+
+/// The functions, dhdGetDeviceCount as get_device_count and so on. The last argument is the device.
+struct Api {
+  int (*get_device_count)();
+  int (*open_id)(char);
+  int (*close)(char);
+  int (*get_position)(double*, double*, double*, char);  ///< m
+  int (*set_force)(double, double, double, char);        ///< N
+  int (*enable_force)(unsigned char, char);
+  unsigned (*get_button_mask)(char);
+  int (*get_status)(int*, char);
+  int (*set_time_guard)(int, char);
+  int (*set_gravity_compensation)(int, char);
+  const char* (*error_get_last_str)();
+
+  /// \name Null where the library does not have them
+  ///@{
+  int (*stop)(char);  ///< force off and brakes on
+  int (*enable_expert_mode)();
+  int (*disable_expert_mode)();
+  int (*get_system_type)(char);
+  const char* (*get_system_name)(char);
+  int (*get_serial_number)(unsigned short*, char);
+  int (*get_version)(double*, char);
+  int (*set_effector_mass)(double, char);   ///< kg
+  int (*get_effector_mass)(double*, char);  ///< kg
+  int (*set_max_force)(double, char);       ///< N; below 0: no limit
+  int (*set_watchdog)(unsigned char, char);
+  int (*get_watchdog)(unsigned char*, char);
+  int (*get_joint_angles)(double*, char);                                               ///< rad
+  int (*joint_angles_to_gravity_joint_torques)(double*, double*, unsigned char, char);  ///< N m
+  int (*get_delta_joint_angles)(double*, double*, double*, char);
+  int (*delta_gravity_joint_torques)(double, double, double, double*, double*, double*, char);
+  int (*delta_joint_angles_to_jacobian)(double, double, double, double (*)[3], char);
+  ///@}
+
+  /// \name Only in libdrd, which has the others as well: drdOpenID as drd_open_id and so on
+  ///@{
+  int (*drd_open_id)(char);
+  int (*drd_close)(char);
+  bool (*drd_is_initialized)(char);
+  int (*drd_auto_init)(char);  ///< moves the arm
+  ///@}
+
+  [[nodiscard]] bool has_drd() const noexcept {
+    return drd_open_id != nullptr && drd_close != nullptr && drd_is_initialized != nullptr;
+  }
+};
+
+/// \return whether the device, of this status, knows where its axes are
+[[nodiscard]] inline bool is_calibrated(const Api& api, const Status& status,
+                                        char device) noexcept {
+  return status[kReset] == 0 && (!api.has_drd() || api.drd_is_initialized(device));
+}
+
+/// Calls a function that versions with an expert mode refuse outside it. The mode is left at once,
+/// as other functions of it switch safety off.
+template <typename Call>
+auto as_expert(const Api& api, Call call) noexcept(noexcept(call())) {
+  if (api.enable_expert_mode != nullptr) (void)api.enable_expert_mode();
+  const auto result = call();
+  if (api.disable_expert_mode != nullptr) (void)api.disable_expert_mode();
+  return result;
+}
+
+/// The remedy for a library that cannot be used.
+extern const char* const kRemedy;
+
+/// \param named  the setting dhd.library: a file, the kit's folder or one with the library in it,
+///   or a bare name
+/// \return what to load, best first: libdrd before libdhd, which it contains, and newer versions
+///   before older ones. For the name libdhd.so, which the kit does not have, also the names that
+///   it has, in the linker's path, the kit's folder (environment FDSDK), and the usual folders.
+[[nodiscard]] std::vector<std::filesystem::path> library_candidates(
+    const std::filesystem::path& named);
+
+/// The loaded library, without a device.
+class Library {
+ public:
+  /// Loads the first candidate that exists, after a trial in a child process.
+  /// \throws DeviceError with the remedy if none exists, or the first one cannot be used
+  explicit Library(const std::filesystem::path& named);
+
+  [[nodiscard]] const Api& api() const noexcept { return api_; }
+  /// \return what was loaded
+  [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
+  /// \return the number of connected devices, >= 0
+  [[nodiscard]] int device_count() const noexcept;
+  /// \return the library's own words for its last failure on this thread
+  [[nodiscard]] std::string last_error() const;
+
+ private:
+  std::filesystem::path file_;
+  DynamicLibrary library_;
+  Api api_;
+};
+
+}  // namespace touchtrial::device::dhd

@@ -1,0 +1,313 @@
+#include "device/model/device_model.hpp"
+
+#include "device/safety/safety_limits.hpp"
+#include "device/servo/servo.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+namespace touchtrial::device {
+namespace {
+
+constexpr double kMmPerM = 1000.0;
+constexpr double kMPerMm = 0.001;
+
+/// The ends of a workspace: stiff and well damped, so that a handle comes to rest there.
+constexpr double kStopNPerMm = 5.0;
+constexpr double kStopNSPerMm = 0.05;
+
+/// \return f(a, b, ...) on each axis
+template <typename Function, typename... Vectors>
+Vec3 on_each_axis(const Function& f, const Vectors&... vectors) noexcept {
+  return {f(vectors.x...), f(vectors.y...), f(vectors.z...)};
+}
+
+Vec3 whole_steps(Vec3 a, double step) noexcept {
+  return on_each_axis([step](double value) { return step * std::nearbyint(value / step); }, a);
+}
+
+double checked_tick(double tick_s) {
+  constexpr double kLongestTickS = 0.01;
+  if (tick_s > 0.0 && tick_s <= kLongestTickS) return tick_s;
+  throw std::invalid_argument("DeviceDynamics: a tick must be in (0, 0.01] s");
+}
+
+const DeviceModel& checked_model(const DeviceModel& model) {
+  check_device_model(model);
+  return model;
+}
+
+/// \return where the nearest end of the workspace is, if the position lies beyond it
+std::optional<Vec3> end_of(const Workspace& workspace, Vec3 position_mm) noexcept {
+  if (workspace.shape == WorkspaceShape::box) {
+    const auto clamped = [](double value, double least, double greatest) {
+      return std::clamp(value, least, greatest);
+    };
+    const Vec3 end_mm =
+        on_each_axis(clamped, position_mm, workspace.least_mm, workspace.greatest_mm);
+    return end_mm == position_mm ? std::nullopt : std::optional(end_mm);
+  }
+  const Vec3 middle_mm = 0.5 * (workspace.least_mm + workspace.greatest_mm);
+  const Vec3 half_mm = workspace.greatest_mm - middle_mm;
+  const Vec3 from_middle_mm = position_mm - middle_mm;
+  const double radii = norm(
+      on_each_axis([](double way, double half) { return way / half; }, from_middle_mm, half_mm));
+  if (radii <= 1.0) return std::nullopt;
+  return middle_mm + (1.0 / radii) * from_middle_mm;
+}
+
+}  // namespace
+
+DeviceDynamics::DeviceDynamics(const DeviceModel& model, double tick_s)
+    : model_(checked_model(model)),
+      tick_s_(checked_tick(tick_s)),
+      static_n_(std::max(model.static_n, model.coulomb_n)),
+      has_motors_(model.delay_ticks > 0 || model.max_force_n > 0.0 || model.force_step_n > 0.0 ||
+                  model.lowpass_hz > 0.0 ||
+                  model.planted.force_sign_scale != DeviceModel::Planted{}.force_sign_scale),
+      has_friction_(static_n_ > 0.0),
+      has_true_readings_(model.position_step_mm == 0.0 && model.velocity_readings == 0 &&
+                         model.planted.position_noise_mm == 0.0) {
+  if (model.structure.stiffness_n_per_mm > 0.0) {
+    const double k = model.structure.stiffness_n_per_mm;
+    tip_kg_ = model.structure.tip_share * model.mass_kg;
+    joint_ = 0.25 * k * tick_s + model.structure.damping_ratio * std::sqrt(k * kMPerMm * tip_kg_);
+  }
+  if (model.lowpass_hz > 0.0) {
+    filter_share_ = -std::expm1(-2.0 * std::numbers::pi * model.lowpass_hz * tick_s);
+  }
+  if (model.planted.position_noise_mm > 0.0) {
+    noise_.emplace(model.planted.seed, "device model's position noise");
+  }
+  on_the_way_n_.resize(static_cast<std::size_t>(model.delay_ticks));
+  readings_mm_.resize(static_cast<std::size_t>(model.velocity_readings));
+  place({});
+}
+
+void DeviceDynamics::place(Vec3 position_mm) noexcept {
+  tip_mm_ = motor_mm_ = position_mm;
+  tip_mm_s_ = motor_mm_s_ = {};
+  filtered_n_ = delivered_n_ = {};
+  std::ranges::fill(on_the_way_n_, Vec3{});
+  take_reading();
+  std::ranges::fill(readings_mm_, read_mm_);
+  read_mm_s_ = {};
+}
+
+void DeviceDynamics::tick(Vec3 commanded_n, const Outside& outside) noexcept {
+  delivered_n_ = has_motors_ ? through_motors(commanded_n) : commanded_n;
+  Vec3 motor_n = delivered_n_;
+  if (model_.planted.gravity_n > 0.0) motor_n.y -= model_.planted.gravity_n;
+  if (joint_ > 0.0) {
+    move_structure(motor_n, outside);
+  } else {
+    move_rigid(motor_n, outside);
+  }
+  take_reading();
+}
+
+Vec3 DeviceDynamics::through_motors(Vec3 commanded_n) noexcept {
+  Vec3 force_n = commanded_n;
+  if (!on_the_way_n_.empty()) {
+    std::swap(force_n, on_the_way_n_[next_command_]);
+    if (++next_command_ == on_the_way_n_.size()) next_command_ = 0;
+  }
+  if (model_.max_force_n > 0.0) {
+    const double magnitude_n = norm(force_n);
+    if (magnitude_n > model_.max_force_n) force_n = (model_.max_force_n / magnitude_n) * force_n;
+  }
+  if (model_.force_step_n > 0.0) force_n = whole_steps(force_n, model_.force_step_n);
+  if (model_.lowpass_hz > 0.0) {
+    filtered_n_ = filtered_n_ + filter_share_ * (force_n - filtered_n_);
+    force_n = filtered_n_;
+  }
+  const auto times = [](double a, double b) { return a * b; };
+  return on_each_axis(times, force_n, model_.planted.force_sign_scale);
+}
+
+double DeviceDynamics::friction_n(double speed_mm_s) const noexcept {
+  if (model_.stribeck_mm_s == 0.0) return model_.coulomb_n;
+  const double ratio = speed_mm_s / model_.stribeck_mm_s;
+  return model_.coulomb_n + (static_n_ - model_.coulomb_n) * std::exp(-ratio * ratio);
+}
+
+/// \param velocity_mm_s  before the tick
+/// \param stop_n  the force against the motion that would bring it to rest within the tick
+/// \param free_mm_s  the velocity after the tick without friction
+/// \return the velocity with friction: at rest if friction can stop it, else less by friction's
+///   share of `stop_n`
+Vec3 DeviceDynamics::after_friction(Vec3 velocity_mm_s, Vec3 stop_n,
+                                    Vec3 free_mm_s) const noexcept {
+  const auto left = [this](double before_mm_s, double needed_n, double speed_mm_s) {
+    const double slip_n = friction_n(speed_mm_s);
+    const double hold_n = before_mm_s == 0.0 ? static_n_ : slip_n;
+    return needed_n <= hold_n ? 0.0 : 1.0 - slip_n / needed_n;
+  };
+  if (model_.friction == FrictionShape::isotropic) {
+    return left(norm(velocity_mm_s), norm(stop_n), norm(free_mm_s)) * free_mm_s;
+  }
+  const auto on_axis = [&left](double before, double needed, double free) {
+    return left(before, std::abs(needed), std::abs(free)) * free;
+  };
+  return on_each_axis(on_axis, velocity_mm_s, stop_n, free_mm_s);
+}
+
+void DeviceDynamics::move_rigid(Vec3 force_n, const Outside& outside) noexcept {
+  const double mass_kg = model_.mass_kg + outside.mass_kg;
+  const double tick_per_mass = tick_s_ * kMmPerM / (mass_kg > 0.0 ? mass_kg : kLeastMassKg);
+  const double viscous = kMPerMm * model_.viscous_n_s_per_m;
+  const Vec3 all_n = force_n + outside.force_n;
+  const auto free_velocity = [=](double before_mm_s, double n, double damping) {
+    return (before_mm_s + tick_per_mass * n) / (1.0 + tick_per_mass * (viscous + damping));
+  };
+  Vec3 after_mm_s = on_each_axis(free_velocity, tip_mm_s_, all_n, outside.damping_n_s_per_mm);
+  if (has_friction_) {
+    after_mm_s = after_friction(tip_mm_s_, all_n + (1.0 / tick_per_mass) * tip_mm_s_, after_mm_s);
+  }
+  const Vec3 mean_mm_s = model_.zero_order_hold ? 0.5 * (tip_mm_s_ + after_mm_s) : after_mm_s;
+  tip_mm_ = tip_mm_ + tick_s_ * mean_mm_s;
+  tip_mm_s_ = after_mm_s;
+}
+
+/// Two masses and the spring between them, by the trapezium rule, which neither damps nor excites
+/// their resonance; damping to the ground is implicit, as in a rigid device. docs/devices/models.md
+/// has the equations.
+void DeviceDynamics::move_structure(Vec3 motor_n, const Outside& outside) noexcept {
+  const double joint = joint_;
+  const double motor_mass = kMPerMm * (model_.mass_kg - tip_kg_) / tick_s_;
+  const double tip_mass = kMPerMm * (tip_kg_ + outside.mass_kg) / tick_s_;
+  const double motor_all = motor_mass + kMPerMm * model_.viscous_n_s_per_m + joint;
+
+  const Vec3 spring_n = model_.structure.stiffness_n_per_mm * (motor_mm_ - tip_mm_) +
+                        joint * (motor_mm_s_ - tip_mm_s_);
+  const Vec3 on_motor_n = motor_n + motor_mass * motor_mm_s_ - spring_n;
+  const Vec3 on_tip_n = outside.force_n + tip_mass * tip_mm_s_ + spring_n;
+  const Vec3 tip_all =
+      on_each_axis([=](double d) { return tip_mass + d + joint; }, outside.damping_n_s_per_mm);
+
+  const auto stop = [=](double motor, double tip, double all) { return motor + joint * tip / all; };
+  const auto start = [=](double stop_n, double all) {
+    return stop_n / (motor_all - joint * joint / all);
+  };
+  const auto follow = [=](double tip, double motor_mm_s, double all) {
+    return (tip + joint * motor_mm_s) / all;
+  };
+  const Vec3 stop_n = on_each_axis(stop, on_motor_n, on_tip_n, tip_all);
+  Vec3 motor_mm_s = on_each_axis(start, stop_n, tip_all);
+  if (has_friction_) motor_mm_s = after_friction(motor_mm_s_, stop_n, motor_mm_s);
+  const Vec3 tip_mm_s = on_each_axis(follow, on_tip_n, motor_mm_s, tip_all);
+
+  motor_mm_ = motor_mm_ + 0.5 * tick_s_ * (motor_mm_s_ + motor_mm_s);
+  tip_mm_ = tip_mm_ + 0.5 * tick_s_ * (tip_mm_s_ + tip_mm_s);
+  motor_mm_s_ = motor_mm_s;
+  tip_mm_s_ = tip_mm_s;
+}
+
+void DeviceDynamics::take_reading() noexcept {
+  read_mm_ = joint_ > 0.0 ? motor_mm_ : tip_mm_;
+  if (has_true_readings_) {
+    read_mm_s_ = joint_ > 0.0 ? motor_mm_s_ : tip_mm_s_;
+    return;
+  }
+  if (noise_) {
+    const double deviation_mm = model_.planted.position_noise_mm;
+    read_mm_ = on_each_axis([&](double value) { return value + deviation_mm * noise_->normal(); },
+                            read_mm_);
+  }
+  if (model_.position_step_mm > 0.0) read_mm_ = whole_steps(read_mm_, model_.position_step_mm);
+  if (readings_mm_.empty()) {
+    read_mm_s_ = joint_ > 0.0 ? motor_mm_s_ : tip_mm_s_;
+  } else {
+    estimate_velocity();
+  }
+}
+
+/// The least-squares line through n readings at equal times has the slope
+/// 6 / (n (n^2 - 1) T) * sum over i = 0 .. n - 1 of (2 i - (n - 1)) x_i.
+void DeviceDynamics::estimate_velocity() noexcept {
+  const std::size_t n = readings_mm_.size();
+  readings_mm_[next_reading_] = read_mm_;
+  if (++next_reading_ == n) next_reading_ = 0;
+  const double count = static_cast<double>(n);
+  Vec3 sum_mm;
+  double weight = 1.0 - count;
+  std::size_t place = next_reading_;  // the oldest
+  for (std::size_t i = 0; i < n; ++i, weight += 2.0) {
+    sum_mm = sum_mm + weight * (readings_mm_[place] - read_mm_);
+    if (++place == n) place = 0;
+  }
+  read_mm_s_ = (6.0 / (count * (count * count - 1.0) * tick_s_)) * sum_mm;
+}
+
+ModelledDevice::ModelledDevice(DeviceModel model, Hand hand)
+    : model_(std::move(model)), dynamics_(model_, kServoTickS), hand_(std::move(hand)) {
+  if (model_.workspace) {
+    dynamics_.place(0.5 * (model_.workspace->least_mm + model_.workspace->greatest_mm));
+  }
+}
+
+std::chrono::nanoseconds ModelledDevice::now() const noexcept {
+  return tick_ * kServoTick;
+}
+
+double ModelledDevice::time_s() const noexcept {
+  return static_cast<double>(tick_) * kServoTickS;
+}
+
+bool ModelledDevice::is_silent() const noexcept {
+  return model_.planted.silent_after_s > 0.0 && time_s() >= model_.planted.silent_after_s;
+}
+
+bool ModelledDevice::is_lost() const noexcept {
+  return model_.planted.lost_after_s > 0.0 && time_s() >= model_.planted.lost_after_s;
+}
+
+DeviceInfo ModelledDevice::info() const {
+  DeviceInfo info;
+  info.name = "modelled";
+  info.model = model_.name;
+  info.simulated = true;
+  info.max_force_n = model_.max_force_n > 0.0 ? model_.max_force_n : SafetyLimits{}.max_force_n;
+  info.continuous_force_n = model_.continuous_force_n;
+  info.workspace = model_.workspace;
+  info.max_stiffness_n_per_mm = model_.max_stiffness_n_per_mm;
+  return info;
+}
+
+DeviceStatus ModelledDevice::read(DeviceSample& sample) noexcept {
+  if (is_lost()) return DeviceStatus::fault;
+  if (!is_silent()) {
+    last_.position_mm = dynamics_.read_position_mm();
+    last_.velocity_mm_s = dynamics_.read_velocity_mm_s();
+    last_.sequence = static_cast<std::uint64_t>(tick_) + 1;
+  }
+  sample = last_;
+  return DeviceStatus::ok;
+}
+
+DeviceStatus ModelledDevice::write(Vec3 force_n) noexcept {
+  const bool lost = is_lost();
+  const bool off = lost || is_silent() || halted_.load();
+  DeviceDynamics::Outside outside;
+  const Vec3 position_mm = dynamics_.true_position_mm();
+  if (hand_) outside = hand_(time_s(), position_mm, dynamics_.true_velocity_mm_s());
+  if (model_.workspace) {
+    if (const auto end_mm = end_of(*model_.workspace, position_mm)) {
+      outside.force_n = outside.force_n - kStopNPerMm * (position_mm - *end_mm);
+      outside.damping_n_s_per_mm =
+          outside.damping_n_s_per_mm + Vec3{kStopNSPerMm, kStopNSPerMm, kStopNSPerMm};
+    }
+  }
+  dynamics_.tick(off ? Vec3{} : force_n, outside);
+  ++tick_;
+  return lost ? DeviceStatus::fault : DeviceStatus::ok;
+}
+
+DeviceFault ModelledDevice::fault() const noexcept {
+  return is_lost() ? DeviceFault::link_lost : DeviceFault::none;
+}
+
+}  // namespace touchtrial::device

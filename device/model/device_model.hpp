@@ -1,0 +1,240 @@
+/// \file A model of a force-feedback device in virtual time: mass, friction, resolution, delay, motors
+/// and structure. A file names its parameters and where each comes from. Source of the equations:
+/// docs/devices/models.md.
+#pragma once
+
+#include "core/random.hpp"
+#include "core/vec.hpp"
+#include "device/haptic_device.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace touchtrial::device {
+
+/// Where a parameter's value comes from, from the surest to the least sure but one.
+enum class Confidence {
+  opened,      ///< read in a public source
+  transcript,  ///< read in a transcript of a paper
+  derived,     ///< computed from others of these
+  memory,      ///< remembered, unverified
+  guess,       ///< nobody knows
+  measured,    ///< on the very device, by `device accept`
+};
+
+struct Provenance {
+  std::string source;  ///< a line for people
+  Confidence confidence = Confidence::guess;
+};
+
+/// How Coulomb friction acts on motion in several directions at once.
+enum class FrictionShape {
+  isotropic,  ///< against the velocity, with one magnitude
+  per_axis,   ///< on each axis of the device frame alone, with the same magnitude
+};
+
+/// A second mass at the tip on a spring: what a device's arms and joints yield.
+struct StructureModel {
+  double stiffness_n_per_mm = 0.0;  ///< in [0, 1000]; 0: rigid
+  double tip_share = 0.0;           ///< of the mass that is at the tip, in (0, 1) unless rigid
+  double damping_ratio = 0.0;       ///< of the tip while the motors are held, in [0, 2]
+};
+
+/// The parameters of a device. A parameter of zero leaves its stage out, so a default model is
+/// ideal.
+struct DeviceModel {
+  std::string name;   ///< of the shipped model, or a lab's own
+  std::string title;  ///< for people: "3D Systems Touch"; may be empty
+
+  double mass_kg = 0.0;            ///< as felt at the tip, without the hand, in [0, 5]
+  double viscous_n_s_per_m = 0.0;  ///< friction in proportion to speed, in [0, 100]
+  double coulomb_n = 0.0;          ///< friction that does not depend on speed, in [0, 10]
+  double static_n = 0.0;           ///< at rest, coulomb_n .. 10; 0: as coulomb_n
+  double stribeck_mm_s = 0.0;      ///< the speed over which static falls to Coulomb friction
+  FrictionShape friction = FrictionShape::isotropic;
+
+  double position_step_mm = 0.0;  ///< readings are whole steps, in [0, 1]
+  /// The reported velocity is the slope of the line through this many readings, 2 to 32; 0: the
+  /// true velocity.
+  int velocity_readings = 0;
+
+  double force_step_n = 0.0;        ///< forces are whole steps on each axis, in [0, 1]
+  double max_force_n = 0.0;         ///< of the force's norm, in [0, 100]; 0: no limit
+  double continuous_force_n = 0.0;  ///< which the motors hold for ever, in [0, 100]; 0: not known
+  int delay_ticks = 0;              ///< from a command to its force, 0 to 100
+  double lowpass_hz = 0.0;  ///< of the motors and their amplifiers, first order, in [0, 5000]
+  /// A force acts from one tick to the next, as with a real device, so a wall gives back energy; if
+  /// false, it acts as in a computation without time between ticks. A structure always has it.
+  bool zero_order_hold = false;
+
+  StructureModel structure;
+  std::optional<Workspace> workspace;   ///< device frame; nothing: not known, no stops
+  double max_stiffness_n_per_mm = 0.0;  ///< as the maker states it, in [0, 100]; 0: not known
+
+  /// By the parameter's key in the file ("mass_kg", "structure").
+  std::map<std::string, Provenance> provenance;
+
+  /// Faults of a broken specimen, for rehearsals alone: the shipped models have none.
+  struct Planted {
+    Vec3 force_sign_scale = {1.0, 1.0, 1.0};  ///< factors of the delivered force, in [-10, 10]
+    double position_noise_mm = 0.0;  ///< standard deviation of white noise on each axis, in [0, 1]
+    double gravity_n = 0.0;          ///< weight that nothing carries: pulls along -y, in [0, 10]
+    double silent_after_s = 0.0;     ///< from then on readings repeat, no force; 0: never
+    double lost_after_s = 0.0;       ///< from then on the link is lost, no force; 0: never
+    std::uint64_t seed = 1;          ///< of the noise
+  } planted;
+};
+
+/// \throws std::invalid_argument if a parameter is out of range; names it and the range
+void check_device_model(const DeviceModel& model);
+
+/// Reads a file of the schema config/schema/device-model.schema.json.
+/// \throws StudyError with the JSON pointer if it breaks the schema, FileError if it cannot be read
+[[nodiscard]] DeviceModel read_device_model(const std::filesystem::path& file);
+
+/// The same from text.
+/// \param source  names the origin in errors
+/// \throws StudyError with the JSON pointer if the text breaks the schema
+[[nodiscard]] DeviceModel parse_device_model(std::string_view text, const std::string& source);
+
+/// \return the model as a file that parse_device_model reads; parameters of zero are left out
+[[nodiscard]] std::string device_model_json(const DeviceModel& model);
+
+/// \return the models that the program ships, in the order of their names
+[[nodiscard]] const std::vector<DeviceModel>& shipped_device_models();
+
+/// \param name  of a shipped model, or a file's path: one that has a slash or ends in ".json"
+/// \throws UsageError naming the nearest model if there is none of this name; as read_device_model
+[[nodiscard]] DeviceModel device_model(const std::string& name);
+
+/// \return the contents of config/devices when the program was built
+[[nodiscard]] std::vector<std::string_view> built_in_device_models();
+
+[[nodiscard]] std::string_view name_of(Confidence confidence) noexcept;
+
+/// A device and its tip: one tick after the other. In any right-handed frame; the models' per-axis
+/// friction and noise are those of this frame's axes. A tick costs no heap, lock or exception. Not
+/// thread-safe.
+class DeviceDynamics {
+ public:
+  /// The tip's mass where neither the model nor the hand has any, kg.
+  static constexpr double kLeastMassKg = 0.03;
+
+  /// At rest in the origin.
+  /// \param tick_s  time of a tick, in (0, 0.01]
+  /// \throws std::invalid_argument if a parameter or the tick is out of range
+  explicit DeviceDynamics(const DeviceModel& model, double tick_s = 0.001);
+
+  /// As a driver reads it: quantised, with noise.
+  [[nodiscard]] Vec3 read_position_mm() const noexcept { return read_mm_; }
+  /// As a driver estimates it from its readings; the velocity itself without velocity_readings.
+  [[nodiscard]] Vec3 read_velocity_mm_s() const noexcept { return read_mm_s_; }
+  /// Of the tip.
+  [[nodiscard]] Vec3 true_position_mm() const noexcept { return tip_mm_; }
+  [[nodiscard]] Vec3 true_velocity_mm_s() const noexcept { return tip_mm_s_; }
+  /// The motors' force during the last tick.
+  [[nodiscard]] Vec3 delivered_force_n() const noexcept { return delivered_n_; }
+
+  /// Puts the tip and everything else there, at rest, and forgets the forces on their way.
+  void place(Vec3 position_mm) noexcept;
+
+  /// What acts on the tip from outside: a hand, a weight, a wall of the real world.
+  struct Outside {
+    Vec3 force_n{};
+    double mass_kg = 0.0;       ///< that moves with the tip, >= 0
+    Vec3 damping_n_s_per_mm{};  ///< of the tip's own velocity on each axis, >= 0; implicit
+  };
+
+  /// One tick: the command goes through the device, and all forces move it.
+  void tick(Vec3 commanded_n, const Outside& outside) noexcept;
+
+ private:
+  [[nodiscard]] Vec3 through_motors(Vec3 commanded_n) noexcept;
+  [[nodiscard]] Vec3 after_friction(Vec3 velocity_mm_s, Vec3 stop_n, Vec3 free_mm_s) const noexcept;
+  [[nodiscard]] double friction_n(double speed_mm_s) const noexcept;
+  void move_rigid(Vec3 force_n, const Outside& outside) noexcept;
+  void move_structure(Vec3 motor_n, const Outside& outside) noexcept;
+  void take_reading() noexcept;
+  void estimate_velocity() noexcept;
+
+  DeviceModel model_;
+  double tick_s_;
+  double static_n_;            ///< in force: never below coulomb_n
+  double filter_share_ = 1.0;  ///< of a command's change in a tick, by the low-pass
+  bool has_motors_;            ///< whether a command meets any stage at all
+  bool has_friction_;
+  bool has_true_readings_;
+  double tip_kg_ = 0.0;  ///< the structure's share of the mass
+  double joint_ = 0.0;   ///< N s/mm: the structure's spring and damper over half a tick; 0: rigid
+  std::optional<RandomStream> noise_;
+
+  std::vector<Vec3> on_the_way_n_;  ///< a ring of delay_ticks commands
+  std::size_t next_command_ = 0;
+  Vec3 filtered_n_;
+  Vec3 delivered_n_;
+
+  Vec3 tip_mm_;
+  Vec3 tip_mm_s_;
+  Vec3 motor_mm_;  ///< where the encoders measure; the tip's unless there is a structure
+  Vec3 motor_mm_s_;
+
+  Vec3 read_mm_;
+  Vec3 read_mm_s_;
+  std::vector<Vec3> readings_mm_;  ///< a ring of velocity_readings
+  std::size_t next_reading_ = 0;
+};
+
+/// A modelled device by the driver's interface, in the device frame and in virtual time: each
+/// `write` is one tick of 1 ms. It stops at the ends of its workspace, if the model has one. `halt`
+/// as in HapticDevice; the rest belongs to one thread. Without a hand nothing holds the handle.
+class ModelledDevice final : public HapticDevice {
+ public:
+  using Hand =
+      std::function<DeviceDynamics::Outside(double time_s, Vec3 position_mm, Vec3 velocity_mm_s)>;
+
+  /// The handle rests in the middle of the workspace, or in the origin.
+  /// \throws std::invalid_argument if a parameter is out of range
+  explicit ModelledDevice(DeviceModel model, Hand hand = {});
+
+  /// What acts on the handle from the next tick on: called once a tick with the true state of the
+  /// tip; must not throw.
+  void set_hand(Hand hand) { hand_ = std::move(hand); }
+  void place(Vec3 position_mm) noexcept { dynamics_.place(position_mm); }
+
+  [[nodiscard]] const DeviceModel& model() const noexcept { return model_; }
+  [[nodiscard]] const DeviceDynamics& dynamics() const noexcept { return dynamics_; }
+  /// \return the virtual time since the device was made
+  [[nodiscard]] std::chrono::nanoseconds now() const noexcept;
+
+  /// The driver's name is "modelled"; a model without a peak force states that of SafetyLimits.
+  [[nodiscard]] DeviceInfo info() const override;
+  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
+  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
+  void halt() noexcept override { halted_ = true; }
+  void rearm() noexcept override { halted_ = false; }
+  [[nodiscard]] DeviceFault fault() const noexcept override;
+
+ private:
+  [[nodiscard]] double time_s() const noexcept;
+  [[nodiscard]] bool is_silent() const noexcept;
+  [[nodiscard]] bool is_lost() const noexcept;
+
+  DeviceModel model_;
+  DeviceDynamics dynamics_;
+  Hand hand_;
+  std::int64_t tick_ = 0;
+  DeviceSample last_;  ///< repeated when the device is silent
+  std::atomic<bool> halted_{false};
+};
+
+}  // namespace touchtrial::device

@@ -1,0 +1,81 @@
+/// \file How long motors may give more than they can hold for ever. The safety chain has one budget
+/// for the force's norm; a driver that knows its motors may have one for each. Source:
+/// docs/safety.md.
+///
+/// A budget belongs to one thread; nothing here allocates, locks or throws.
+#pragma once
+
+#include "device/safety/safety_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace touchtrial::device {
+
+/// The force that the motors can hold without a time limit, and for a while. Motors warm with the
+/// square of the force. Their heat is modelled as its running mean, which fades exponentially; the
+/// continuous force gives the greatest heat allowed. Below the share kWarm of that heat the peak
+/// force is allowed; above it the limit falls in proportion, down to the continuous force, so that
+/// the greatest heat is never passed. The time constant follows from the time in which peak force
+/// brings a cold motor to kWarm. Nobody has measured it on a device's motors.
+///
+/// "Force" is whatever the motors' current is proportional to: newtons, or a motor's own command.
+class ThermalBudget {
+ public:
+  static constexpr double kWarm = 0.9;
+
+  /// \param peak,continuous  in the unit of the force, finite; no budget if the continuous force is
+  ///   not > 0 or not below the peak force
+  /// \param peak_s  at peak force, from cold, before the limit falls, > 0
+  /// \param tick_s  the unit of time of `heat`, > 0
+  ThermalBudget(double peak, double continuous, double peak_s, double tick_s) noexcept
+      : peak_(peak), continuous_(continuous) {
+    if (!(continuous_ > 0.0) || !(continuous_ < peak_)) return;
+    most_heat_ = continuous_ * continuous_;
+    // At peak force the heat is peak^2 (1 - exp(-t / tau)).
+    const double warm_share = kWarm * most_heat_ / (peak_ * peak_);
+    tau_s_ = -peak_s / std::log1p(-warm_share);
+    share_per_tick_ = -std::expm1(-tick_s / tau_s_);
+  }
+  /// \param limits  sound; no budget if the continuous force is 0 or not below the peak force
+  /// \param tick_s  of the servo, > 0
+  ThermalBudget(const SafetyLimits& limits, double tick_s) noexcept
+      : ThermalBudget(limits.max_force_n, limits.continuous_force_n, limits.thermal_budget_s,
+                      tick_s) {}
+
+  /// \return the limit of the force's norm for this tick, from the peak down to the continuous
+  ///   force
+  [[nodiscard]] double limit_n() const noexcept {
+    if (heat_ <= kWarm * most_heat_) return peak_;
+    const double cold = std::max(0.0, 1.0 - heat_ / most_heat_) / (1.0 - kWarm);
+    return continuous_ + std::min(cold, 1.0) * (peak_ - continuous_);
+  }
+
+  /// Warms the motors by a force.
+  /// \param ticks  how long the force was sent, >= 0
+  void heat(double force_squared_n2, double ticks) noexcept {
+    heat_ += std::min(1.0, share_per_tick_ * ticks) * (force_squared_n2 - heat_);
+  }
+
+  /// \return the running mean of the force's square, N^2, for `begin_warm` of a later run on the
+  ///   same motors; 0 without a budget
+  [[nodiscard]] double heat_n2() const noexcept { return heat_; }
+  /// Begins with motors that are warm from earlier work.
+  /// \param heat_n2  when that work ended; a value that is negative or not finite is ignored
+  /// \param rest_s  without force since then, >= 0
+  void begin_warm(double heat_n2, double rest_s) noexcept {
+    if (share_per_tick_ == 0.0 || !(heat_n2 >= 0.0) || !std::isfinite(heat_n2)) return;
+    heat_ = heat_n2 * std::exp(-std::max(rest_s, 0.0) / tau_s_);
+  }
+
+ private:
+  double peak_;
+  double continuous_;
+  double most_heat_ = std::numeric_limits<double>::infinity();  ///< infinite: no budget
+  double tau_s_ = 1.0;                                          ///< in which heat fades to 1/e
+  double share_per_tick_ = 0.0;  ///< of the way to the present force's heat
+  double heat_ = 0.0;            ///< the force's square
+};
+
+}  // namespace touchtrial::device

@@ -1,0 +1,80 @@
+/// \file The velocity of a hand from a driver's own readings of its position.
+#pragma once
+
+#include "core/vec.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+
+namespace touchtrial::device {
+
+/// The slope of the straight line that fits the newest positions best, by least squares over the
+/// times of their arrival.
+///
+/// The difference of two readings moves in whole steps of the encoder over the time between them.
+/// The line over n readings at an interval T has a lag of (n - 1) T / 2, and noise of
+/// sqrt(12 / (n^3 - n)) times that of one reading, divided by T. Nothing here allocates or throws.
+/// Not thread-safe.
+/// \tparam kReadings  n, >= 2
+template <std::size_t kReadings>
+class VelocityEstimate {
+ public:
+  using Time = std::chrono::nanoseconds;
+  /// The age at which a reading says nothing about the present velocity.
+  static constexpr Time kMemory = std::chrono::milliseconds(50);
+
+  /// \param at  never earlier than in the last call
+  /// \return the velocity with this position, mm/s; zero from fewer than two readings
+  [[nodiscard]] Vec3 add(Vec3 position_mm, Time at) noexcept {
+    drop_old(at);
+    if (count_ == kReadings) {
+      std::move(readings_.begin() + 1, readings_.end(), readings_.begin());
+      --count_;
+    }
+    readings_[count_++] = {position_mm, at};
+    return slope_mm_s();
+  }
+  /// Returns to the state before the first reading.
+  void forget() noexcept { count_ = 0; }
+
+ private:
+  struct Reading {
+    Vec3 position_mm;
+    Time at{};
+  };
+
+  void drop_old(Time now) noexcept {
+    const auto end = readings_.begin() + static_cast<std::ptrdiff_t>(count_);
+    const auto kept = std::find_if(readings_.begin(), end, [&](const Reading& reading) {
+      return now - reading.at <= kMemory;
+    });
+    std::move(kept, end, readings_.begin());
+    count_ = static_cast<std::size_t>(end - kept);
+  }
+  [[nodiscard]] Vec3 slope_mm_s() const noexcept {
+    // Times from the newest reading, so that they stay small and exact.
+    const Reading& newest = readings_[count_ - 1];
+    double mean_s = 0.0;
+    Vec3 mean_mm;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const double share = 1.0 / static_cast<double>(count_);
+      mean_s += share * std::chrono::duration<double>(readings_[i].at - newest.at).count();
+      mean_mm = mean_mm + share * (readings_[i].position_mm - newest.position_mm);
+    }
+    double spread_s2 = 0.0;
+    Vec3 product_mm_s;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const double s = std::chrono::duration<double>(readings_[i].at - newest.at).count() - mean_s;
+      spread_s2 += s * s;
+      product_mm_s = product_mm_s + s * (readings_[i].position_mm - newest.position_mm - mean_mm);
+    }
+    return spread_s2 > 0.0 ? (1.0 / spread_s2) * product_mm_s : Vec3{};
+  }
+
+  std::array<Reading, kReadings> readings_{};  ///< oldest first
+  std::size_t count_ = 0;
+};
+
+}  // namespace touchtrial::device

@@ -1,0 +1,76 @@
+#include "protocols/session/hand_meter.hpp"
+
+#include "protocols/session/exploration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchtrial::session {
+namespace {
+
+constexpr double kStepS = 0.05;
+/// Steps of the mean, 0.5 s: plain at first, then with this time constant.
+constexpr int kWholeSteps = 10;
+
+HandLevel level_of(double value, double least, double largest) noexcept {
+  if (value < least) return HandLevel::low;
+  return value > largest ? HandLevel::high : HandLevel::right;
+}
+
+}  // namespace
+
+HandMeter::HandMeter(const design::ValidityRule& rule, double rate_hz) noexcept
+    : least_n_(std::max(design::kLightestN, rule.least_median_n)),
+      largest_n_(std::min(design::kStrongestN, rule.largest_median_n)),
+      rate_hz_(rate_hz),
+      step_ticks_(std::max<std::int64_t>(1, std::llround(kStepS * rate_hz))) {
+  // A study may tell its participants something else.
+  if (least_n_ < largest_n_) return;
+  least_n_ = rule.least_median_n;
+  largest_n_ = rule.largest_median_n;
+}
+
+void HandMeter::begin() noexcept {
+  samples_ = 0;
+  steps_ = 0;
+  told_.store(0, std::memory_order_relaxed);
+}
+
+void HandMeter::feel(const device::ServoSample& sample) noexcept {
+  // Written so that a position that is no number is away too.
+  if (!(sample.position_mm.z <= kLandingHeightMm)) return begin();
+  if (samples_ == 0) {
+    first_ = sample;
+    force_n_ = 0.0;
+  }
+  ++samples_;
+  force_n_ += sample.force_n.z;
+  if (sample.tick - first_.tick >= step_ticks_) end_step(sample);
+}
+
+void HandMeter::end_step(const device::ServoSample& last) noexcept {
+  const double time_s = static_cast<double>(last.tick - first_.tick) / rate_hz_;
+  const double mm_s = std::hypot(last.position_mm.x - first_.position_mm.x,
+                                 last.position_mm.y - first_.position_mm.y) /
+                      time_s;
+  steps_ = std::min(steps_ + 1, kWholeSteps);
+  mean_n_ += (force_n_ / static_cast<double>(samples_) - mean_n_) / steps_;
+  mean_mm_s_ += (mm_s - mean_mm_s_) / steps_;
+  samples_ = 0;
+  if (steps_ == kWholeSteps) tell();
+}
+
+void HandMeter::tell() noexcept {
+  const auto force = static_cast<int>(level_of(mean_n_, least_n_, largest_n_));
+  const auto speed =
+      static_cast<int>(level_of(mean_mm_s_, design::kSlowestMmS, design::kFastestMmS));
+  told_.store(static_cast<std::uint8_t>(1 + 3 * force + speed), std::memory_order_relaxed);
+}
+
+std::optional<HandLevels> HandMeter::levels() const noexcept {
+  const int told = told_.load(std::memory_order_relaxed);
+  if (told == 0) return std::nullopt;
+  return HandLevels{static_cast<HandLevel>((told - 1) / 3), static_cast<HandLevel>((told - 1) % 3)};
+}
+
+}  // namespace touchtrial::session

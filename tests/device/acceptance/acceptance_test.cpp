@@ -1,0 +1,307 @@
+// What an acceptance finds on device models with planted parameters, and what it refuses.
+#include "device/acceptance/acceptance.hpp"
+
+#include "device/acceptance/rehearsal.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+using device::Acceptance;
+using device::AxisResult;
+using device::Certificate;
+using device::DeviceAxis;
+using device::DeviceModel;
+using device::Measured;
+
+const std::vector<std::string> kEmulated = {"falcon", "touch", "omega_3", "inverse3"};
+
+Certificate rehearsed(const DeviceModel& model, const device::AcceptanceOptions& options = {}) {
+  return device::rehearse_acceptance(model, options).certificate;
+}
+
+const AxisResult& axis_of(const Certificate& certificate, DeviceAxis axis) {
+  const auto found = std::ranges::find(certificate.axes, axis, &AxisResult::axis);
+  REQUIRE(found != certificate.axes.end());
+  return *found;
+}
+
+/// Whether the stated interval holds the planted value, and is no wider than this.
+void check_found(const std::optional<Measured>& found, double planted, double widest) {
+  REQUIRE(found);
+  CAPTURE(found->value, found->error, planted);
+  CHECK(std::abs(found->value - planted) <= found->error);
+  CHECK(found->error <= widest);
+}
+
+bool has_line(const std::vector<std::string>& lines, const std::string& part) {
+  return std::ranges::any_of(
+      lines, [&](const std::string& line) { return line.find(part) != std::string::npos; });
+}
+
+std::string joined_lines(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+double& component(Vec3& v, DeviceAxis axis) {
+  if (axis == DeviceAxis::x) return v.x;
+  return axis == DeviceAxis::y ? v.y : v.z;
+}
+
+/// A rehearsal that keeps the greatest forces, by the run's name.
+class WatchedRehearsal final : public device::AcceptanceBench {
+ public:
+  explicit WatchedRehearsal(const DeviceModel& model) : rehearsal_(model) {}
+  [[nodiscard]] device::DeviceInfo info() const override { return rehearsal_.info(); }
+  [[nodiscard]] device::SafetyLimits limits() const override { return rehearsal_.limits(); }
+  [[nodiscard]] device::ServoReport run(const std::string& name,
+                                        device::Measurement& measurement) override {
+    device::ServoReport report = rehearsal_.run(name, measurement);
+    double most_n = 0.0;
+    for (const device::ServoSample& sample : measurement.samples()) {
+      most_n = std::max(most_n, norm(sample.force_n));
+    }
+    greatest_n_.emplace_back(name, most_n);
+    return report;
+  }
+  [[nodiscard]] device::Rehearsal& person() { return rehearsal_; }
+  [[nodiscard]] const auto& greatest_n() const { return greatest_n_; }
+
+ private:
+  device::Rehearsal rehearsal_;
+  std::vector<std::pair<std::string, double>> greatest_n_;
+};
+
+}  // namespace
+
+TEST_CASE("an acceptance passes each emulated device and finds the parameters of its model") {
+  for (const std::string& name : kEmulated) {
+    CAPTURE(name);
+    const DeviceModel model = device::device_model(name);
+    const Certificate certificate = rehearsed(model);
+    INFO(joined_lines(certificate.failures()));
+    CHECK(certificate.passed());
+    CHECK(certificate.emulated == name);
+    check_found(certificate.step_mm, model.position_step_mm, 0.1 * model.position_step_mm);
+    for (const DeviceAxis axis : device::kDeviceAxes) {
+      CAPTURE(device::name_of(axis));
+      const AxisResult& result = axis_of(certificate, axis);
+      check_found(result.scale(), 1.0, 0.08);
+      check_found(result.friction_n, model.coulomb_n, 0.10);
+      check_found(result.mass_kg, model.mass_kg, 0.3 * model.mass_kg + 0.01);
+      check_found(result.delay_ms, model.delay_ticks, 1.5);
+    }
+  }
+}
+
+TEST_CASE("an acceptance finds a wrong sign on any axis, refuses it, and pulls at nothing more") {
+  for (const std::string& name : kEmulated) {
+    for (const DeviceAxis axis : device::kDeviceAxes) {
+      CAPTURE(name, device::name_of(axis));
+      DeviceModel model = device::device_model(name);
+      component(model.planted.force_sign_scale, axis) = -1.0;
+      WatchedRehearsal bench(model);
+      const Certificate certificate = device::accept_device(bench, bench.person(), {}).certificate;
+      CHECK_FALSE(certificate.passed());
+      CHECK(has_line(certificate.failures(),
+                     "axis " + std::string(device::name_of(axis)) + ": the handle moved against"));
+      REQUIRE(!bench.greatest_n().empty());
+      CHECK(bench.greatest_n().back().first == "push " + std::string(device::name_of(axis)));
+      // Friction alone holds the handle: a push ends within 0.2 N beyond it, and the hand's own
+      // spring of 0.05 N/mm over 2 mm.
+      CHECK(bench.greatest_n().back().second <= model.coulomb_n + 0.1 + 0.2 + 1e-9);
+      CHECK_FALSE(certificate.not_measured.empty());
+    }
+  }
+}
+
+TEST_CASE("an acceptance finds a force that is 20 percent off on one axis, and refuses it") {
+  for (const std::string& name : kEmulated) {
+    for (const double scale : {0.8, 1.2}) {
+      for (const DeviceAxis axis : device::kDeviceAxes) {
+        CAPTURE(name, scale, device::name_of(axis));
+        DeviceModel model = device::device_model(name);
+        component(model.planted.force_sign_scale, axis) = scale;
+        const Certificate certificate = rehearsed(model);
+        check_found(axis_of(certificate, axis).scale(), scale, 0.09);
+        CHECK_FALSE(certificate.passed());
+        CHECK(certificate.failures().size() == 1);
+        CHECK(has_line(certificate.failures(),
+                       "axis " + std::string(device::name_of(axis)) + ": delivers"));
+        // Friction and mass are in newtons at the handle, whatever the scale.
+        check_found(axis_of(certificate, axis).friction_n, model.coulomb_n, 0.15);
+      }
+    }
+  }
+}
+
+TEST_CASE("an acceptance finds 3 ms of delay, 0.3 N of friction and steps of 0.06 mm") {
+  for (const std::string& name : kEmulated) {
+    CAPTURE(name);
+    DeviceModel model = device::device_model(name);
+    model.delay_ticks = 3;
+    model.coulomb_n = 0.3;
+    model.position_step_mm = 0.06;
+    const Certificate certificate = rehearsed(model);
+    INFO(joined_lines(certificate.failures()));
+    CHECK(certificate.passed());
+    check_found(certificate.step_mm, 0.06, 0.006);
+    for (const DeviceAxis axis : device::kDeviceAxes) {
+      CAPTURE(device::name_of(axis));
+      check_found(axis_of(certificate, axis).delay_ms, 3.0, 1.5);
+      check_found(axis_of(certificate, axis).friction_n, 0.3, 0.10);
+    }
+  }
+}
+
+TEST_CASE("an acceptance finds planted parameters through noise, whatever its seed") {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    CAPTURE(seed);
+    DeviceModel model = device::device_model("falcon");
+    model.delay_ticks = 3;
+    model.planted.position_noise_mm = 0.02;
+    model.planted.gravity_n = 0.6;
+    model.planted.seed = seed;
+    const Certificate certificate = rehearsed(model);
+    INFO(joined_lines(certificate.failures()));
+    CHECK(certificate.passed());
+    REQUIRE(axis_of(certificate, DeviceAxis::y).load_n);
+    CHECK(*axis_of(certificate, DeviceAxis::y).load_n == Approx(0.6).margin(0.05));
+    for (const DeviceAxis axis : device::kDeviceAxes) {
+      CAPTURE(device::name_of(axis));
+      check_found(axis_of(certificate, axis).scale(), 1.0, 0.08);
+      check_found(axis_of(certificate, axis).friction_n, 0.3, 0.10);
+      check_found(axis_of(certificate, axis).delay_ms, 3.0, 1.5);
+      check_found(axis_of(certificate, axis).mass_kg, model.mass_kg, 0.06);
+    }
+  }
+}
+
+TEST_CASE("an acceptance says what it could not measure, and why") {
+  DeviceModel model = device::device_model("falcon");
+  model.position_step_mm = 0.0;
+  const Certificate certificate = rehearsed(model, {.skip = {"wall", "shake"}});
+  CHECK(certificate.passed());
+  const auto why = [&](const std::string& what) {
+    const auto found =
+        std::ranges::find(certificate.not_measured, what, &device::NotMeasured::what);
+    return found == certificate.not_measured.end() ? std::string() : found->why;
+  };
+  CHECK_FALSE(certificate.step_mm);
+  CHECK_THAT(why("encoder step"), holds_text("readings change by every amount"));
+  CHECK(why("stiffest wall") == "left out");
+  CHECK(why("mass and delay on axis x") == "left out");
+  CHECK_THAT(why("force after twenty minutes"), holds_text("--thermal"));
+  CHECK_FALSE(axis_of(certificate, DeviceAxis::x).mass_kg);
+}
+
+TEST_CASE(
+    "an acceptance without signs, rest or weights does not pass, and nothing pulls unsigned") {
+  const DeviceModel model = device::device_model("falcon");
+  const Certificate unsigned_one = rehearsed(model, {.skip = {"push"}});
+  CHECK_FALSE(unsigned_one.passed());
+  CHECK(unsigned_one.axes.empty());
+  CHECK(has_line(rehearsed(model, {.skip = {"rest"}}).failures(), "noise at rest"));
+  CHECK(has_line(rehearsed(model, {.skip = {"weights"}}).failures(),
+                 "the size of its force was not measured"));
+}
+
+TEST_CASE("an acceptance refuses devices that fall silent, are lost, tremble, stick or lag") {
+  const auto refused = [](const char* part, const auto& plant) {
+    DeviceModel model = device::device_model("omega_3");
+    plant(model);
+    const Certificate certificate = rehearsed(model);
+    CAPTURE(part, joined_lines(certificate.failures()));
+    CHECK_FALSE(certificate.passed());
+    CHECK(has_line(certificate.failures(), part));
+  };
+  refused("stale_sample", [](DeviceModel& m) { m.planted.silent_after_s = 60.0; });
+  refused("link_lost", [](DeviceModel& m) { m.planted.lost_after_s = 30.0; });
+  refused("noise is", [](DeviceModel& m) { m.planted.position_noise_mm = 0.15; });
+  refused("did not move", [](DeviceModel& m) { m.coulomb_n = 2.0; });
+  refused("the delay is", [](DeviceModel& m) { m.delay_ticks = 8; });
+  refused("the encoder step is", [](DeviceModel& m) { m.position_step_mm = 0.2; });
+}
+
+TEST_CASE("an acceptance pushes with at most 1.5 N and the continuous force, then 60 % of peak") {
+  for (const std::string& name : kEmulated) {
+    CAPTURE(name);
+    const DeviceModel model = device::device_model(name);
+    WatchedRehearsal bench(model);
+    static_cast<void>(device::accept_device(bench, bench.person(), {}));
+    const double peak_n = std::min(model.max_force_n, device::SafetyLimits{}.max_force_n);
+    const double continuous_n = model.continuous_force_n > 0.0 ? model.continuous_force_n : peak_n;
+    for (const auto& [run, greatest_n] : bench.greatest_n()) {
+      CAPTURE(run);
+      CHECK(greatest_n <= 0.6 * peak_n + 1e-9);
+      if (run.starts_with("push")) {
+        CHECK(greatest_n <= std::min(1.5, continuous_n) + 1e-9);
+      }
+      if (run == "rest" || run == "steps") CHECK(greatest_n == 0.0);
+    }
+  }
+}
+
+TEST_CASE(
+    "walls become stiffer until one swings, near the stiffness that damping and delay allow") {
+  // A hand of 8 N s/m alone damps the handle, so K (T/2 + delay) = 8 N s/m at the edge.
+  DeviceModel model = device::device_model("ideal");
+  model.mass_kg = 0.1;
+  model.max_force_n = 8.0;
+  model.zero_order_hold = true;
+  model.delay_ticks = 10;
+  const Certificate certificate = rehearsed(model);
+  REQUIRE(certificate.wall);
+  CHECK(certificate.wall->ended == "oscillation");
+  CHECK(certificate.wall->oscillates_n_per_mm > certificate.wall->stable_n_per_mm);
+  const double edge_n_per_mm = 8.0 / (0.5 + 10.0);
+  CHECK(certificate.wall->stable_n_per_mm < 1.3 * edge_n_per_mm);
+  CHECK(certificate.wall->oscillates_n_per_mm > edge_n_per_mm / 1.7);
+  // Without the delay the same hand is stable to the maker's limit, and beyond it nothing is tried.
+  model.delay_ticks = 0;
+  model.max_stiffness_n_per_mm = 0.4;
+  const Certificate stable = rehearsed(model);
+  REQUIRE(stable.wall);
+  CHECK(stable.wall->ended == "the maker's limit");
+  CHECK(stable.wall->stable_n_per_mm == 0.4);
+  CHECK(stable.wall->oscillates_n_per_mm == 0.0);
+}
+
+TEST_CASE("an acceptance repeats itself exactly, and its model rehearses as the device did") {
+  const DeviceModel model = device::device_model("falcon");
+  const Certificate first = rehearsed(model);
+  CHECK(device::certificate_json(first) == device::certificate_json(rehearsed(model)));
+  device::Certificate named = first;
+  named.driver = "falcon";
+  CHECK(device::model_of(named, {}).provenance.at("mass_kg").confidence ==
+        device::Confidence::derived);
+  named.emulated.clear();
+  const DeviceModel measured = device::model_of(named, device::ModelledDevice(model).info());
+  CHECK(measured.mass_kg == Approx(model.mass_kg).epsilon(0.15));
+  CHECK(measured.coulomb_n == Approx(model.coulomb_n).margin(0.05));
+  CHECK(measured.delay_ticks == model.delay_ticks);
+  CHECK(measured.provenance.at("mass_kg").confidence == device::Confidence::measured);
+  const DeviceModel read = device::parse_device_model(device::device_model_json(measured), "model");
+  CHECK(read.mass_kg == measured.mass_kg);
+}
+
+TEST_CASE("after twenty minutes under a load an acceptance compares the forces that it took") {
+  device::AcceptanceOptions options;
+  options.thermal = true;
+  options.silence = true;
+  const Certificate certificate = rehearsed(device::device_model("omega_3"), options);
+  REQUIRE(certificate.warm);
+  CHECK(certificate.warm->after_n == Approx(certificate.warm->before_n).epsilon(0.02));
+  CHECK_FALSE(certificate.warm->before_c);
+  CHECK(certificate.passed());
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,189 @@
+#include "device/acceptance/certificate.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "device/acceptance/accelerometer.hpp"
+#include "protocols/design/refusal.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+namespace touchtrial {
+namespace {
+
+using device::Certificate;
+
+Certificate passed_certificate() {
+  Certificate certificate;
+  certificate.driver = "falcon";
+  certificate.model = "Novint Falcon";
+  certificate.serial = "F1";
+  certificate.firmware = "1";
+  certificate.program = "0.1.0";
+  certificate.made = std::chrono::sys_days(std::chrono::year(2026) / 2 / 28) +
+                     std::chrono::hours(9) + std::chrono::seconds(5);
+  certificate.rest = device::RestFigures{0.01, 0.02};
+  certificate.step_mm = device::Measured{0.038, 0.002};
+  for (const device::DeviceAxis axis : device::kDeviceAxes) {
+    device::AxisResult result;
+    result.axis = axis;
+    result.plus = device::PushResult{0.4, true, 2.0, 0.1};
+    result.minus = result.plus;
+    result.weight = device::WeighResult{0.980665, 1.01, 0.02};
+    result.load_n = 0.1;
+    result.friction_n = device::Measured{0.3, 0.05};
+    result.delay_ms = device::Measured{1.5, 0.5};
+    certificate.axes.push_back(result);
+  }
+  certificate.wall = device::WallResult{0.6, 0.78, "oscillation"};
+  certificate.observed = {{"cable pulled", "gone at once"}};
+  certificate.not_measured = {{"mass and delay on axis x", "left out"}};
+  return certificate;
+}
+
+device::DeviceInfo the_falcon() {
+  device::DeviceInfo info{"falcon", "F1", 4.9};
+  info.model = "Novint Falcon";
+  info.firmware = "1";
+  return info;
+}
+
+}  // namespace
+
+TEST_CASE("an acceptance's certificate is read as it was written, with its hash") {
+  const TempFolder folder;
+  const auto path = folder.path() / "certificate.json";
+  const Certificate certificate = passed_certificate();
+  REQUIRE(certificate.passed());
+  const std::string text = device::certificate_json(certificate);
+  replace_file(path, text);
+  const device::ReadCertificate read = device::read_certificate(path);
+  CHECK(device::certificate_json(read.certificate) == text);
+  CHECK(read.certificate.made == certificate.made);
+  CHECK(read.hash == sha256_of_file(path));
+  CHECK(text.find("2026-02-28T09:00:05Z") != std::string::npos);
+}
+
+TEST_CASE("an acceptance's certificate that was changed by hand is refused with the place") {
+  const TempFolder folder;
+  const auto path = folder.path() / "certificate.json";
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = device::certificate_json(passed_certificate());
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, from.size(), to);
+    replace_file(path, text);
+    return message_of<StudyError>([&] { return device::read_certificate(path); });
+  };
+  CHECK_THAT(changed("\"passed\": true", "\"passed\": false"), holds_text("/passed"));
+  CHECK_THAT(changed("2026-02-28", "2026-02-30"), holds_text("/made"));
+  CHECK_THAT(changed("acceptance 1", "acceptance 9"), holds_text("/kind"));
+  CHECK_THAT(changed("\"serial\"", "\"cereal\""), holds_text("/cereal"));
+  CHECK_THAT(changed("\"measured_n\": 1.01", "\"measured_n\": 1.31"), holds_text("/axes/0/scale"));
+  CHECK_THAT(changed("\"along_mm\": 2.0", "\"along_mm\": -2.0"), holds_text("/passed"));
+  CHECK_THAT(changed("\"noise_mm\": 0.01", "\"noise_mm\": 0.2"), holds_text("/passed"));
+  CHECK_THAT(changed("\"noise_mm\": 0.01", "\"noise_mm\": -1"), holds_text("/rest/noise_mm"));
+  CHECK_THAT(changed("\"expected_n\": 0.980665", "\"expected_n\": 0"),
+             holds_text("/axes/0/weight/expected_n"));
+  CHECK_THAT(changed("\"axis\": \"x\"", "\"axis\": \"y\""), holds_text("/axes/1/axis"));
+}
+
+TEST_CASE("a certificate of the former format is refused with the command that makes a new one") {
+  const TempFolder folder;
+  const auto path = folder.path() / "certificate.json";
+  replace_file(path, R"({"kind": "touchtrial device calibration 1"})");
+  CHECK_THAT(message_of<StudyError>([&] { return device::read_certificate(path); }),
+             holds_text("touchtrial device accept"));
+}
+
+TEST_CASE("an acceptance is valid for its own device only, if it passed and was no rehearsal") {
+  const Certificate certificate = passed_certificate();
+  const auto soon = certificate.made + std::chrono::days(30);
+  CHECK(device::check_certificate(certificate, the_falcon(), soon).empty());
+  const auto refusal = [&](const Certificate& given, const device::DeviceInfo& info) {
+    return message_of<DeviceError>([&] { return device::check_certificate(given, info, soon); });
+  };
+  device::DeviceInfo other = the_falcon();
+  other.serial = "F2";
+  CHECK_THAT(refusal(certificate, other), holds_text("F2") && holds_text("device accept falcon"));
+  other = the_falcon();
+  other.model = "Novint Falcon 2";
+  CHECK_THAT(refusal(certificate, other), holds_text("Falcon 2"));
+  Certificate emulated = certificate;
+  emulated.emulated = "falcon";
+  CHECK_THAT(refusal(emulated, the_falcon()), holds_text("proves no device"));
+  Certificate failed = certificate;
+  failed.axes[1].plus->along_mm = -2.0;
+  CHECK_THAT(refusal(failed, the_falcon()), holds_text("the sign is wrong"));
+  failed = certificate;
+  failed.axes.pop_back();
+  CHECK_FALSE(failed.passed());
+}
+
+TEST_CASE("an acceptance that is half a year old or of another firmware causes a warning") {
+  const Certificate certificate = passed_certificate();
+  const auto check = [&](int days, const device::DeviceInfo& info) {
+    return device::check_certificate(certificate, info, certificate.made + std::chrono::days(days));
+  };
+  CHECK(check(180, the_falcon()).empty());
+  CHECK_THAT(check(200, the_falcon()), holds_text("200 days"));
+  device::DeviceInfo newer = the_falcon();
+  newer.firmware = "2";
+  CHECK_THAT(check(1, newer), holds_text("firmware"));
+}
+
+TEST_CASE("a study's wall must be softer than one that swung in the acceptance") {
+  const Certificate certificate = passed_certificate();
+  device::require_stable(certificate, 0.6);
+  device::require_stable(certificate, 0.7);
+  try {
+    device::require_stable(certificate, 0.8);
+    FAIL("0.8 N/mm was let through");
+  } catch (const DeviceError& error) {
+    CHECK_THAT(error.what(), holds_text("0.78") && holds_text("at most 0.6"));
+  }
+}
+
+TEST_CASE("an accelerometer's record gives the size of a sine in its band, and little elsewhere") {
+  // 0.5 m/s2 of amplitude at 100 Hz is 0.3536 m/s2 root mean square.
+  std::string csv = "time_s,x_m_s2,y_m_s2,z_m_s2\n";
+  for (int i = 0; i < 6000; ++i) {
+    const double t = i / 2000.0;
+    csv += std::to_string(t) + ",9.81," + std::to_string(0.5 * std::sin(628.3185307 * t)) + ",0\n";
+  }
+  const device::AccelerometerRecord record = device::parse_accelerometer_csv(csv, "record");
+  CHECK(record.rate_hz == Approx(2000.0).epsilon(1e-4));
+  double within = 0.0;
+  double beyond = 0.0;
+  for (const device::BandResult& band : device::acceleration_bands(record)) {
+    const bool is_near = band.from_hz < 105.0 && band.to_hz > 95.0;
+    (is_near ? within : beyond) += band.acceleration_m_s2 * band.acceleration_m_s2;
+  }
+  CHECK(std::sqrt(within) == Approx(0.3536).epsilon(0.01));
+  CHECK(std::sqrt(beyond) < 0.01);
+}
+
+TEST_CASE("an accelerometer's record that is no even CSV is refused with its line") {
+  const std::string header = "time_s,x_m_s2,y_m_s2,z_m_s2\n";
+  const auto refusal = [](const std::string& text) {
+    return message_of<FileError>([&] { return device::parse_accelerometer_csv(text, "r.csv"); });
+  };
+  CHECK_THAT(refusal("t,x\n1,2\n"), holds_text("line 1"));
+  CHECK_THAT(refusal(header + "0,1,2\n"), holds_text("line 2") && holds_text("4 columns"));
+  CHECK_THAT(refusal(header + "0,1,2,nan\n"), holds_text("line 2"));
+  CHECK_THAT(refusal(header + "0,1,2,3,4\n"), holds_text("line 2"));
+  CHECK_THAT(refusal(header + "0,1,2,3\n"), holds_text("less than a second"));
+  std::string slow = header;
+  for (int i = 0; i < 100; ++i) slow += std::to_string(0.1 * i) + ",0,0,0\n";
+  CHECK_THAT(refusal(slow), holds_text("samples a second"));
+  std::string uneven = header;
+  for (int i = 0; i < 2000; ++i) {
+    uneven += std::to_string(0.001 * i + (i > 1000 ? 0.02 : 0.0)) + ",0,0,0\n";
+  }
+  CHECK_THAT(refusal(uneven), holds_text("uneven"));
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,389 @@
+// Files of device models: the schema against the reader, refusals, and what the program ships.
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "device/model/device_model.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using device::DeviceModel;
+using nlohmann::json;
+using Pointer = json::json_pointer;
+namespace fs = std::filesystem;
+
+const fs::path& config() {
+  static const fs::path kConfig = fs::path(TOUCHTRIAL_SOURCE_DIR) / "config";
+  return kConfig;
+}
+
+const json& schema() {
+  static const json kSchema =
+      json::parse(text_of(read_file(config() / "schema" / "device-model.schema.json")));
+  return kSchema;
+}
+
+struct Place {
+  Pointer pointer;
+  json rule;
+};
+
+/// Every object, and every value that is none, of the schema.
+struct Places {
+  std::vector<Place> objects;
+  std::vector<Place> leaves;
+};
+
+void collect_places(const json& node, const Pointer& pointer, Places& places) {
+  const json rule = node.contains("$ref")
+                        ? schema().at(Pointer(node.at("$ref").get<std::string>().substr(1)))
+                        : node;
+  if (rule.at("type") != "object") {
+    places.leaves.push_back({pointer, rule});
+    return;
+  }
+  CHECK(rule.at("additionalProperties") == false);
+  places.objects.push_back({pointer, rule});
+  for (const auto& [key, property] : rule.at("properties").items()) {
+    collect_places(property, pointer / key, places);
+  }
+}
+
+Places all_places() {
+  Places places;
+  collect_places(schema(), Pointer(), places);
+  return places;
+}
+
+/// A model in which a value may stand at this place: with what the place needs beside it.
+json model_around(const Pointer& pointer) {
+  json model = {{"name", "test"}};
+  const std::string place = pointer.to_string();
+  if (place.starts_with("/workspace")) {
+    model["workspace"] = {{"least_mm", {-1000, -1000, -1000}}, {"greatest_mm", {1000, 1000, 1000}}};
+  }
+  if (place == "/stribeck_mm_s") model["static_n"] = 1;
+  if (place == "/structure/stiffness_n_per_mm") {
+    model["mass_kg"] = 0.1;
+    model["structure"]["tip_share"] = 0.5;
+  }
+  if (place.starts_with("/provenance/")) {
+    const std::string key = place.substr(12, place.find('/', 12) - 12);
+    model["provenance"][key] = {{"source", "test"}, {"confidence", "guess"}};
+  }
+  return model;
+}
+
+/// \return the error for a model with this value; empty if it is accepted
+std::string refusal_of(const json& model) {
+  try {
+    static_cast<void>(device::parse_device_model(model.dump(), "model.json"));
+  } catch (const StudyError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string refusal_at(const Pointer& pointer, const json& value) {
+  json model = model_around(pointer);
+  model[pointer] = value;
+  return refusal_of(model);
+}
+
+std::set<std::string> keys_of_reader_at(const Pointer& pointer) {
+  const std::string mark = "known here: ";
+  const std::string message = refusal_at(pointer / "qqqqqqqqqqqqqqqqqqqqqqqqqq", 1);
+  REQUIRE(message.find(mark) != std::string::npos);
+  std::string list = message.substr(message.find(mark) + mark.size()) + ", ";
+  std::set<std::string> keys;
+  for (auto end = list.find(", "); end != std::string::npos; end = list.find(", ")) {
+    keys.insert(list.substr(0, end));
+    list.erase(0, end + 2);
+  }
+  return keys;
+}
+
+/// A list of three, of which the first is `number`; the others are valid at this place.
+json three(const Pointer& pointer, double number) {
+  const double other = pointer.back() == "least_mm" ? -1000.0 : 1000.0;
+  const bool scale = pointer.back() == "force_sign_scale";
+  return json::array({number, scale ? 1.0 : other, scale ? 1.0 : other});
+}
+
+DeviceModel full_model() {
+  DeviceModel model = device::device_model("touch");
+  model.viscous_n_s_per_m = 0.5;
+  model.static_n = 0.4;
+  model.stribeck_mm_s = 7.0;
+  model.friction = device::FrictionShape::per_axis;
+  model.lowpass_hz = 120.0;
+  model.planted = {{-1.0, 1.2, 1.0}, 0.01, 0.3, 5.0, 6.0, 77};
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("the schema of device models and the reader know the same keys") {
+  const Places places = all_places();
+  for (const Place& object : places.objects) {
+    INFO("in " << object.pointer.to_string());
+    std::set<std::string> in_schema;
+    for (const auto& [key, unused] : object.rule.at("properties").items()) in_schema.insert(key);
+    CHECK(keys_of_reader_at(object.pointer) == in_schema);
+    for (const json& required : object.rule.value("required", json::array())) {
+      json model = model_around(object.pointer / required.get<std::string>());
+      model[object.pointer].erase(required.get<std::string>());
+      CHECK_THAT(refusal_of(model), holds_text(required.get<std::string>()));
+    }
+  }
+  const std::size_t parameters = 11 + 6;
+  CHECK(places.objects.size() == 1 + 4 + parameters);
+}
+
+TEST_CASE("the reader keeps the bounds and types of the schema of device models") {
+  int bounds = 0;
+  for (const Place& leaf : all_places().leaves) {
+    INFO(leaf.pointer.to_string());
+    const bool listed = leaf.rule.contains("items");
+    const json rule = listed ? leaf.rule.at("items") : leaf.rule;
+    const auto with = [&](double number) {
+      return refusal_at(leaf.pointer, listed ? three(leaf.pointer, number) : json(number));
+    };
+    for (const auto& [word, outwards] : {std::pair{"minimum", -1.0}, std::pair{"maximum", 1.0}}) {
+      if (!rule.contains(word)) continue;
+      const double bound = rule.at(word);
+      const double step =
+          rule.at("type") == "integer" ? 1.0 : 1e-9 * std::max(1.0, std::abs(bound));
+      // A greatest corner at the lowest place is refused for another reason.
+      const bool other_reason = (leaf.pointer.back() == "greatest_mm" && outwards < 0.0) ||
+                                (leaf.pointer.back() == "least_mm" && outwards > 0.0);
+      if (!other_reason) CHECK(with(bound).empty());
+      if (bound < 9e15) CHECK_FALSE(with(bound + outwards * step).empty());
+      ++bounds;
+    }
+    const std::string type = leaf.rule.at("type");
+    for (const json& value : {json("opened"), json(3.5), json(true), json::object(), json()}) {
+      const bool fits = (type == "string" && value.is_string()) ||
+                        (type == "number" && value.is_number()) ||
+                        (type == "boolean" && value.is_boolean());
+      if (fits) continue;
+      CHECK_FALSE(refusal_at(leaf.pointer, value).empty());
+    }
+    if (listed) {
+      CHECK_FALSE(refusal_at(leaf.pointer, json::array({1, 1})).empty());
+      CHECK_FALSE(refusal_at(leaf.pointer, json::array({1, 1, 1, 1})).empty());
+    }
+    if (leaf.rule.contains("enum")) {
+      for (const json& word : leaf.rule.at("enum")) CHECK(refusal_at(leaf.pointer, word).empty());
+      CHECK_FALSE(refusal_at(leaf.pointer, "diagonal").empty());
+    }
+  }
+  CHECK(bounds == 2 * (11 + 2 + 3 + 2 + 4 + 2));
+}
+
+TEST_CASE("the defaults of the schema of device models are the reader's") {
+  json full = {{"name", "test"}};
+  for (const Place& leaf : all_places().leaves) {
+    const bool in_workspace = leaf.pointer.to_string().starts_with("/workspace");
+    if (leaf.rule.contains("default") && !in_workspace)
+      full[leaf.pointer] = leaf.rule.at("default");
+  }
+  const DeviceModel bare = device::parse_device_model(R"({"name": "test"})", "bare");
+  CHECK(device::device_model_json(device::parse_device_model(full.dump(), "full")) ==
+        device::device_model_json(bare));
+  CHECK(device::device_model_json(bare) == "{\n  \"name\": \"test\"\n}\n");
+}
+
+TEST_CASE("examples of the schema of device models are accepted") {
+  for (const json& example : schema().at("examples")) CHECK(refusal_of(example).empty());
+}
+
+TEST_CASE("a model is written as it is read") {
+  std::vector<DeviceModel> models = device::shipped_device_models();
+  models.push_back(full_model());
+  for (const DeviceModel& model : models) {
+    const std::string text = device::device_model_json(model);
+    const DeviceModel again = device::parse_device_model(text, "written");
+    CHECK(device::device_model_json(again) == text);
+    CHECK(again.mass_kg == model.mass_kg);
+    CHECK(again.structure.stiffness_n_per_mm == model.structure.stiffness_n_per_mm);
+    CHECK(again.planted.force_sign_scale == model.planted.force_sign_scale);
+    CHECK(again.planted.seed == model.planted.seed);
+    CHECK(again.provenance.size() == model.provenance.size());
+  }
+}
+
+TEST_CASE("parameters that contradict each other are refused, in files and in code") {
+  const std::vector<std::pair<json, std::string>> cases = {
+      {{{"coulomb_n", 0.3}, {"static_n", 0.2}}, "/static_n: is less than coulomb_n"},
+      {{{"stribeck_mm_s", 5}}, "/stribeck_mm_s: has no static friction"},
+      {{{"max_force_n", 2}, {"continuous_force_n", 3}}, "/continuous_force_n: is more than"},
+      {{{"velocity_readings", 1}}, "/velocity_readings: is 1, which has no slope"},
+      {{{"structure", {{"stiffness_n_per_mm", 1}, {"tip_share", 0.5}}}},
+       "/structure: needs a mass"},
+      {{{"mass_kg", 0.1}, {"structure", {{"stiffness_n_per_mm", 1}}}},
+       "/structure/tip_share: leaves one of the two"},
+      {{{"workspace", {{"least_mm", {0, 0, 0}}, {"greatest_mm", {1, 0, 1}}}}},
+       "/workspace/greatest_mm: must be greater than least_mm"},
+      {{{"mass_kg", -0.1}}, "/mass_kg"},
+      {{{"delay_tick", 1}}, "delay_ticks"},
+      {{{"provenance", {{"mass_kg", {{"source", "a book"}}}}}}, "/provenance/mass_kg"}};
+  for (const auto& [parameters, message] : cases) {
+    json model = parameters;
+    model["name"] = "test";
+    CHECK_THAT(refusal_of(model), holds_text(message));
+  }
+  CHECK_THAT(refusal_of({{"name", ""}}), holds_text("/name: is empty"));
+  CHECK_THROWS_AS(device::parse_device_model(R"({"name": "x", "mass_kg": 1e999})", "model.json"),
+                  StudyError);
+  CHECK_THROWS_AS(device::parse_device_model(R"({"name": "x", "mass_kg": NaN})", "model.json"),
+                  StudyError);
+}
+
+TEST_CASE("a model that was made in code is checked before it runs") {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::vector<std::function<double&(DeviceModel&)>> numbers = {
+      [](DeviceModel& m) -> double& { return m.mass_kg; },
+      [](DeviceModel& m) -> double& { return m.viscous_n_s_per_m; },
+      [](DeviceModel& m) -> double& { return m.coulomb_n; },
+      [](DeviceModel& m) -> double& { return m.static_n; },
+      [](DeviceModel& m) -> double& { return m.stribeck_mm_s; },
+      [](DeviceModel& m) -> double& { return m.position_step_mm; },
+      [](DeviceModel& m) -> double& { return m.force_step_n; },
+      [](DeviceModel& m) -> double& { return m.max_force_n; },
+      [](DeviceModel& m) -> double& { return m.continuous_force_n; },
+      [](DeviceModel& m) -> double& { return m.lowpass_hz; },
+      [](DeviceModel& m) -> double& { return m.structure.stiffness_n_per_mm; },
+      [](DeviceModel& m) -> double& { return m.structure.tip_share; },
+      [](DeviceModel& m) -> double& { return m.structure.damping_ratio; },
+      [](DeviceModel& m) -> double& { return m.workspace->greatest_mm.y; },
+      [](DeviceModel& m) -> double& { return m.workspace->least_mm.x; },
+      [](DeviceModel& m) -> double& { return m.max_stiffness_n_per_mm; },
+      [](DeviceModel& m) -> double& { return m.planted.force_sign_scale.z; },
+      [](DeviceModel& m) -> double& { return m.planted.position_noise_mm; },
+      [](DeviceModel& m) -> double& { return m.planted.gravity_n; },
+      [](DeviceModel& m) -> double& { return m.planted.silent_after_s; },
+      [](DeviceModel& m) -> double& { return m.planted.lost_after_s; }};
+  CHECK_NOTHROW(device::check_device_model(full_model()));
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    INFO(i);
+    for (const double absurd : {kNaN, kInfinity, -kInfinity, 1e9, -1e9}) {
+      DeviceModel model = full_model();
+      numbers[i](model) = absurd;
+      CHECK_THROWS_AS(device::check_device_model(model), std::invalid_argument);
+      CHECK_THROWS_AS(device::DeviceDynamics(model), std::invalid_argument);
+    }
+  }
+  for (const int absurd : {-1, 101}) {
+    DeviceModel model = full_model();
+    model.delay_ticks = absurd;
+    CHECK_THROWS_AS(device::ModelledDevice(model), std::invalid_argument);
+    model.delay_ticks = 1;
+    model.velocity_readings = absurd;
+    CHECK_THROWS_AS(device::check_device_model(model), std::invalid_argument);
+  }
+}
+
+TEST_CASE("the shipped models are the files in config, and each says where its numbers come from") {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(config() / "devices")) {
+    const json file = json::parse(text_of(read_file(entry.path())));
+    const DeviceModel model = device::read_device_model(entry.path());
+    INFO(entry.path().string());
+    CHECK(model.name == entry.path().stem().string());
+    CHECK_FALSE(model.title.empty());
+    CHECK(device::device_model_json(device::device_model(model.name)) ==
+          device::device_model_json(model));
+    for (const auto& [key, unused] : file.items()) {
+      if (key == "name" || key == "title" || key == "provenance") continue;
+      CHECK(key != "planted");
+      REQUIRE(model.provenance.contains(key));
+      CHECK_FALSE(model.provenance.at(key).source.empty());
+      // Nobody had a device.
+      CHECK(model.provenance.at(key).confidence != device::Confidence::measured);
+    }
+    for (const auto& [key, unused] : model.provenance) CHECK(file.contains(key));
+    names.insert(model.name);
+  }
+  CHECK(names.size() == device::shipped_device_models().size());
+  for (const char* name : {"ideal", "touch", "touch_x", "premium_1_5", "falcon"}) {
+    CHECK(names.contains(name));
+  }
+}
+
+TEST_CASE("the table of shipped device models in the docs has the files' numbers and confidences") {
+  const std::map<std::string, std::string> letters = {
+      {"opened", "O"}, {"derived", "D"}, {"memory", "M"}, {"guess", "G"}};
+  const auto text_of_number = [](const json& number) {
+    std::ostringstream text;
+    text << number.get<double>();
+    return text.str();
+  };
+  const auto cell_of = [&](const json& file, const std::string& key) -> std::string {
+    if (!file.contains(key)) return key == "zero_order_hold" ? "no" : "-";
+    const json& value = file.at(key);
+    std::string text;
+    if (value.is_boolean()) {
+      text = "yes";
+    } else if (value.is_object()) {
+      for (const char* part : {"stiffness_n_per_mm", "tip_share", "damping_ratio"}) {
+        text += (text.empty() ? "" : ", ") + text_of_number(value.at(part));
+      }
+    } else {
+      text = text_of_number(value);
+    }
+    return text + " " + letters.at(file.at("provenance").at(key).at("confidence"));
+  };
+  std::map<std::string, std::string> rows;
+  std::string header;
+  std::istringstream page(text_of(read_file(config() / "../docs/devices/models.md")));
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("| | ")) header = line.substr(3);
+    if (line.starts_with("| `")) rows[line.substr(3, line.find('`', 3) - 3)] = line;
+  }
+  REQUIRE(rows.size() >= 10);
+  std::vector<json> files;
+  std::istringstream names(header);
+  for (std::string name; names >> name;) {
+    if (name == "|") continue;
+    files.push_back(json::parse(text_of(read_file(config() / "devices" / (name + ".json")))));
+  }
+  CHECK(files.size() == device::shipped_device_models().size());
+  for (const auto& [key, row] : rows) {
+    std::string cells;
+    for (const json& file : files) cells += " | " + cell_of(file, key);
+    INFO(row);
+    CHECK_THAT(row, holds_text(cells + " |"));
+  }
+}
+
+TEST_CASE("a model is found by name or by file, and a misspelt one by the nearest name") {
+  CHECK(device::device_model("falcon").title == "Novint Falcon");
+  CHECK_THROWS_WITH(device::device_model("flacon"), holds_text("did you mean falcon?"));
+  CHECK_THROWS_AS(device::device_model("flacon"), UsageError);
+  CHECK_THROWS_WITH(device::device_model("zzzzzzzzz"), holds_text("touchtrial device models"));
+  const TempFolder folder;
+  const fs::path file = folder.path() / "ours.json";
+  replace_file(file, device::device_model_json(full_model()));
+  CHECK(device::device_model(file.string()).lowpass_hz == 120.0);
+  CHECK_THROWS_AS(device::device_model((folder.path() / "gone.json").string()), FileError);
+  replace_file(file, R"({"name": "ours", "mass_kg": 50})");
+  CHECK_THROWS_WITH(device::device_model(file.string()), holds_text("ours.json: /mass_kg"));
+}
+
+}  // namespace touchtrial

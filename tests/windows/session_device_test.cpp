@@ -1,0 +1,52 @@
+#include "app/run/session_device.hpp"
+
+#include "core/errors.hpp"
+#include "protocols/design/deviation_codes.hpp"
+#include "support/catch.hpp"
+
+namespace touchtrial {
+namespace {
+
+device::DeviceInfo felt() {
+  device::DeviceInfo device;
+  device.name = "falcon";
+  return device;
+}
+
+device::SchedulingObtained ordinary() {
+  device::SchedulingObtained had;
+  had.reason = "SCHED_FIFO was refused (Operation not permitted)";
+  return had;
+}
+
+TEST_CASE("a session with force and without real time is refused with the two lines that mend it") {
+  const auto enter = [] { (void)app::lateness_to_record(felt(), ordinary(), false); };
+  CHECK_THROWS_AS(enter(), DeviceError);
+  CHECK_THROWS_WITH(enter(), holds_text("rtprio 99\"") && holds_text("memlock unlimited\"") &&
+                                 holds_text("/etc/security/limits.d/touchtrial.conf") &&
+                                 holds_text("--allow-late") && !holds_text("\n"));
+}
+
+TEST_CASE("a late session that is wanted all the same is recorded by a code of the program's") {
+  const auto late = app::lateness_to_record(felt(), ordinary(), true);
+  REQUIRE(late);
+  CHECK(late->kind == session::ExperimenterRequest::Kind::deviation);
+  CHECK(late->code == "no-real-time");
+  CHECK(design::is_deviation_code(late->code));
+  CHECK_THAT(late->text, holds_text("SCHED_FIFO was refused"));
+}
+
+TEST_CASE("a punctual servo, a mouse and a simulated hand need no permission") {
+  device::SchedulingObtained punctual;
+  punctual.policy = device::SchedulingPolicy::fifo;
+  CHECK_FALSE(app::lateness_to_record(felt(), punctual, false));
+  device::DeviceInfo mouse = felt();
+  mouse.visual = true;
+  CHECK_FALSE(app::lateness_to_record(mouse, ordinary(), false));
+  device::DeviceInfo simulated = felt();
+  simulated.simulated = true;
+  CHECK_FALSE(app::lateness_to_record(simulated, ordinary(), false));
+}
+
+}  // namespace
+}  // namespace touchtrial
