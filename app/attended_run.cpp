@@ -9,14 +9,16 @@
 #include "device/servo/servo_thread.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <string>
 #include <thread>
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
 namespace touchtrial::app {
@@ -27,6 +29,9 @@ using namespace std::chrono_literals;
 /// Time between two live lines. A line that stays in place is easier to read than one that scrolls.
 constexpr std::chrono::nanoseconds kOnTerminal = 250ms;
 constexpr std::chrono::nanoseconds kOnPipe = 1s;
+
+/// How long a signal waits at most for an answer that is being typed.
+constexpr int kAnswerPollMs = 100;
 
 class DiscardingSink final : public device::SampleSink {
  public:
@@ -49,6 +54,27 @@ device::ServoOptions options_for(const device::SafetyLimits& limits, double rate
 }
 
 }  // namespace
+
+std::optional<std::string> attended_answer(const std::string& question) {
+  if (::isatty(STDIN_FILENO) != 0) ::tcflush(STDIN_FILENO, TCIFLUSH);
+  std::fputs(question.c_str(), stderr);
+  std::fflush(stderr);
+  std::string line;
+  while (!device::StopOnSignals::asked()) {
+    pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    if (::poll(&input, 1, kAnswerPollMs) <= 0) continue;
+    // One letter at a time, so that the next line stays for the next question.
+    char letter = 0;
+    const ssize_t got = ::read(STDIN_FILENO, &letter, 1);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) {
+      throw UsageError("standard input ended; answer every prompt; nothing was written");
+    }
+    if (letter == '\n') return line;
+    line += letter;
+  }
+  return std::nullopt;
+}
 
 OpenedDevice::OpenedDevice(const std::string& driver, const device::DeviceSettings& settings,
                            Vec2 plane_mm) {
@@ -137,11 +163,10 @@ void AttendedRun::wait_until_ready(double limit_s) {
   const std::string name = device_.info().name;
   const std::string advice = readiness_in_words(readiness);
   const bool asks = readiness == device::DeviceReadiness::needs_reset;
-  const char* const key = keys_ ? "; then press h" : "; then press Enter";
-  std::fprintf(stderr, "%s: %s%s\n", name.c_str(), advice.c_str(), asks ? key : "");
   if (asks && !keys_) {
-    std::string line;
-    if (std::getline(std::cin, line)) device_.calibrate();
+    if (attended_answer(name + ": " + advice + "; then press Enter\n")) device_.calibrate();
+  } else {
+    std::fprintf(stderr, "%s: %s%s\n", name.c_str(), advice.c_str(), asks ? "; then press h" : "");
   }
   NoForce nothing;
   const auto report = run([](std::int64_t) { return "homing"; }, nothing, limit_s,

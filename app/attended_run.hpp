@@ -57,6 +57,13 @@ enum class AttendedStop {
   signal,   ///< Ctrl-C, or another signal that ends the program
 };
 
+/// Asks a question on standard error and waits for the line of standard input that answers it. What
+/// was typed at a terminal before the question appeared answers nothing and is dropped. What
+/// follows the line stays in the input.
+/// \return nothing if a signal asked the program to end
+/// \throws UsageError at the end of the input
+[[nodiscard]] std::optional<std::string> attended_answer(const std::string& question);
+
 /// The time within which a person can home a device.
 inline constexpr double kReadyLimitS = 120.0;
 

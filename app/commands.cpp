@@ -3,11 +3,14 @@
 #include "app/console.hpp"
 #include "app/passphrases.hpp"
 #include "app/study_inputs.hpp"
+#include "core/strict_json.hpp"
 #include "core/text.hpp"
 
 #include <algorithm>
 #include <string_view>
 #include <thread>
+
+#include <fmt/format.h>
 
 namespace touchtrial::app {
 namespace {
@@ -120,9 +123,20 @@ void add_window_options(CLI::App& command, int& monitor,
       "--window", [&size_px](const std::string& text) { size_px = size_of(text); }, size_meaning);
 }
 
+CLI::Validator finite_range(double low, double high) {
+  return {[=](const std::string& text) {
+            const auto number = number_in<double>(text);
+            return number && *number >= low && *number <= high
+                       ? std::string()
+                       : fmt::format("{} is not a number from {:g} to {:g}", in_quotes(text), low,
+                                     high);
+          },
+          fmt::format("FLOAT in [{:g} - {:g}]", low, high)};
+}
+
 void add_rate_option(CLI::App& command, double& rate_hz) {
   command.add_option("--rate", rate_hz, "Servo ticks per second")
-      ->check(CLI::Range(1000.0, 10'000.0))
+      ->check(finite_range(1000.0, 10'000.0))
       ->capture_default_str();
 }
 

@@ -110,6 +110,8 @@ void add_window_options(CLI::App& command, int& monitor,
                         std::optional<std::pair<int, int>>& size_px,
                         const std::string& size_meaning =
                             "Size WIDTHxHEIGHT of a window instead of the whole monitor, pixels");
+/// A number from `low` to `high`. The parser's own range lets "nan" through.
+[[nodiscard]] CLI::Validator finite_range(double low, double high);
 /// --rate, 1,000 to 10,000 Hz.
 void add_rate_option(CLI::App& command, double& rate_hz);
 

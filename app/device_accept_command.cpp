@@ -11,7 +11,9 @@
 #include "device/acceptance/accelerometer.hpp"
 #include "device/acceptance/acceptance.hpp"
 #include "device/acceptance/rehearsal.hpp"
+#include "device/registry.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -23,10 +25,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <poll.h>
 #include <spawn.h>
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
@@ -41,7 +44,6 @@ constexpr int kRefused = 1;
 constexpr double kNewtonsPerGram = 0.001 * device::kStandardGravityMS2;
 /// Longer than a run, so that it never ends before its last sample.
 constexpr double kMoreTimeS = 2.0;
-constexpr int kPollMs = 100;
 
 struct AcceptArguments {
   std::string driver;
@@ -57,40 +59,6 @@ struct AcceptArguments {
 
 /// The person or a signal ended the acceptance.
 struct AcceptanceStopped {};
-
-/// Lines of standard input, which a signal interrupts.
-class AcceptanceAnswers {
- public:
-  /// \throws UsageError at the end of the input
-  std::string next() {
-    while (true) {
-      const std::size_t end = text_.find('\n');
-      if (end != std::string::npos) {
-        std::string line = text_.substr(0, end);
-        text_.erase(0, end + 1);
-        return line;
-      }
-      if (device::StopOnSignals::asked()) throw AcceptanceStopped{};
-      read_more();
-    }
-  }
-
- private:
-  void read_more() {
-    pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-    if (::poll(&input, 1, kPollMs) <= 0) return;
-    std::array<char, 512> bytes{};
-    const ssize_t got = ::read(STDIN_FILENO, bytes.data(), bytes.size());
-    if (got < 0 && errno == EINTR) return;
-    if (got <= 0) {
-      throw UsageError(
-          "standard input ended during the acceptance; answer every prompt; nothing was written");
-    }
-    text_.append(bytes.data(), static_cast<std::size_t>(got));
-  }
-
-  std::string text_;
-};
 
 /// Suspends this program for two seconds, three seconds from now, by a shell of its own.
 class Suspension {
@@ -238,9 +206,10 @@ class TerminalAcceptance final : public device::AcceptanceBench, public device::
     if (run_.stop() != AttendedStop::none) throw AcceptanceStopped{};
   }
 
-  std::string answer_to(const std::string& question) {
-    tell(question);
-    return answers_.next();
+  static std::string answer_to(const std::string& question) {
+    const std::optional<std::string> answer = attended_answer(question);
+    if (!answer) throw AcceptanceStopped{};
+    return *answer;
   }
 
   device::DeviceSettings settings_;
@@ -248,15 +217,14 @@ class TerminalAcceptance final : public device::AcceptanceBench, public device::
   device::SafetyLimits limits_;
   AttendedRun run_;
   device::DeviceInfo info_;
-  AcceptanceAnswers answers_;
 };
 
-/// "about 95 %" of a measured number, or "-".
-std::string measured_cell(const std::optional<device::Measured>& measured, int digits,
-                          double factor = 1.0) {
+/// A number with its interval and unit, or "not measured".
+std::string measured_words(const std::optional<device::Measured>& measured, int digits,
+                           const char* unit, double factor = 1.0) {
   if (!measured) return "not measured";
-  return fmt::format("{:.{}f} +- {:.{}f}", factor * measured->value, digits,
-                     factor * measured->error, digits);
+  return fmt::format("{:.{}f} +- {:.{}f} {}", factor * measured->value, digits,
+                     factor * measured->error, digits, unit);
 }
 
 std::string acceptance_summary(const device::Certificate& certificate) {
@@ -269,13 +237,13 @@ std::string acceptance_summary(const device::Certificate& certificate) {
     text += fmt::format("at rest:      noise {:.4f} mm, drift {:.3f} mm\n",
                         certificate.rest->noise_mm, certificate.rest->drift_mm);
   }
-  text += "encoder step: " + measured_cell(certificate.step_mm, 4) + " mm\n";
+  text += "encoder step: " + measured_words(certificate.step_mm, 4, "mm") + "\n";
   for (const device::AxisResult& axis : certificate.axes) {
     text += fmt::format(
-        "axis {}:       delivers {} % of the command; friction {} N; mass {} kg; delay {} ms\n",
-        device::name_of(axis.axis), measured_cell(axis.scale(), 1, 100.0),
-        measured_cell(axis.friction_n, 3), measured_cell(axis.mass_kg, 3),
-        measured_cell(axis.delay_ms, 1));
+        "axis {}:       delivered force {}; friction {}; mass {}; delay {}\n",
+        device::name_of(axis.axis), measured_words(axis.scale(), 1, "% of the command", 100.0),
+        measured_words(axis.friction_n, 3, "N"), measured_words(axis.mass_kg, 3, "kg"),
+        measured_words(axis.delay_ms, 1, "ms"));
   }
   if (certificate.wall) {
     text += fmt::format(
@@ -306,9 +274,9 @@ std::string file_word(std::string name) {
   return name;
 }
 
-fs::path certificate_path(const AcceptArguments& arguments, const std::string& name) {
-  if (!arguments.certificate.empty()) return arguments.certificate;
-  return name + "-certificate.json";
+/// What a rehearsal on this model is called.
+std::string emulated_word(const std::string& model) {
+  return "emulated-" + file_word(model);
 }
 
 /// "falcon-model.json" beside "falcon-certificate.json", with this ending in place of
@@ -320,41 +288,126 @@ fs::path file_beside(const fs::path& certificate, const std::string& ending) {
   return certificate.parent_path() / (stem + ending);
 }
 
+/// The files that an acceptance writes.
+struct AcceptanceFiles {
+  fs::path certificate;
+  fs::path page;
+  fs::path model;
+
+  [[nodiscard]] std::array<const fs::path*, 3> all() const { return {&certificate, &page, &model}; }
+};
+
+/// \return WHAT and FILE of --accelerometer
+/// \throws UsageError
+std::pair<std::string, std::string> record_words(const std::string& record) {
+  const std::size_t equals = record.find('=');
+  if (equals == 0 || equals == std::string::npos || equals + 1 == record.size()) {
+    throw UsageError("--accelerometer " + in_quotes(record) +
+                     ": give WHAT=FILE, for instance wall=wall.csv");
+  }
+  return {record.substr(0, equals), record.substr(equals + 1)};
+}
+
+/// Where a file is kept that is replaced.
+fs::path kept_name(fs::path file) {
+  file += ".old";
+  return file;
+}
+
+/// Called before the device is opened, so that no work is lost at the end.
+/// \param name  of the certificate, without its ending, unless the arguments name one
+/// \throws UsageError if the certificate would not be a .json file, or a file that this very
+///   acceptance reads would be replaced
+/// \throws FileError if they cannot be written
+AcceptanceFiles files_to_write(const AcceptArguments& arguments, const std::string& name) {
+  const fs::path path =
+      arguments.certificate.empty() ? fs::path(name + "-certificate.json") : arguments.certificate;
+  if (ending_of(path) != ".json") {
+    throw UsageError("--certificate " + in_quotes(path.string()) +
+                     ": the page with the plots is written beside it; give a name that ends in "
+                     ".json");
+  }
+  AcceptanceFiles files{path, file_beside(path, ".html"), file_beside(path, "-model.json")};
+  std::vector<fs::path> inputs = {arguments.emulated, arguments.settings};
+  for (const std::string& record : arguments.records) {
+    inputs.emplace_back(record_words(record).second);
+  }
+  for (const fs::path* const file : files.all()) {
+    std::error_code ignored;
+    const auto is_input = [&](const fs::path& input) {
+      return !input.empty() && fs::equivalent(*file, input, ignored);
+    };
+    if (std::ranges::any_of(inputs, is_input)) {
+      throw UsageError(one_line(file->string()) +
+                       ": is read by this acceptance, which would replace it; name another place "
+                       "with --certificate");
+    }
+    for (const fs::path& replaced : {*file, kept_name(*file)}) {
+      if (fs::exists(replaced, ignored) && !fs::is_regular_file(replaced, ignored)) {
+        throw FileError(
+            one_line(replaced.string()) +
+            ": is no file that could be replaced; name another place with --certificate");
+      }
+    }
+    // What is there will be kept.
+    if (is_there(*file)) static_cast<void>(read_file(*file));
+    // Writing is the only proof that it can be written.
+    fs::path trial = fs::weakly_canonical(*file, ignored);
+    if (trial.empty()) trial = *file;
+    trial += ".trial";
+    replace_file(trial, "");
+    fs::remove(trial, ignored);
+  }
+  return files;
+}
+
+/// Whether a file is a certificate that no session would take: it failed, or is of a rehearsal.
+bool is_no_loss(const fs::path& certificate) {
+  try {
+    const device::Certificate old = device::read_certificate(certificate).certificate;
+    return !old.emulated.empty() || !old.passed();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// Keeps what is about to be replaced.
+void keep_old(const AcceptanceFiles& files) {
+  if (is_there(files.certificate) && is_no_loss(files.certificate)) return;
+  for (const fs::path* const file : files.all()) {
+    if (is_there(*file)) replace_file(kept_name(*file), text_of(read_file(*file)));
+  }
+}
+
 /// The spectra of the records that the arguments name.
 std::vector<device::SpectrumResult> spectra_of(const AcceptArguments& arguments) {
   std::vector<device::SpectrumResult> spectra;
   for (const std::string& record : arguments.records) {
-    const std::size_t equals = record.find('=');
-    if (equals == 0 || equals == std::string::npos || equals + 1 == record.size()) {
-      throw UsageError("--accelerometer " + in_quotes(record) +
-                       ": give WHAT=FILE, for instance wall=wall.csv");
-    }
-    spectra.push_back(
-        {record.substr(0, equals),
-         device::acceleration_bands(device::read_accelerometer_csv(record.substr(equals + 1)))});
+    const auto [what, file] = record_words(record);
+    spectra.push_back({what, device::acceleration_bands(device::read_accelerometer_csv(file))});
   }
   return spectra;
 }
 
-int write_results(const AcceptArguments& arguments, device::Acceptance acceptance,
-                  const device::DeviceInfo& info) {
+int write_results(const AcceptArguments& arguments, const AcceptanceFiles& files,
+                  device::Acceptance acceptance, const device::DeviceInfo& info) {
   device::Certificate& certificate = acceptance.certificate;
   certificate.program = std::string(program_version());
   certificate.made = std::chrono::floor<std::chrono::seconds>(
       std::chrono::sys_time<std::chrono::nanoseconds>(utc_now()));
-  const fs::path path = certificate_path(
-      arguments, certificate.emulated.empty() ? arguments.driver
-                                              : "emulated-" + file_word(certificate.emulated));
+  device::DeviceModel model = device::model_of(certificate, info);
+  if (!certificate.emulated.empty()) model.name = emulated_word(certificate.emulated);
   const std::string json = device::certificate_json(certificate);
-  replace_file(path, json);
-  replace_file(file_beside(path, ".html"), acceptance_page(acceptance));
-  replace_file(file_beside(path, "-model.json"),
-               device::device_model_json(device::model_of(certificate, info)));
+  keep_old(files);
+  replace_file(files.certificate, json);
+  replace_file(files.page, acceptance_page(acceptance));
+  replace_file(files.model, device::device_model_json(model));
   if (arguments.json) {
     print(json);
   } else {
-    print(acceptance_summary(certificate) +
-          fmt::format("{}: SHA-256 {}\n", path.string(), to_hex(sha256_of_file(path))));
+    print(acceptance_summary(certificate) + fmt::format("{}: SHA-256 {}\n",
+                                                        files.certificate.string(),
+                                                        to_hex(sha256_of_file(files.certificate))));
   }
   return certificate.passed() ? 0 : kRefused;
 }
@@ -370,12 +423,15 @@ device::AcceptanceOptions options_of(const AcceptArguments& arguments) {
 int rehearse_on_model(const AcceptArguments& arguments,
                       std::vector<device::SpectrumResult> spectra) {
   const device::DeviceModel model = device::device_model(arguments.emulated);
+  const AcceptanceFiles files = files_to_write(arguments, emulated_word(model.name));
   device::Acceptance acceptance = device::rehearse_acceptance(model, options_of(arguments));
   acceptance.certificate.spectra = std::move(spectra);
-  return write_results(arguments, std::move(acceptance), device::ModelledDevice(model).info());
+  return write_results(arguments, files, std::move(acceptance),
+                       device::ModelledDevice(model).info());
 }
 
-int accept_on_cable(const AcceptArguments& arguments, std::vector<device::SpectrumResult> spectra) {
+int accept_on_cable(const AcceptArguments& arguments, const AcceptanceFiles& files,
+                    std::vector<device::SpectrumResult> spectra) {
   std::optional<device::Acceptance> acceptance;
   device::DeviceInfo info;
   try {
@@ -390,7 +446,7 @@ int accept_on_cable(const AcceptArguments& arguments, std::vector<device::Spectr
     throw DeviceError("the acceptance was stopped; nothing was written");
   }
   acceptance->certificate.spectra = std::move(spectra);
-  return write_results(arguments, std::move(*acceptance), info);
+  return write_results(arguments, files, std::move(*acceptance), info);
 }
 
 std::atomic<pid_t> acceptance_process{-1};
@@ -429,8 +485,10 @@ int accept_one(const AcceptArguments& arguments) {
   }
   std::vector<device::SpectrumResult> spectra = spectra_of(arguments);
   if (!arguments.emulated.empty()) return rehearse_on_model(arguments, std::move(spectra));
-  if (!arguments.silence) return accept_on_cable(arguments, std::move(spectra));
-  return in_own_process([&] { return accept_on_cable(arguments, std::move(spectra)); });
+  const AcceptanceFiles files =
+      files_to_write(arguments, device::device_driver(arguments.driver).name);
+  if (!arguments.silence) return accept_on_cable(arguments, files, std::move(spectra));
+  return in_own_process([&] { return accept_on_cable(arguments, files, std::move(spectra)); });
 }
 
 }  // namespace

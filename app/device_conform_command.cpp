@@ -181,7 +181,7 @@ void add_device_conform_command(CLI::App& device, Action& action) {
       ->required();
   add_settings_option(*command, arguments->settings);
   command->add_option("--seconds", arguments->seconds, "Duration of watching readings, s")
-      ->check(CLI::Range(0.2, 600.0))
+      ->check(finite_range(0.2, 600.0))
       ->capture_default_str();
   command->add_flag("--force", arguments->force,
                     "Also push with 0.3 N along each axis, to see that forces arrive and end");

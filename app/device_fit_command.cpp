@@ -12,6 +12,7 @@
 #include "protocols/design/study.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -198,6 +199,24 @@ struct DeviceFitArguments {
   bool json = false;
 };
 
+/// \throws DeviceError if no session would take the certificate, as far as can be said without the
+///   device, or the study's wall is as stiff as one that oscillated
+void check_with_certificate(const fs::path& file, const design::Study& study, const StudyFit& fit) {
+  const device::Certificate certificate = device::read_certificate(file).certificate;
+  device::DeviceInfo info = fit.limits;
+  if (fit.source != WorkspaceSource::device) {
+    // No device was read, so that it can be any of this driver's.
+    info.name = fit.driver;
+    info.model = certificate.model;
+    info.serial = certificate.serial;
+    info.firmware = certificate.firmware;
+  }
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const std::string warning = device::check_certificate(certificate, info, now);
+  if (!warning.empty()) spdlog::warn("{}", warning);
+  device::require_stable(certificate, study.rendering.stiffness_n_per_mm);
+}
+
 int fit(const DeviceFitArguments& arguments) {
   const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   const design::Study study = design::load_study(arguments.study);
@@ -208,9 +227,8 @@ int fit(const DeviceFitArguments& arguments) {
   }
   const fs::path usual = arguments.driver + "-certificate.json";
   if (!arguments.certificate.empty() || is_there(usual)) {
-    const fs::path& file = arguments.certificate.empty() ? usual : arguments.certificate;
-    device::require_stable(device::read_certificate(file).certificate,
-                           study.rendering.stiffness_n_per_mm);
+    check_with_certificate(arguments.certificate.empty() ? usual : arguments.certificate, study,
+                           fit);
   }
   const std::string warning = device::check_stiffness(fit.rendered, fit.limits);
   if (!warning.empty()) spdlog::warn("{}", warning);

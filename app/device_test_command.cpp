@@ -275,7 +275,7 @@ void add_device_test_command(CLI::App& device, Action& action) {
   add_driver_argument(*command, "NAME", arguments->driver);
   add_settings_option(*command, arguments->settings);
   command->add_option("--seconds", arguments->seconds, "Duration of wall and texture together, s")
-      ->check(CLI::Range(0.1, 3600.0))
+      ->check(finite_range(0.1, 3600.0))
       ->capture_default_str();
   add_rate_option(*command, arguments->rate_hz);
   command->add_flag("--wall-only", arguments->wall_only, "No texture");

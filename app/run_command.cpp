@@ -97,7 +97,7 @@ void add_device_options(CLI::App& command, RunOptions& options) {
   command
       .add_option("--text-scale", options.text_scale,
                   "Size of this participant's letters, in place of the study's; recorded")
-      ->check(CLI::Range(1.0, design::kLargestTextScale));
+      ->check(finite_range(1.0, design::kLargestTextScale));
   command.add_flag("--high-contrast", options.high_contrast,
                    "Black on white for this participant; recorded");
 }

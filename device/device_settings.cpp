@@ -213,7 +213,12 @@ DeviceUse read_replay(const JsonValue& place, const fs::path& folder, DeviceSett
 MarkerLineSettings read_serial(const JsonValue& place) {
   const JsonObject object = place.object({"port", "baud", "format", "width", "reset_ms"});
   MarkerLineSettings serial;
-  if (const auto port = object.find("port")) serial.port = plain_text(*port);
+  serial.port = plain_text(object.at("port"));
+  if (serial.port.empty()) {
+    object.at("port").refuse(
+        "is empty; name the line, for instance /dev/ttyUSB0, or leave "
+        "/instruments/serial out");
+  }
   if (const auto format = object.find("format")) serial.format = format->choice(kMarkerFormats);
   if (const auto baud = object.find("baud")) {
     serial.baud = static_cast<int>(baud->integer(kSlowestBaud, kFastestBaud));

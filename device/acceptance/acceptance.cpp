@@ -201,6 +201,9 @@ class Procedure {
                            result.minus->moved && result.plus->along_mm > result.plus->across_mm &&
                            result.minus->along_mm > result.minus->across_mm;
     if (goes_well) return;
+    if (run.ran_away())
+      throw EndOfAcceptance{"the handle ran more than 15 mm away from where its push began" +
+                            on(axis)};
     if (!figures.came_to_rest) throw EndOfAcceptance{"the handle never came to rest" + on(axis)};
     throw EndOfAcceptance{"the handle does not follow a small force" + on(axis)};
   }
@@ -306,6 +309,7 @@ class Procedure {
                                  "s. Keep clear of it.",
                                  name_of(axis), push_n)},
                     what)) {
+        result.delay_left_out = true;
         continue;
       }
       ShakenStrokes run(axis, support_n_, push_n, forces_.gains, forces_.hold_n);
@@ -325,16 +329,21 @@ class Procedure {
     // Slow strokes take what damping adds at their speed for friction.
     result.friction_n->value -=
         0.001 * SlowStrokes::kSpeedMmS * std::max(figures.viscous_n_s_per_m.value, 0.0);
-    result.delay_ms = figures.delay_ms;
+    std::string no_delay = figures.no_delay;
+    if (figures.delay_ms && verdict_on_delay(*figures.delay_ms) == DelayVerdict::unclear) {
+      no_delay = "unclear: " + words_of(*figures.delay_ms, 1, "ms");
+    } else {
+      result.delay_ms = figures.delay_ms;
+    }
     curves_of(result.axis).by_delay = figures.by_delay;
     person_.tell(fmt::format("axis {}: mass {}, {:.0f} % of the motion unexplained",
                              name_of(result.axis), words_of(figures.mass_kg, 3, "kg"),
                              100.0 * figures.unexplained));
-    if (figures.delay_ms) {
+    if (result.delay_ms) {
       person_.tell(fmt::format("axis {}: delay {}", name_of(result.axis),
-                               words_of(*figures.delay_ms, 1, "ms")));
+                               words_of(*result.delay_ms, 1, "ms")));
     } else {
-      missed("delay" + on(result.axis), "too few turns of the push were clear");
+      missed("delay" + on(result.axis), no_delay);
     }
   }
 
@@ -348,8 +357,8 @@ class Procedure {
       const Prompt prompt{
           "wall", Stance::pressing, DeviceAxis::y,
           fmt::format("Hold the handle lightly in the middle. 3 mm below it is a floor of {:.2f} "
-                      "N/mm: press on it as in a stroke for 6 s. It is switched off if it begins "
-                      "to swing.",
+                      "N/mm: press on it as in a stroke for 6 s, and do not lift the handle. It is "
+                      "switched off if it begins to swing or throws the handle up again and again.",
                       stiffness)};
       if (options_.skip.contains(prompt.step) || person_.ready(prompt) != Consent::go) {
         wall.ended = "left out";
@@ -423,21 +432,24 @@ class Procedure {
   }
 
   void fall_silent() {
-    observe("program suspended for two seconds (SIGSTOP)",
-            "Hold the handle firmly: it is pushed down by 0.3 N. After about 3 s the system "
-            "suspends this program for 2 s.",
-            "What did the force do meanwhile (gone at once, gone after how long, stayed)? ",
-            [&](Measurement& run) { return bench_.run_suspended(run); });
-    observe("cable pulled",
-            "Hold the handle firmly: it is pushed down by 0.3 N for 8 s. Pull the device's data "
-            "cable out within that time.",
-            "What did the force do (gone at once, gone after how long, stayed)? ",
-            [&](Measurement& run) { return std::optional(bench_.run("cable", run)); });
+    observe(
+        "program suspended for two seconds (SIGSTOP)",
+        "Hold the handle firmly: it is pushed down by 0.3 N. After about 3 s the system "
+        "suspends this program for 2 s.",
+        "What did the force do meanwhile (gone at once, gone after how long, stayed)? ",
+        [&](Measurement& run) { return bench_.run_suspended(run); }, false);
+    observe(
+        "cable pulled",
+        "Hold the handle firmly: it is pushed down by 0.3 N for 8 s. Pull the device's data "
+        "cable out within that time.",
+        "What did the force do (gone at once, gone after how long, stayed)? ",
+        [&](Measurement& run) { return std::optional(bench_.run("cable", run)); }, true);
   }
 
+  /// \param cuts  the device cannot answer to the end, if the person did what the text asks for
   template <typename Run>
   void observe(const std::string& what, const std::string& text, const std::string& question,
-               const Run& run) {
+               const Run& run, bool cuts) {
     if (!consents({"silence", Stance::guarding, DeviceAxis::y, text}, what)) return;
     SteadyPush push(kSuspendedRunS);
     const std::optional<ServoReport> report = run(push);
@@ -445,10 +457,18 @@ class Procedure {
       missed(what, "not possible here");
       return;
     }
+    if (cuts && report->end != ServoEnd::fault) {
+      missed(what, "the device answered to the end: nobody pulled the cable");
+      return;
+    }
     const std::string saw = person_.saw(question);
-    certificate_.observed.push_back(
-        {what, (saw.empty() ? std::string("nothing was typed") : saw) + "; the run ended as " +
-                   std::string(name_of(report->end)) + ", " + std::string(name_of(report->fault))});
+    if (saw.empty()) {
+      missed(what, "nothing was typed");
+      return;
+    }
+    certificate_.observed.push_back({what, saw + "; the run ended as " +
+                                               std::string(name_of(report->end)) + ", " +
+                                               std::string(name_of(report->fault))});
   }
 
   /// What was measured in commanded newtons becomes newtons at the handle.

@@ -25,10 +25,23 @@ inline constexpr double kMostDriftMm = 0.5;
 inline constexpr double kMostStepMm = 0.1;
 inline constexpr double kMostFrictionN = 0.7;  ///< the push of a stroke
 inline constexpr double kMostDelayMs = 5.0;
-inline constexpr double kMostWarmDrift = 0.10;  ///< share of the load, over twenty minutes
+inline constexpr double kMostDelayErrorMs = 2.0;  ///< a stated error above it tells nothing
+inline constexpr double kMostWarmDrift = 0.10;    ///< share of the load, over twenty minutes
 ///@}
+
+/// What an interval says of a delay. A device must be shown to be below the limit.
+enum class DelayVerdict {
+  below,      ///< all of the interval is within the limit
+  above,      ///< all of it is beyond
+  not_shown,  ///< the limit is within it
+  unclear,    ///< it is wider than kMostDelayErrorMs to either side, and not all beyond
+};
+[[nodiscard]] DelayVerdict verdict_on_delay(const Measured& delay_ms) noexcept;
+
 /// An older certificate causes a warning.
 inline constexpr std::chrono::hours kCertificateAge{24 * 180};
+/// A newer one is refused: clocks of two machines differ, but not by more.
+inline constexpr std::chrono::hours kCertificateLead{24};
 
 /// A push along an axis until the handle moved.
 struct PushResult {
@@ -56,6 +69,8 @@ struct AxisResult {
   std::optional<Measured> mass_kg{};
   std::optional<Measured> viscous_n_s_per_m{};
   std::optional<Measured> delay_ms{};
+  /// The person left its step out. Without this an axis whose delay is not known has failed.
+  bool delay_left_out = false;
 
   /// Delivered force over commanded force.
   [[nodiscard]] std::optional<Measured> scale() const;
@@ -117,8 +132,8 @@ struct Certificate {
   std::vector<SpectrumResult> spectra{};
   std::vector<NotMeasured> not_measured{};
 
-  /// \return why the device is refused, a line each; empty: it passed. The rest, the signs and the
-  ///   forces of all three axes must have been measured.
+  /// \return why the device is refused, a line each; empty: it passed. The rest, the signs, the
+  ///   forces and, unless it was left out, the delays of all three axes must have been measured.
   [[nodiscard]] std::vector<std::string> failures() const;
   [[nodiscard]] bool passed() const { return failures().empty(); }
   /// \return the largest factor between delivered and commanded force; 1 if none was measured
@@ -143,17 +158,19 @@ struct ReadCertificate {
 /// Compares a certificate with the device of a session.
 /// \return a warning if the certificate is older than kCertificateAge or of another firmware, else
 ///   ""
-/// \throws DeviceError with the remedy if it is of an emulated device, did not pass, or has another
-///   driver, model or serial number
+/// \throws DeviceError with the remedy if it is of an emulated device, did not pass, has another
+///   driver, model or serial number, or was made more than kCertificateLead after now
 [[nodiscard]] std::string check_certificate(const Certificate& certificate,
                                             const DeviceInfo& device, std::chrono::sys_seconds now);
 
 /// \param stiffness_n_per_mm  of a study's wall
-/// \throws DeviceError with the remedy if a wall of this stiffness oscillated in the acceptance
+/// \throws DeviceError with the remedy if a wall of this stiffness, or a softer one, oscillated in the
+///   acceptance
 void require_stable(const Certificate& certificate, double stiffness_n_per_mm);
 
-/// \return a device model with what was measured, for planning and rehearsals; what was not stays
-///   zero, which leaves its stage out
+/// \return a device model with what was measured, and a held force, for planning and rehearsals;
+///   what was not measured stays zero, which leaves its stage out. Soft arms, friction at rest and
+///   the lag of velocities are never measured: walls of the model are stabler than the device's.
 /// \param device  force limits and workspace; the values of a rehearsal are derived, not measured
 [[nodiscard]] DeviceModel model_of(const Certificate& certificate, const DeviceInfo& device);
 

@@ -98,6 +98,20 @@ bool SwingDetector::swings(double place_mm, double time_s) noexcept {
   return false;
 }
 
+bool ReboundDetector::throws(double height_mm) noexcept {
+  if (height_mm >= 0.0) {
+    highest_mm_ = std::max(highest_mm_, height_mm);
+    return false;
+  }
+  const double rebound_mm = has_landed_ ? highest_mm_ : 0.0;
+  has_landed_ = true;
+  highest_mm_ = 0.0;
+  if (rebound_mm < kLeastMm) return false;
+  rebounds_mm_[rebounds_++ % rebounds_mm_.size()] = rebound_mm;
+  return rebounds_ >= rebounds_mm_.size() &&
+         rebound_mm > kFaded * rebounds_mm_[rebounds_ % rebounds_mm_.size()];
+}
+
 Listening::Listening(double seconds)
     : Measurement(seconds, 0.0, std::numeric_limits<double>::infinity()) {}
 
@@ -248,7 +262,8 @@ Vec3 WallTrial::next_n(const DeviceSample& sample, double time_s) noexcept {
   if (time_s >= seconds()) finish();
   const double height_mm = sample.position_mm.y - (start_mm().y - kDepthMm);
   const bool swings_now = detector_.swings(height_mm, time_s);
-  if (contact_s_ > 0.0 && swings_now) {
+  const bool throws_now = rebounds_.throws(height_mm);
+  if ((contact_s_ > 0.0 && swings_now) || throws_now) {
     oscillated_ = true;
     finish();
     return {};

@@ -84,6 +84,23 @@ class SwingDetector {
   std::size_t half_swings_ = 0;
 };
 
+/// Tells a floor that throws the handle up again and again, as too much delay does at two to nine
+/// swings in a second: four rebounds that do not fade. A landing bounces too, but fades. Private to
+/// this folder.
+class ReboundDetector {
+ public:
+  static constexpr double kLeastMm = 1.0;  ///< a lower one is none
+  static constexpr double kFaded = 0.7;    ///< of the first of four rebounds, at the last
+  /// Called at every tick.
+  [[nodiscard]] bool throws(double height_mm) noexcept;
+
+ private:
+  bool has_landed_ = false;
+  double highest_mm_ = 0.0;  ///< since the handle left the floor
+  std::array<double, 4> rebounds_mm_{};
+  std::size_t rebounds_ = 0;
+};
+
 /// Sends no force: the handle lies still, or a person moves it.
 class Listening final : public Measurement {
  public:
@@ -202,7 +219,8 @@ class ShakenStrokes final : public Measurement {
   double turned_mm_ = 0.0;
 };
 
-/// A floor below the handle, on which a person presses. An oscillation ends it at once.
+/// A floor below the handle, on which a person presses without a stop. An oscillation ends it at
+/// once, and so do rebounds that do not fade.
 class WallTrial final : public Measurement {
  public:
   static constexpr double kTrialS = 6.0;
@@ -220,6 +238,7 @@ class WallTrial final : public Measurement {
 
   double stiffness_;
   SwingDetector detector_;
+  ReboundDetector rebounds_;
   double contact_s_ = 0.0;
   bool oscillated_ = false;
 };

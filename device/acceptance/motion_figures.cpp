@@ -23,7 +23,13 @@ constexpr double kMassFloorKg = 0.003;
 constexpr double kMassShare = 0.05;
 constexpr double kViscousFloor = 0.3;
 constexpr double kDelayFloorMs = 0.5;
+constexpr double kDelayMsUnexplained = 50.0;  ///< at most 1 ms: kRigidUnexplained
+constexpr double kTurnsFloorMs = 1.0;
+constexpr double kLagShare = 0.25;
 ///@}
+
+/// Soft arms yield first and bend the path early, in all of the shipped models with a structure.
+constexpr double kTurnsEarlyTicks = 0.4;
 
 /// One axis at every tick: those that the servo left out are filled in.
 struct EvenSeries {
@@ -339,14 +345,20 @@ std::optional<WindowFit> best_fit(const std::vector<Window>& windows, double fri
                    windows.size(), best_delay - 0.5, (*errors)[n]};
 }
 
+/// With less unexplained, a fit is taken at its word.
+constexpr double kRigidUnexplained = 0.02;
+
 /// The fits with windows of several lengths.
 struct WindowFits {
   std::optional<WindowFit> best;       ///< of those without negative damping
   std::optional<Measured> delay_ms{};  ///< if the fits agree, as they do for a rigid handle
+  /// Of the longest windows, which arms that yield disturb least, and which see a slow motor's time
+  /// constant as delay; nothing if they leave too much unexplained.
+  std::optional<WindowFit> slow{};
 };
 
 WindowFits fits_of(const std::vector<std::vector<Window>>& by_length, double friction_n) {
-  constexpr double kRigidUnexplained = 0.02;
+  constexpr double kSlowUnexplained = 0.05;
   constexpr double kAgreeingTicks = 0.5;
   WindowFits fits;
   std::vector<WindowFit> free;
@@ -359,6 +371,7 @@ WindowFits fits_of(const std::vector<std::vector<Window>>& by_length, double fri
     if (fit && (!fits.best || fit->unexplained < fits.best->unexplained)) fits.best = fit;
   }
   if (free.empty()) return fits;
+  if (free.back().unexplained < kSlowUnexplained) fits.slow = free.back();
   const auto [least, greatest] =
       std::ranges::minmax(free, {}, [](const WindowFit& fit) { return fit.delay_ticks; });
   const WindowFit& clearest = *std::ranges::min_element(free, {}, &WindowFit::unexplained);
@@ -366,13 +379,19 @@ WindowFits fits_of(const std::vector<std::vector<Window>>& by_length, double fri
   if (clearest.unexplained > kRigidUnexplained || spread > kAgreeingTicks) return fits;
   const double ms = 1000.0 * kServoTickS;
   fits.delay_ms = Measured{clearest.delay_ticks * ms,
-                           (2.0 * clearest.delay_error_ticks + spread) * ms + kDelayFloorMs};
+                           (2.0 * clearest.delay_error_ticks + spread) * ms + kDelayFloorMs +
+                               kDelayMsUnexplained * clearest.unexplained};
   return fits;
 }
 
-/// A turn of the push: when it happened, to a fraction of a tick where the slew limit stretched it.
-std::vector<double> turns_in(const EvenSeries& series, TickRange ticks, double push_n,
-                             std::size_t apart) {
+/// A turn of the push.
+struct Turn {
+  double at = 0.0;   ///< in ticks; a fraction where the slew limit stretched it
+  double way = 0.0;  ///< of the force's change: +1 or -1
+};
+
+std::vector<Turn> turns_in(const EvenSeries& series, TickRange ticks, double push_n,
+                           std::size_t apart) {
   constexpr std::size_t kLongest = 6;  // ticks of a turn
   const std::vector<double>& f = series.force_n;
   std::vector<std::size_t> begins;
@@ -380,7 +399,7 @@ std::vector<double> turns_in(const EvenSeries& series, TickRange ticks, double p
     const bool goes_on = !begins.empty() && i - begins.back() < kLongest;
     if (!goes_on && std::abs(f[i] - f[i - 1]) > 0.4 * push_n) begins.push_back(i);
   }
-  std::vector<double> turns;
+  std::vector<Turn> turns;
   for (std::size_t k = 1; k + 1 < begins.size(); ++k) {
     const std::size_t i = begins[k];
     if (i - begins[k - 1] < apart || begins[k + 1] - i < apart) continue;
@@ -389,34 +408,54 @@ std::vector<double> turns_in(const EvenSeries& series, TickRange ticks, double p
     if (std::abs(to_n - from_n) < push_n) continue;
     double late = 0.0;
     for (std::size_t j = i; j < i + kLongest; ++j) late += (to_n - f[j]) / (to_n - from_n);
-    turns.push_back(static_cast<double>(i) + late);
+    turns.push_back({static_cast<double>(i) + late, to_n > from_n ? 1.0 : -1.0});
   }
   return turns;
 }
 
-/// The squares that least squares with the first n of these basis functions explain; nothing if
-/// they are not independent.
-std::optional<double> explained_by(FitMatrix normal, const FitRow& right, std::size_t n) {
-  if (!invert(normal, n)) return std::nullopt;
+/// What least squares with the first n of these basis functions find.
+struct Explained {
   double squares = 0.0;
+  double last = 0.0;  ///< factor of the last function
+};
+
+/// \return nothing if the functions are not independent
+std::optional<Explained> explained_by(FitMatrix normal, const FitRow& right, std::size_t n) {
+  if (!invert(normal, n)) return std::nullopt;
+  Explained explained;
   for (std::size_t a = 0; a < n; ++a) {
-    for (std::size_t b = 0; b < n; ++b) squares += right[a] * normal[a][b] * right[b];
+    double factor = 0.0;
+    for (std::size_t b = 0; b < n; ++b) factor += normal[a][b] * right[b];
+    explained.squares += right[a] * factor;
+    explained.last = factor;
   }
-  return squares;
+  return explained;
 }
 
-/// What a bend in the middle explains of a stretch of the path beyond a parabola, mm^2 a tick. It
-/// is greatest where the path does bend: a stretch beside that place is a parabola, and one that
-/// holds it elsewhere is none with a bend in the middle.
-std::optional<double> bend_at(const std::vector<double>& x, double bend, double half) {
+/// How far the handle has left its parabola at some time after a force changed, if the change
+/// reaches it with a time constant; any unit.
+double bend_after(double ticks, double lag_ticks) {
+  if (ticks <= 0.0) return 0.0;
+  const double straight = 0.5 * ticks * ticks;
+  if (lag_ticks <= 0.0) return straight;
+  return straight - lag_ticks * ticks - lag_ticks * lag_ticks * std::expm1(-ticks / lag_ticks);
+}
+
+/// What a bend in the middle explains of a stretch of the path beyond a parabola, mm^2 a tick; a
+/// bend against the force's change explains nothing. It is greatest where the path does bend: a
+/// stretch beside that place is a parabola, and one that holds it elsewhere is none with a bend in
+/// the middle.
+std::optional<double> bend_at(const std::vector<double>& x, double bend, double way, double half,
+                              double lag_ticks) {
   FitMatrix normal{};
   FitRow right{};
+  const double greatest = bend_after(half, lag_ticks);
   const auto first = static_cast<std::size_t>(std::ceil(bend - half));
   const auto last = static_cast<std::size_t>(std::floor(bend + half));
   for (std::size_t i = first; i <= last; ++i) {
-    const double t = (static_cast<double>(i) - bend) / half;
-    const double after = std::max(t, 0.0);
-    const FitRow row = {1.0, t, t * t, after * after};
+    const double ticks = static_cast<double>(i) - bend;
+    const double t = ticks / half;
+    const FitRow row = {1.0, t, t * t, bend_after(ticks, lag_ticks) / greatest};
     for (std::size_t a = 0; a < 4; ++a) {
       right[a] += row[a] * (x[i] - x[first]);
       for (std::size_t b = 0; b < 4; ++b) normal[a][b] += row[a] * row[b];
@@ -425,46 +464,59 @@ std::optional<double> bend_at(const std::vector<double>& x, double bend, double 
   const auto with = explained_by(normal, right, 4);
   const auto without = explained_by(normal, right, 3);
   if (!with || !without) return std::nullopt;
-  return std::max(*with - *without, 0.0) / static_cast<double>(last - first + 1);
+  if (with->last * way <= 0.0) return 0.0;
+  return std::max(with->squares - without->squares, 0.0) / static_cast<double>(last - first + 1);
+}
+
+/// \name The delays after which a bend is looked for, ticks
+///@{
+constexpr double kEarliestBend = -2.0;
+constexpr double kLatestBend = 14.0;
+///@}
+
+/// The turns around which stretches of the longer kind fit.
+std::vector<Turn> turns_within(const std::vector<Turn>& turns, TickRange ticks, double half) {
+  std::vector<Turn> within;
+  for (const Turn& turn : turns) {
+    if (turn.at < static_cast<double>(ticks.from) + 2.0 * half) continue;
+    if (turn.at + kLatestBend + 2.0 * half > static_cast<double>(ticks.end)) continue;
+    within.push_back(turn);
+  }
+  return within;
 }
 
 struct BendingDelay {
   double ticks = 0.0;
   double error_ticks = 0.0;  ///< standard error
+  bool at_an_end = false;    ///< of the range: it may lie beyond
   std::vector<std::pair<double, double>> by_delay;
 };
 
 /// The delay after which the path bends when the push turns round: while the handle goes on one
 /// way, friction is constant, and nothing else bends it so sharply.
-std::optional<BendingDelay> bending_delay(const EvenSeries& series, TickRange ticks,
-                                          std::span<const double> turns, double half) {
-  constexpr double kEarliest = -2.0;
-  constexpr double kLatest = 14.0;
+std::optional<BendingDelay> bending_delay(const EvenSeries& series, const std::vector<Turn>& turns,
+                                          double half) {
   constexpr double kFine = 0.25;
-  constexpr auto kPlaces = static_cast<std::size_t>((kLatest - kEarliest) / kFine) + 1;
-  constexpr std::size_t kFewestTurns = 8;
+  constexpr auto kPlaces = static_cast<std::size_t>((kLatestBend - kEarliestBend) / kFine) + 1;
   const auto delay_of = [&](std::ptrdiff_t place) {
-    return kEarliest + kFine * static_cast<double>(place);
+    return kEarliestBend + kFine * static_cast<double>(place);
   };
   std::vector<double> sums(kPlaces, 0.0);
   std::vector<double> best_of_turn;
-  for (const double turn : turns) {
-    if (turn < static_cast<double>(ticks.from) + 2.0 * half) continue;
-    if (turn + kLatest + 2.0 * half > static_cast<double>(ticks.end)) continue;
+  for (const Turn& turn : turns) {
     std::vector<double> bends(kPlaces);
     for (std::size_t k = 0; k < kPlaces; ++k) {
-      const double at = turn + delay_of(static_cast<std::ptrdiff_t>(k));
-      const auto bend = bend_at(series.position_mm, at, half);
+      const double at = turn.at + delay_of(static_cast<std::ptrdiff_t>(k));
+      const auto bend = bend_at(series.position_mm, at, turn.way, half, 0.0);
       if (!bend) return std::nullopt;
       bends[k] = *bend;
     }
     best_of_turn.push_back(delay_of(std::ranges::max_element(bends) - bends.begin()));
     for (std::size_t k = 0; k < kPlaces; ++k) sums[k] += bends[k];
   }
-  if (best_of_turn.size() < kFewestTurns) return std::nullopt;
   const auto best = std::ranges::max_element(sums) - sums.begin();
-  if (best == 0 || best + 1 == static_cast<std::ptrdiff_t>(kPlaces)) return std::nullopt;
   BendingDelay delay;
+  delay.at_an_end = best == 0 || best + 1 == static_cast<std::ptrdiff_t>(kPlaces);
   delay.ticks = delay_of(best);
   // From quartiles, as single turns may bend elsewhere: 1.25 times the deviation over 1.35.
   const double spread = quantile_of(best_of_turn, 0.75) - quantile_of(best_of_turn, 0.25);
@@ -476,22 +528,100 @@ std::optional<BendingDelay> bending_delay(const EvenSeries& series, TickRange ti
   return delay;
 }
 
-/// Short stretches are not disturbed by soft arms, long ones less by encoder steps; how far they
-/// disagree belongs to the error.
-std::optional<Measured> delay_by_turns(const EvenSeries& series, TickRange ticks, double push_n,
-                                       std::vector<std::pair<double, double>>& by_delay) {
+/// A delay and the time constant behind it that together explain the path around turns best, in
+/// ticks.
+struct LaggingDelay {
+  double delay = 0.0;
+  double lag = 0.0;
+  double explained = 0.0;
+};
+
+/// What a parabola and a bend explain of the same stretch around a turn, whatever their delay.
+std::optional<double> explained_around(const std::vector<double>& x, double turn, double delay,
+                                       double lag_ticks) {
+  constexpr double kBefore = 6.0;  // ticks
+  constexpr double kBehind = 14.0;
+  FitMatrix normal{};
+  FitRow right{};
+  const auto first = static_cast<std::size_t>(std::ceil(turn - kBefore));
+  const auto last = static_cast<std::size_t>(std::floor(turn + kBehind));
+  const double greatest = bend_after(kBehind - delay, lag_ticks);
+  for (std::size_t i = first; i <= last; ++i) {
+    const double ticks = static_cast<double>(i) - turn;
+    const double t = ticks / kBehind;
+    const FitRow row = {1.0, t, t * t, bend_after(ticks - delay, lag_ticks) / greatest};
+    for (std::size_t j = 0; j < 4; ++j) {
+      right[j] += row[j] * (x[i] - x[first]);
+      for (std::size_t k = 0; k < 4; ++k) normal[j][k] += row[j] * row[k];
+    }
+  }
+  const auto explained = explained_by(normal, right, 4);
+  if (!explained) return std::nullopt;
+  return explained->squares;
+}
+
+std::optional<LaggingDelay> lagging_delay(const EvenSeries& series,
+                                          const std::vector<Turn>& turns) {
+  constexpr std::array kLags = {0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0};
+  constexpr double kLatest = 10.0;
+  std::optional<LaggingDelay> best;
+  for (const double lag : kLags) {
+    for (double delay = kEarliestBend; delay <= kLatest; delay += 1.0) {
+      double sum = 0.0;
+      for (const Turn& turn : turns) {
+        const auto explained = explained_around(series.position_mm, turn.at, delay, lag);
+        if (!explained) return std::nullopt;
+        sum += *explained;
+      }
+      if (!best || sum > best->explained) best = LaggingDelay{delay, lag, sum};
+    }
+  }
+  return best;
+}
+
+/// Short stretches are not disturbed by soft arms, long ones less by encoder steps. What else may
+/// be the delay, because motors are slow, counts if it is longer; how far all disagree belongs to
+/// the error.
+/// \param slow  WindowFits::slow
+MeasuredOrWhy delay_by_turns(const EvenSeries& series, TickRange ticks, double push_n,
+                             const std::optional<WindowFit>& slow,
+                             std::vector<std::pair<double, double>>& by_delay) {
   constexpr double kShortHalf = 5.0;  // ticks
+  constexpr double kFarHalf = 6.5;
   constexpr double kLongHalf = 8.0;
-  const std::vector<double> turns =
-      turns_in(series, ticks, push_n, static_cast<std::size_t>(kLongHalf) + 2);
-  const auto near = bending_delay(series, ticks, turns, kShortHalf);
-  const auto far = bending_delay(series, ticks, turns, kLongHalf);
-  if (!near || !far) return std::nullopt;
+  constexpr double kNoLag = 1.0;
+  constexpr double kAlikeTicks = 0.75;
+  constexpr double kUnseenTicks = 0.5;  // for a slow motor that no long window shows
+  constexpr std::size_t kFewestTurns = 8;
+  const std::vector<Turn> turns = turns_within(
+      turns_in(series, ticks, push_n, static_cast<std::size_t>(kLongHalf) + 2), ticks, kLongHalf);
+  if (turns.size() < kFewestTurns) {
+    return {std::nullopt, "too few turns of the push were clear"};
+  }
+  const auto near = bending_delay(series, turns, kShortHalf);
+  const auto far = bending_delay(series, turns, kFarHalf);
+  const auto lagging = lagging_delay(series, turns);
+  if (!near || !far || !lagging) return {std::nullopt, "no bend of the path follows the push"};
   by_delay = near->by_delay;
   const double ms = 1000.0 * kServoTickS;
-  return Measured{
-      near->ticks * ms,
-      (2.0 * near->error_ticks + 0.5 * std::abs(near->ticks - far->ticks)) * ms + kDelayFloorMs};
+  if (near->at_an_end || (far->at_an_end && !slow)) {
+    return {std::nullopt, "no bend follows the turns of the push within " +
+                              std::to_string(std::lround(kLatestBend * ms)) +
+                              " ms: the delay is longer, or something held the handle"};
+  }
+  const double bend = near->ticks + kTurnsEarlyTicks;
+  const bool lags = lagging->lag > kNoLag;
+  const double apart = slow ? std::abs(slow->delay_ticks - bend) : 0.0;
+  if (!lags && slow && apart <= kAlikeTicks && slow->unexplained < kRigidUnexplained) {
+    return {Measured{bend * ms, apart * ms + kTurnsFloorMs}};
+  }
+  double delay = bend;
+  if (lags) delay = std::max(delay, lagging->delay + lagging->lag);
+  if (slow) delay = std::max(delay, slow->delay_ticks);
+  const double error = 2.0 * near->error_ticks + std::abs(near->ticks - far->ticks) +
+                       (delay - bend) + (lags ? kLagShare * lagging->lag : 0.0) +
+                       (slow ? 0.0 : kUnseenTicks);
+  return {Measured{delay * ms, error * ms + kTurnsFloorMs}};
 }
 
 ShakeOrWhy no_shake(std::string why) {
@@ -577,7 +707,10 @@ StrokesOrWhy stroke_figures(const SlowStrokes& strokes, double step_mm) {
       force_n[is_back ? 1 : 0] += series.force_n[i];
       ++ticks[is_back ? 1 : 0];
     }
-    if (std::min(ticks[0], ticks[1]) < period / 15) {
+    const bool follows = std::min(ticks[0], ticks[1]) >= period / 15;
+    // Friction lets the first way lag behind, as the handle hangs to one side from the beginning.
+    if (!follows && p == 0) continue;
+    if (!follows) {
       return {std::nullopt, "the handle did not follow the strokes: it sticks, or a hand held it"};
     }
     const double there = force_n[0] / static_cast<double>(ticks[0]);
@@ -630,13 +763,15 @@ ShakeOrWhy shake_figures(const ShakenStrokes& strokes, double friction_n, double
   figures.unexplained = best->unexplained;
   figures.windows = best->windows;
   const double mass_kg = 1.0 / best->unknowns[0];
-  const double viscous = std::max(-best->unknowns[2] * mass_kg, 0.0);
+  const double viscous = std::max(0.0, -best->unknowns[2] * mass_kg);
   figures.mass_kg = {mass_kg, 2.0 * best->errors[0] * mass_kg * mass_kg + kMassFloorKg +
                                   (kMassShare + 0.5 * best->unexplained) * mass_kg};
   figures.viscous_n_s_per_m = {
       viscous, 2.0 * best->errors[2] * mass_kg + kViscousFloor + 0.1 * std::abs(viscous)};
-  figures.delay_ms = delay_by_turns(series, {from, end}, strokes.push_n(), figures.by_delay);
-  if (fits.delay_ms) figures.delay_ms = fits.delay_ms;
+  const MeasuredOrWhy by_turns =
+      delay_by_turns(series, {from, end}, strokes.push_n(), fits.slow, figures.by_delay);
+  figures.delay_ms = fits.delay_ms ? fits.delay_ms : by_turns.measured;
+  if (!figures.delay_ms) figures.no_delay = by_turns.why;
   return {figures, ""};
 }
 

@@ -27,7 +27,7 @@ struct MeasuredOrWhy {
 };
 
 struct RestFigures {
-  double noise_mm = 0.0;  ///< standard deviation of the position, all axes together
+  double noise_mm = 0.0;  ///< standard deviation of the position: the norm over all three axes
   double drift_mm = 0.0;  ///< from the mean place of the first half to that of the second
 };
 /// \param samples  of a handle that lies still; the first half second is left out
@@ -59,8 +59,10 @@ struct StrokesOrWhy {
 struct ShakeFigures {
   Measured mass_kg;
   Measured viscous_n_s_per_m;
-  /// From a force's tick to the bend that it makes in the path; nothing: too few turns were clear.
+  /// From a force's tick to the bend that it makes in the path, and the time constant of the motors
+  /// where it is seen.
   std::optional<Measured> delay_ms;
+  std::string no_delay{};    ///< why there is none; empty if there is one
   double unexplained = 0.0;  ///< of the acceleration, as a share (root mean squares)
   std::size_t windows = 0;
   /// Delay in ms, and what a bend after it explains of the path around turns, mm (root mean

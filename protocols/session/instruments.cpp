@@ -95,7 +95,8 @@ std::optional<store::MarksBody> SessionMarks::take(SessionClock& clock) {
     body.trials.push_back(one.trial);
     // A session that is taken up again begins before its clock is known to instruments.
     body.at_ns.push_back(std::max<std::int64_t>(0, (one.at - zero).count()));
-    body.latency_ns.push_back(report.latencies[i].value_or(std::chrono::nanoseconds(0)).count());
+    body.latency_ns.push_back(std::max<std::int64_t>(
+        0, report.latencies[i].value_or(std::chrono::nanoseconds(0)).count()));
   }
   if (report.clock_zero_s) {
     body.lsl_zero_s =

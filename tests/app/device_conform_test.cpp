@@ -111,8 +111,10 @@ TEST_CASE("device conform checks the program's drivers too, but neither a mouse 
   INFO(simulated.output << simulated.errors);
   CHECK(outcome(json::parse(simulated.output), "velocity fits position") == "passed");
   CHECK(outcome(json::parse(simulated.output), "interface") == "no such check");
-  for (const std::vector<std::string>& words :
-       {std::vector<std::string>{"mouse"}, {"simulated", "--force", "--yes"}, {"plugn"}}) {
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"mouse"},
+                                                {"simulated", "--force", "--yes"},
+                                                {"plugn"},
+                                                {"simulated", "--seconds", "nan"}}) {
     const ProgramResult refused = conform(folder, json::object(), words);
     INFO(refused.errors);
     CHECK(refused.exit_code == 2);

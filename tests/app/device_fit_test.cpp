@@ -4,6 +4,7 @@
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
+#include <filesystem>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -35,6 +36,8 @@ class FitFolder {
     words.insert(words.end(), more.begin(), more.end());
     return run_touchtrial(folder_.path(), words);
   }
+
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
 
  private:
   TempFolder folder_;
@@ -107,6 +110,27 @@ TEST_CASE("device fit compares a study's stiffness with what the device says tha
   CHECK(beyond.exit_code == 1);
   CHECK(line_count(beyond.errors) == 1);
   CHECK_THAT(beyond.errors, holds_text("rendering.stiffness_n_per_mm of 0.5 N/mm is beyond"));
+}
+
+TEST_CASE("device fit refuses a certificate that no session takes") {
+  const FitFolder folder(200, 200);
+  const std::string file = (folder.path() / "c.json").string();
+  const ProgramResult rehearsal = run_touchtrial(
+      folder.path(),
+      {"device", "accept", "--emulate", "falcon", "--skip", "push", "--certificate", file});
+  REQUIRE(rehearsal.exit_code == 1);
+  json certificate = json::parse(text_of(read_file(file)));
+  const auto refusal = [&](const std::string& key, const std::string& value) {
+    certificate[key] = value;
+    replace_file(file, certificate.dump());
+    const ProgramResult result = folder.fit({"--device", "falcon", "--certificate", file});
+    CHECK(result.exit_code == 1);
+    CHECK(line_count(result.errors) == 1);
+    return result.errors;
+  };
+  CHECK_THAT(refusal("driver", "falcon"), holds_text("proves no device"));
+  CHECK_THAT(refusal("emulated", ""), holds_text("says that it failed"));
+  CHECK_THAT(refusal("driver", "dhd"), holds_text("is for") && holds_text("dhd"));
 }
 
 TEST_CASE("device fit refuses a device or an orientation that does not exist") {

@@ -100,6 +100,15 @@ TEST_CASE("device test goes from wall to texture in one run, and the hand stays 
   CHECK(test.at("fault_record") == "");
 }
 
+TEST_CASE("device test refuses durations and rates that are no numbers") {
+  for (const std::string option : {"--seconds", "--rate"}) {
+    const ProgramResult result = DeviceFolder().run("test", {"simulated", option, "nan"});
+    CHECK(result.exit_code == 2);
+    CHECK(line_count(result.errors) == 1);
+    CHECK_THAT(result.errors, holds_text(option) && holds_text("nan"));
+  }
+}
+
 TEST_CASE("device test can show only the wall, and has a summary for people") {
   const ProgramResult result =
       DeviceFolder().run("test", {"simulated", "--seconds", "0.5", "--wall-only"});
@@ -262,6 +271,67 @@ TEST_CASE("device accept that leaves out every step writes a certificate that fa
   CHECK(certificate.at("not_measured").size() >= 3);
 }
 
+TEST_CASE("device accept takes what was typed before a prompt for no answer to it") {
+  const DeviceFolder folder(dhd_settings());
+  std::vector<std::string> words =
+      folder.words("accept", {"dhd", "--certificate", folder.path("c.json").string()});
+  TerminalRun run(words);
+  run.answer("[Enter, s, q] ", "s\r\r\r\r\r\r\r");
+  run.answer("no force acts for 12 s", "q");
+  CHECK(run.finish() == 1);
+  CHECK_THAT(run.shown(), holds_text("nothing was written") && !holds_text("is pushed along axis"));
+}
+
+TEST_CASE("device accept loses no answer after that to a reset") {
+  const json settings = {{"openhaptics", {{"library", TOUCHTRIAL_FAKE_HD}}}};
+  const DeviceFolder folder(settings);
+  std::vector<std::string> words = folder.words("accept", {"openhaptics"});
+  words.insert(words.begin(), TOUCHTRIAL_PROGRAM);
+  ChildProcess program(words, {"FAKE_HD_NEEDS_RESET=1"}, folder.path("").string());
+  program.write("\nq\n");
+  program.close_input();
+  CHECK(program.finish() == 1);
+  CHECK_THAT(program.output(), holds_text("press Enter") && holds_text("was stopped"));
+}
+
+TEST_CASE("device accept refuses files that it could not write before it opens the device") {
+  const DeviceFolder folder(dhd_settings());
+  const auto refusal = [&](const std::string& certificate) {
+    const ProgramResult result =
+        folder.run("accept", {"dhd", "--certificate", folder.path(certificate).string()});
+    CHECK(result.exit_code != 0);
+    CHECK(line_count(result.errors) == 1);
+    return result.errors;
+  };
+  CHECK_THAT(refusal("c.html"), holds_text("ends in .json"));
+  CHECK_THAT(refusal("no/such/c.json"), holds_text("cannot be written"));
+  make_folder(folder.path("c.html"));
+  CHECK_THAT(refusal("c.json"), holds_text("c.html") && holds_text("--certificate"));
+  CHECK_THAT(refusal("devices.json"), holds_text("is read by this acceptance"));
+  CHECK_FALSE(std::filesystem::exists(folder.path("c.json.trial")));
+}
+
+TEST_CASE("device accept never replaces the model that it rehearses on") {
+  const DeviceFolder folder;
+  const std::string model = R"({"name": "modelled", "mass_kg": 0.1, "max_force_n": 4})";
+  replace_file(folder.path("mine-model.json"), model);
+  const ProgramResult result =
+      folder.run("accept", {"--emulate", folder.path("mine-model.json").string(), "--certificate",
+                            folder.path("mine-certificate.json").string()});
+  CHECK(result.exit_code == 2);
+  CHECK_THAT(result.errors, holds_text("mine-model.json") && holds_text("--certificate"));
+  CHECK(text_of(read_file(folder.path("mine-model.json"))) == model);
+  // Nor does a rehearsal on what a rehearsal wrote.
+  ChildProcess first = folder.start("accept", {"--emulate", "mine-model.json", "--skip", "push"});
+  CHECK(first.finish() == 1);
+  const auto written = read_file(folder.path("emulated-modelled-model.json"));
+  CHECK(json::parse(text_of(written)).at("name") == "emulated-modelled");
+  ChildProcess second =
+      folder.start("accept", {"--emulate", "emulated-modelled-model.json", "--skip", "push"});
+  CHECK(second.finish() == 1);
+  CHECK(read_file(folder.path("emulated-modelled-model.json")) == written);
+}
+
 TEST_CASE("device accept rehearses on a device model, and says that it proves no device") {
   const DeviceFolder folder;
   ChildProcess rehearsal = folder.start("accept", {"--emulate", "falcon"});
@@ -279,6 +349,31 @@ TEST_CASE("device accept rehearses on a device model, and says that it proves no
   const json model = json::parse(text_of(read_file(folder.path("emulated-falcon-model.json"))));
   CHECK(model.at("mass_kg") > 0.1);
   CHECK(model.at("provenance").at("mass_kg").at("confidence") == "derived");
+
+  // As if a device had passed: a later acceptance keeps this certificate, and one that failed is
+  // not kept.
+  json passed = certificate;
+  passed["emulated"] = "";
+  const DeviceFolder lab(dhd_settings());
+  replace_file(lab.path("dhd-certificate.json"), passed.dump());
+  for (int time = 0; time < 2; ++time) {
+    ChildProcess skipping = lab.start("accept", {"dhd"});
+    skipping.write("s\ns\ns\n");
+    CHECK(skipping.finish() == 1);
+    CHECK(json::parse(text_of(read_file(lab.path("dhd-certificate.json")))).at("passed") == false);
+    CHECK(text_of(read_file(lab.path("dhd-certificate.json.old"))) == passed.dump());
+  }
+}
+
+TEST_CASE("device accept says what was not measured without units") {
+  const DeviceFolder folder;
+  ChildProcess rehearsal = folder.start(
+      "accept", {"--emulate", "ideal", "--skip", "steps", "--skip", "strokes", "--skip", "wall"});
+  CHECK(rehearsal.finish() == 1);
+  CHECK_THAT(rehearsal.output(),
+             holds_text("encoder step: not measured\n") &&
+                 holds_text("delivered force not measured; friction not measured; mass not "
+                            "measured; delay not measured\n"));
 }
 
 TEST_CASE("device accept refuses a broken emulated device, and takes an accelerometer's record") {

@@ -62,10 +62,24 @@ std::vector<Leaf> all_leaves() {
   return leaves;
 }
 
-/// \return the error for a file with this value alone; empty if it is accepted
+/// Adds what the schema requires beside what a file has.
+void add_required(const json& node, json& value) {
+  const json rule = resolved(node);
+  if (!value.is_object() || !rule.contains("properties")) return;
+  for (const json& key : rule.value("required", json::array())) {
+    if (!value.contains(key)) value[key.get<std::string>()] = "required";
+  }
+  for (auto& [key, member] : value.items()) {
+    if (rule.at("properties").contains(key)) add_required(rule.at("properties").at(key), member);
+  }
+}
+
+/// \return the error for a file with this value and what it requires beside it; empty if it is
+///   accepted
 std::string refusal(const Pointer& place, const json& value) {
   json file = json::object();
   file[place] = value;
+  add_required(schema(), file);
   try {
     static_cast<void>(device::parse_device_settings(file.dump(), "/lab", "devices.json"));
   } catch (const StudyError& error) {
@@ -189,6 +203,9 @@ TEST_CASE("the reader keeps the words, lengths and defaults of the schema of dev
       CHECK(refusal(leaf.place, "a b").empty());
       ++texts;
     }
+    if (leaf.rule.at("type") == "string" && !leaf.rule.contains("enum")) {
+      CHECK(refusal(leaf.place, "").empty() == !leaf.rule.contains("minLength"));
+    }
     if (leaf.rule.at("type") == "array") {
       CHECK_FALSE(refusal(leaf.place, json::array({0, 0})).empty());
       CHECK_FALSE(refusal(leaf.place, json::array({0, 0, 0, 0})).empty());
@@ -206,10 +223,10 @@ TEST_CASE("the defaults of the schema of device settings are the reader's") {
   for (const Leaf& leaf : all_leaves()) {
     if (leaf.rule.contains("default")) file[leaf.place] = leaf.rule.at("default");
   }
+  add_required(schema(), file);
   const device::DeviceSettings written =
       device::parse_device_settings(file.dump(), "/lab", "devices.json");
   const device::DeviceSettings bare;
-  CHECK(written.instruments.serial.port == bare.instruments.serial.port);
   CHECK(written.instruments.serial.baud == bare.instruments.serial.baud);
   CHECK(written.instruments.serial.format == bare.instruments.serial.format);
   CHECK(written.instruments.serial.width == bare.instruments.serial.width);
@@ -234,6 +251,24 @@ TEST_CASE("the defaults of the schema of device settings are the reader's") {
   CHECK(written.inverse3.events_port == bare.inverse3.events_port);
   CHECK(written.inverse3.device_id == bare.inverse3.device_id);
   CHECK(written.inverse3.max_force_n == bare.inverse3.max_force_n);
+}
+
+TEST_CASE("what the schema of device settings requires, the reader requires") {
+  std::vector<Leaf> leaves;
+  std::vector<ObjectPlace> objects;
+  collect(schema(), Pointer(), leaves, objects);
+  int required = 0;
+  for (const ObjectPlace& object : objects) {
+    for (const json& key : object.rule.value("required", json::array())) {
+      INFO(object.place.to_string() << " without " << key);
+      json file = json::object();
+      file[object.place] = json::object();
+      CHECK_THROWS_AS(device::parse_device_settings(file.dump(), "/lab", "devices.json"),
+                      StudyError);
+      ++required;
+    }
+  }
+  CHECK(required == 1);
 }
 
 TEST_CASE("examples of the schema of device settings are accepted") {

@@ -141,6 +141,15 @@ TEST_CASE("device settings are refused with the place and a remedy") {
   CHECK_THROWS_AS(device::read_device_settings("no/such/devices.json"), FileError);
 }
 
+TEST_CASE("a serial section without a line is refused") {
+  CHECK(is_refused(R"({"instruments": {"serial": {}}})", "/instruments/serial/port"));
+  CHECK(is_refused(R"({"instruments": {"serial": {"port": ""}}})", "/instruments/serial/port"));
+  CHECK(
+      parsed(R"({"instruments": {"serial": {"port": "/dev/ttyUSB0"}}})").instruments.serial.port ==
+      "/dev/ttyUSB0");
+  CHECK(parsed(R"({"instruments": {}})").instruments.serial.port.empty());
+}
+
 TEST_CASE("the example settings are accepted and relative to their file") {
   const fs::path file = fs::path(TOUCHTRIAL_SOURCE_DIR) / "config" / "devices.json";
   const device::DeviceSettings settings = device::read_device_settings(file);

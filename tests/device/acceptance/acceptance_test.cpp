@@ -231,6 +231,71 @@ TEST_CASE("an acceptance refuses devices that fall silent, are lost, tremble, st
   refused("the encoder step is", [](DeviceModel& m) { m.position_step_mm = 0.2; });
 }
 
+TEST_CASE("no emulated device with more delay than the limit passes, by ticks or by slow motors") {
+  for (const DeviceModel& shipped : device::shipped_device_models()) {
+    if (shipped.mass_kg == 0.0) continue;  // ideal
+    for (const int ticks : {6, 10, 12, 15, 20, 30}) {
+      DeviceModel model = shipped;
+      model.delay_ticks = ticks;
+      const Certificate certificate = rehearsed(model);
+      CAPTURE(shipped.name, ticks, joined_lines(certificate.failures()));
+      CHECK_FALSE(certificate.passed());
+    }
+    for (const double hz : {4.0, 10.0, 20.0, 30.0}) {  // 5 to 40 ms beside the delay
+      DeviceModel model = shipped;
+      model.lowpass_hz = hz;
+      const Certificate certificate = rehearsed(model);
+      CAPTURE(shipped.name, hz, joined_lines(certificate.failures()));
+      CHECK_FALSE(certificate.passed());
+    }
+  }
+}
+
+TEST_CASE("a shake that gave no delay fails a device with its reason, unless it was left out") {
+  DeviceModel model = device::device_model("omega_3");
+  model.delay_ticks = 12;
+  model.velocity_readings = 20;  // so slow that the hold itself swings
+  const Certificate failed = rehearsed(model);
+  CHECK(has_line(failed.failures(), "the delay was not measured: the handle left its place"));
+  const Certificate left_out = rehearsed(device::device_model("omega_3"), {.skip = {"shake"}});
+  CHECK(left_out.passed());
+  CHECK(axis_of(left_out, DeviceAxis::x).delay_left_out);
+  CHECK(std::ranges::any_of(left_out.not_measured, [](const device::NotMeasured& one) {
+    return one.what == "mass and delay on axis x" && one.why == "left out";
+  }));
+}
+
+TEST_CASE("a wall that throws the handle up slowly, again and again, is no stable wall") {
+  // Two to four swings in a second, 12 mm and more from peak to peak at 5 N/mm.
+  const std::vector<std::pair<std::string, int>> slow = {
+      {"omega_3", 12}, {"omega_3", 15}, {"omega_3", 20}, {"inverse3", 20}, {"falcon", 25}};
+  for (const auto& [name, ticks] : slow) {
+    CAPTURE(name, ticks);
+    DeviceModel model = device::device_model(name);
+    model.delay_ticks = ticks;
+    model.max_stiffness_n_per_mm = 5.0;
+    const Certificate certificate = rehearsed(model);
+    REQUIRE(certificate.wall);
+    CHECK(certificate.wall->ended == "oscillation");
+    CHECK(certificate.wall->stable_n_per_mm < 2.0);
+  }
+}
+
+TEST_CASE("friction up to the limit is measured beside a weight") {
+  for (const std::string name : {"falcon", "omega_3", "inverse3"}) {
+    for (const double friction_n : {0.65, 0.7}) {
+      CAPTURE(name, friction_n);
+      DeviceModel model = device::device_model(name);
+      model.coulomb_n = friction_n;
+      const Certificate certificate = rehearsed(model);
+      for (const DeviceAxis axis : device::kDeviceAxes) {
+        check_found(axis_of(certificate, axis).scale(), 1.0, 0.09);
+        check_found(axis_of(certificate, axis).friction_n, friction_n, 0.15);
+      }
+    }
+  }
+}
+
 TEST_CASE("an acceptance pushes with at most 1.5 N and the continuous force, then 60 % of peak") {
   for (const std::string& name : kEmulated) {
     CAPTURE(name);
@@ -288,6 +353,8 @@ TEST_CASE("an acceptance repeats itself exactly, and its model rehearses as the 
   CHECK(measured.mass_kg == Approx(model.mass_kg).epsilon(0.15));
   CHECK(measured.coulomb_n == Approx(model.coulomb_n).margin(0.05));
   CHECK(measured.delay_ticks == model.delay_ticks);
+  CHECK(measured.zero_order_hold);
+  CHECK(measured.provenance.at("zero_order_hold").confidence == device::Confidence::guess);
   CHECK(measured.provenance.at("mass_kg").confidence == device::Confidence::measured);
   const DeviceModel read = device::parse_device_model(device::device_model_json(measured), "model");
   CHECK(read.mass_kg == measured.mass_kg);
@@ -302,6 +369,10 @@ TEST_CASE("after twenty minutes under a load an acceptance compares the forces t
   CHECK(certificate.warm->after_n == Approx(certificate.warm->before_n).epsilon(0.02));
   CHECK_FALSE(certificate.warm->before_c);
   CHECK(certificate.passed());
+  // Nobody pulled a cable or typed what it did.
+  CHECK(certificate.observed.empty());
+  CHECK(std::ranges::find(certificate.not_measured, "cable pulled", &device::NotMeasured::what) !=
+        certificate.not_measured.end());
 }
 
 }  // namespace touchtrial

@@ -35,6 +35,7 @@ Certificate passed_certificate() {
     result.weight = device::WeighResult{0.980665, 1.01, 0.02};
     result.load_n = 0.1;
     result.friction_n = device::Measured{0.3, 0.05};
+    result.mass_kg = device::Measured{0.15, 0.02};
     result.delay_ms = device::Measured{1.5, 0.5};
     certificate.axes.push_back(result);
   }
@@ -88,6 +89,9 @@ TEST_CASE("an acceptance's certificate that was changed by hand is refused with 
   CHECK_THAT(changed("\"noise_mm\": 0.01", "\"noise_mm\": -1"), holds_text("/rest/noise_mm"));
   CHECK_THAT(changed("\"expected_n\": 0.980665", "\"expected_n\": 0"),
              holds_text("/axes/0/weight/expected_n"));
+  CHECK_THAT(changed("\"value\": 0.15", "\"value\": -0.15"), holds_text("/axes/0/mass_kg/value"));
+  CHECK_THAT(changed("\"stable_n_per_mm\": 0.6", "\"stable_n_per_mm\": 0.9"),
+             holds_text("/wall/stable_n_per_mm"));
   CHECK_THAT(changed("\"axis\": \"x\"", "\"axis\": \"y\""), holds_text("/axes/1/axis"));
 }
 
@@ -123,6 +127,48 @@ TEST_CASE("an acceptance is valid for its own device only, if it passed and was 
   CHECK_FALSE(failed.passed());
 }
 
+TEST_CASE("a delay must be shown to be below its limit by all of its interval") {
+  const auto first_failure = [](const std::optional<device::Measured>& delay_ms) {
+    Certificate certificate = passed_certificate();
+    certificate.not_measured = {{"delay on axis y", "no bend"}};
+    certificate.axes[0].delay_ms = delay_ms;
+    const auto failures = certificate.failures();
+    return failures.empty() ? std::string() : failures.front();
+  };
+  CHECK(first_failure(device::Measured{4.0, 0.9}).empty());
+  CHECK(first_failure(device::Measured{3.0, 2.0}).empty());
+  CHECK_THAT(first_failure(device::Measured{4.8, 1.2}), holds_text("not shown to be at most 5 ms"));
+  CHECK_THAT(first_failure(device::Measured{-1.25, 5.5}), holds_text("too unclear"));
+  CHECK_THAT(first_failure(device::Measured{13.0, 9.0}), holds_text("too unclear"));
+  CHECK_THAT(first_failure(device::Measured{8.0, 0.6}), holds_text("more than 5 ms"));
+  CHECK_THAT(first_failure(std::nullopt),
+             holds_text("axis y: the delay was not measured: no bend"));
+  Certificate left_out = passed_certificate();
+  left_out.axes[0].delay_ms.reset();
+  left_out.axes[0].delay_left_out = true;
+  CHECK(left_out.passed());
+  CHECK(device::certificate_json(left_out).find("\"delay_left_out\": true") != std::string::npos);
+}
+
+TEST_CASE("a number that is written like its limit does not exceed it") {
+  Certificate certificate = passed_certificate();
+  certificate.step_mm = device::Measured{0.1 + 1e-12, 0.005};
+  certificate.axes[0].weight = device::WeighResult{1.1002, 1.0, 0.02};
+  CHECK(certificate.passed());
+  certificate.step_mm = device::Measured{0.101, 0.005};
+  CHECK_FALSE(certificate.passed());
+  certificate = passed_certificate();
+  certificate.axes[0].weight = device::WeighResult{1.106, 1.0, 0.02};
+  CHECK_FALSE(certificate.passed());
+}
+
+TEST_CASE("a device whose softest wall swings fails") {
+  Certificate certificate = passed_certificate();
+  certificate.wall = device::WallResult{0.0, 0.1, "oscillation"};
+  REQUIRE(certificate.failures().size() == 1);
+  CHECK_THAT(certificate.failures().front(), holds_text("0.1 N/mm, swings"));
+}
+
 TEST_CASE("an acceptance that is half a year old or of another firmware causes a warning") {
   const Certificate certificate = passed_certificate();
   const auto check = [&](int days, const device::DeviceInfo& info) {
@@ -135,6 +181,27 @@ TEST_CASE("an acceptance that is half a year old or of another firmware causes a
   CHECK_THAT(check(1, newer), holds_text("firmware"));
 }
 
+TEST_CASE("an acceptance that lies ahead is refused, beyond what clocks differ by") {
+  const Certificate certificate = passed_certificate();
+  const auto before = [&](int hours) { return certificate.made - std::chrono::hours(hours); };
+  CHECK(device::check_certificate(certificate, the_falcon(), before(23)).empty());
+  CHECK_THAT(message_of<DeviceError>(
+                 [&] { return device::check_certificate(certificate, the_falcon(), before(25)); }),
+             holds_text("2026-02-28") && holds_text("clock"));
+}
+
+TEST_CASE("long names of a certificate are cut in its refusals") {
+  Certificate certificate = passed_certificate();
+  certificate.model = std::string(3000, 'm');
+  const auto refusal = [&] {
+    return message_of<DeviceError>(
+        [&] { return device::check_certificate(certificate, the_falcon(), certificate.made); });
+  };
+  CHECK(refusal().size() < 400);
+  certificate.emulated = std::string(3000, 'e');
+  CHECK(refusal().size() < 400);
+}
+
 TEST_CASE("a study's wall must be softer than one that swung in the acceptance") {
   const Certificate certificate = passed_certificate();
   device::require_stable(certificate, 0.6);
@@ -144,6 +211,17 @@ TEST_CASE("a study's wall must be softer than one that swung in the acceptance")
     FAIL("0.8 N/mm was let through");
   } catch (const DeviceError& error) {
     CHECK_THAT(error.what(), holds_text("0.78") && holds_text("at most 0.6"));
+  }
+}
+
+TEST_CASE("a device on which even the softest wall swung gets no advice for a study") {
+  Certificate certificate = passed_certificate();
+  certificate.wall = device::WallResult{0.0, 0.1, "oscillation"};
+  try {
+    device::require_stable(certificate, 0.4);
+    FAIL("0.4 N/mm was let through");
+  } catch (const DeviceError& error) {
+    CHECK_THAT(error.what(), holds_text("even the softest") && !holds_text("at most"));
   }
 }
 

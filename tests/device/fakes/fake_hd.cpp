@@ -6,6 +6,7 @@
 // [assumed]  no text says so; the strictest that is plausible
 #include "device/fakes/fake_hd.hpp"
 
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -20,7 +21,17 @@ using Callback = std::uint32_t (*)(void*);
 constexpr std::uint32_t kDevice = 7;
 constexpr std::uint32_t kNoDevice = 0xFFFFFFFF;
 
-FakeHd* state = new FakeHd;  // never freed: the driver keeps the library loaded for ever
+/// As the test that loads it orders; the environment orders for a program of its own.
+FakeHd* new_state() {
+  auto* const made = new FakeHd;  // never freed: the driver keeps the library loaded for ever
+  if (std::getenv("FAKE_HD_NEEDS_RESET") != nullptr) {
+    made->calibration_styles = kHdEncoderReset;
+    made->calibrated = false;
+  }
+  return made;
+}
+
+FakeHd* state = new_state();
 
 /// The state of the scheduler and the library.
 struct Inside {

@@ -70,21 +70,4 @@ session::Attendant::Says Experimenter::attend(const std::string& need) {
   return Says::wait;
 }
 
-device::HapticDevice& PersonAtFalcon::begin_exploring(const PlaneGeometry& plane) {
-  ++begun;
-  explored_ = falcon_.hand.explorations();
-  falcon_.hand.explore(static_cast<const device::SimulatedHand&>(mind_.begin_exploring(plane)));
-  return station_.device();
-}
-
-void PersonAtFalcon::exploring(device::ServoControl& servo) {
-  if (falcon_.hand.explorations() > explored_) servo.finish();
-}
-
-simulation::ParticipantAnswer PersonAtFalcon::answer() {
-  const simulation::ParticipantAnswer answer = mind_.answer();
-  named.push_back(answer.position);
-  return answer;
-}
-
 }  // namespace touchtrial::device::falcon

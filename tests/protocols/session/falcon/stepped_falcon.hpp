@@ -7,7 +7,6 @@
 #include "device/falcon/usbfs_shim/usb_model.hpp"
 #include "device/falcon/usbfs_shim/usbfs_shim.hpp"
 #include "protocols/session/device_station.hpp"
-#include "protocols/simulation/simulated_participant.hpp"
 
 #include <atomic>
 #include <functional>
@@ -72,29 +71,6 @@ class Experimenter final : public session::Attendant {
  private:
   EmulatedFalcon& falcon_;
   SteppedFalcon*& device_;
-};
-
-/// A participant who knows the textures, feels them through the Falcon, and answers.
-class PersonAtFalcon final : public simulation::PromptParticipant {
- public:
-  PersonAtFalcon(simulation::SimulatedParticipant& mind, EmulatedFalcon& falcon,
-                 session::DeviceStation& station)
-      : mind_(mind), falcon_(falcon), station_(station) {}
-
-  void see_pictures(const std::vector<std::string>& labels) override { mind_.see_pictures(labels); }
-  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
-  void exploring(device::ServoControl& servo) override;
-  void feel(const device::ServoSample& sample) noexcept override { mind_.feel(sample); }
-  [[nodiscard]] simulation::ParticipantAnswer answer() override;
-
-  std::vector<int> named;     ///< every choice, in order
-  std::atomic<int> begun{0};  ///< explorations
-
- private:
-  simulation::SimulatedParticipant& mind_;
-  EmulatedFalcon& falcon_;
-  session::DeviceStation& station_;
-  int explored_ = 0;
 };
 
 }  // namespace touchtrial::device::falcon

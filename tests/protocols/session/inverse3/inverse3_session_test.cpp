@@ -1,24 +1,16 @@
 // A whole classification session on the emulated Inverse service: study, pack, servo thread,
-// driver, sockets, the service in a process of its own with a hand on its device, and the database.
-// A tick of the servo is one exchange, as fast as the processor goes.
-#include "analysis/sealed_sessions.hpp"
+// driver, sockets, the service in a process of its own with a hand on its device, the database, and
+// event codes on a line. A tick of the servo is one exchange, as fast as the processor goes.
 #include "device/inverse3/haply_service.hpp"
 #include "device/inverse3/stepped_inverse3.hpp"
-#include "protocols/identification/analysis/report.hpp"
-#include "protocols/identification/simulation/identifying_participant.hpp"
-#include "protocols/session/commitment.hpp"
-#include "protocols/session/real_time_explorer.hpp"
-#include "protocols/session/session_runner.hpp"
 #include "protocols/session/still_time.hpp"
-#include "protocols/session/tiny_study.hpp"
-#include "protocols/simulation/felt_knowledge.hpp"
+#include "protocols/session/whole_session.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -106,13 +98,6 @@ class PersonAtService final : public simulation::PromptParticipant {
   std::atomic<bool> lifted_{false};
 };
 
-simulation::SubjectModel subject_at_service() {
-  simulation::SubjectModel subject;
-  subject.explore_s = 1.5;
-  subject.training_passes = 4;
-  return subject;
-}
-
 struct LaboratoryWithService {
   session::DeviceStation::Open opener() {
     return [this] {
@@ -120,54 +105,15 @@ struct LaboratoryWithService {
     };
   }
 
-  session::SessionTally run() {
-    while (station.make_ready() != session::SupplyState::ready) {
-    }
-    const std::unique_ptr<store::EventSink> sink = store.begin_session(
-        1, store::wrap_participant_key(study.key().investigator_box, 1, participant_key),
-        [] { return kUtc; });
-    const design::Schedule schedule =
-        design::make_schedule(study.key().study, study.key().draw_of(1, design::Draws::rehearsal));
-    session::Session session(schedule, study.key().study.trials,
-                             store::SessionRecorder(1, participant_key, *sink));
-    store::SessionOpening opening;
-    opening.participant = "P001";
-    opening.enrolment = 1;
-    opening.study_id = study.key().study_id;
-    opening.seal = design::study_seal(study.key());
-    session::describe_station(opening, station.info(), explorer.scheduling(), device::kServoRateHz,
-                              "");
-    session.open({}, opening, design::schedule_to_json(schedule, study.key()));
-    return session::run_session(
-        session, {study.key(), source, person, clock, explorer, station, device::kServoRateHz});
-  }
-
-  [[nodiscard]] std::vector<store::Event> all(store::EventKind kind) const {
-    std::vector<store::Event> found;
-    store.for_each(kind, [&](const store::Event& event) { found.push_back(event); });
-    return found;
-  }
-
-  static constexpr std::chrono::nanoseconds kUtc = std::chrono::seconds(1'700'000'000);
   /// In this presentation the service ends while the hand pushes.
   static constexpr int kUnlucky = 4;
   static constexpr int kReadsBeforeTheEnd = 600;
 
-  TinyStudy study{{.side_px = 200, .trials = R"({"repeats": 2, "explore_limit_s": 20})"}};
-  session::StimulusSource source{study.pack(), study.key().study.rendering};
-  store::StudyStore store = store::StudyStore::create(
-      study.next_database(), session::commitment_of(study.key(), study.pack(), false, false), kUtc,
-      study.key().signer());
-  SecretKey participant_key = sha256(bytes_of("somebody"));
+  WholeSession whole{2, 1.5};
   HaplyService service;
   HelperAtService helper{service};
   session::DeviceStation station{opener(), kPlacement, helper};
-  simulation::SubjectModel subject = subject_at_service();
-  simulation::FeltKnowledge knowledge = simulation::learn_by_feeling(
-      simulation::LabelledFields(study.key(), source), subject, 3.3, 5, 1);
-  simulation::identification::IdentifyingParticipant mind{subject, knowledge, 5, 1};
-  PersonAtService person{mind, service, station};
-  session::VirtualSessionClock clock;
+  PersonAtService person{whole.mind, service, station};
   session::RealTimeExplorer explorer{as_fast_as_it_goes()};
 
  private:
@@ -182,26 +128,11 @@ struct LaboratoryWithService {
 
 TEST_CASE("a whole session on the emulated Inverse3 outlives the end of Haply's service") {
   LaboratoryWithService lab;
-  const session::SessionTally tally = lab.run();
+  const session::SessionTally tally = lab.whole.run(lab.station, lab.person, lab.explorer);
   CHECK(tally.presentations == 11);
-  std::vector<int> stored;
-  for (const store::Event& event : lab.all(store::EventKind::answered)) {
-    const store::Event answer = as_recorded(event, lab.participant_key);
-    stored.push_back(store::answer_from_json(answer.body).position.value());
-  }
-  CHECK(stored == lab.person.named);
-  CHECK(stored.size() == 10);
-
-  const std::vector<store::Event> interrupted = lab.all(store::EventKind::interrupted);
-  REQUIRE(interrupted.size() == 1);
-  const store::TrialBody body = store::trial_from_json(interrupted[0].body);
-  CHECK(body.trial == LaboratoryWithService::kUnlucky);
-  CHECK(body.reason == "device lost");
-  CHECK(store::trial_from_json(lab.all(store::EventKind::presented).back().body).trial ==
-        LaboratoryWithService::kUnlucky);
-  const store::InterruptionDetail detail = store::interruption_from_json(
-      analysis::whole_event(interrupted[0], lab.participant_key).secret);
-  CHECK(detail.device_fault == "link_lost");
+  CHECK(lab.person.named.size() == 10);
+  const store::InterruptionDetail detail =
+      lab.whole.check(lab.person.named, LaboratoryWithService::kUnlucky);
   CHECK(detail.ticks == LaboratoryWithService::kReadsBeforeTheEnd);
   // The force that the service said it delivered lies beside the commanded one.
   const std::string row =
@@ -217,15 +148,12 @@ TEST_CASE("a whole session on the emulated Inverse3 outlives the end of Haply's 
   CHECK(lab.service.report().at("complaints") == nlohmann::json::array());
 
   const store::SessionOpening opening = store::opening_from_json(
-      as_recorded(lab.all(store::EventKind::opened).front(), lab.participant_key).body);
+      as_recorded(lab.whole.all(store::EventKind::opened).front(), lab.whole.participant_key).body);
   REQUIRE(opening.station);
   CHECK(opening.device_serial == "049D");
   CHECK(opening.station->firmware.find("force gate 0, damping 0") != std::string::npos);
 
-  lab.store.close_study(LaboratoryWithService::kUtc);
-  lab.store.unblind(LaboratoryWithService::kUtc, "planned", false);
-  const analysis::identification::StudyReport report =
-      analysis::identification::make_report(analysis::load_outcomes(lab.store, lab.study.key()));
+  const analysis::identification::StudyReport report = lab.whole.report();
   CHECK(report.trials == 10);
   // Chance is 2: the textures came through driver, sockets and service.
   CHECK(report.methods.at(0).overall.correct >= 6);
