@@ -162,6 +162,7 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
   const TrialQuality& quality = report.quality;
   nlohmann::ordered_json object{{"study", report.study}, {"protocol", report.protocol}};
   put_stamp(object, report.simulated);
+  object["unverified_device"] = !report.simulated && any_ran_unverified(report.collection.sessions);
   put_state(object, report.state, report.pilot);
   object["blinded"] = !report.state.unblinded;
   object["participants"] = report.participants;

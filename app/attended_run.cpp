@@ -33,6 +33,9 @@ constexpr std::chrono::nanoseconds kOnPipe = 1s;
 /// How long a signal waits at most for an answer that is being typed.
 constexpr int kAnswerPollMs = 100;
 
+/// A key that is held repeats sooner than this, even for the first time (660 ms by default in X).
+constexpr std::chrono::nanoseconds kFreshPress = 1s;
+
 class DiscardingSink final : public device::SampleSink {
  public:
   void record(const device::ServoSample& /*sample*/) noexcept override {}
@@ -53,12 +56,9 @@ device::ServoOptions options_for(const device::SafetyLimits& limits, double rate
   return options;
 }
 
-}  // namespace
-
-std::optional<std::string> attended_answer(const std::string& question) {
-  if (::isatty(STDIN_FILENO) != 0) ::tcflush(STDIN_FILENO, TCIFLUSH);
-  std::fputs(question.c_str(), stderr);
-  std::fflush(stderr);
+/// \return nothing if a signal asked the program to end
+/// \throws UsageError at the end of the input
+std::optional<std::string> line_of_input() {
   std::string line;
   while (!device::StopOnSignals::asked()) {
     pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
@@ -72,6 +72,25 @@ std::optional<std::string> attended_answer(const std::string& question) {
     }
     if (letter == '\n') return line;
     line += letter;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> attended_answer(const std::string& question) {
+  const bool has_keys = ::isatty(STDIN_FILENO) != 0;
+  if (has_keys) ::tcflush(STDIN_FILENO, TCIFLUSH);
+  std::fputs(question.c_str(), stderr);
+  std::fflush(stderr);
+  std::chrono::nanoseconds quiet_since = device::monotonic_now();
+  bool told = false;
+  while (const std::optional<std::string> line = line_of_input()) {
+    const std::chrono::nanoseconds now = device::monotonic_now();
+    if (!has_keys || !line->empty() || now - quiet_since >= kFreshPress) return line;
+    quiet_since = now;
+    if (!told) std::fputs("let go of Enter, read, and press it anew after a second\n", stderr);
+    told = true;
   }
   return std::nullopt;
 }

@@ -58,8 +58,9 @@ enum class AttendedStop {
 };
 
 /// Asks a question on standard error and waits for the line of standard input that answers it. What
-/// was typed at a terminal before the question appeared answers nothing and is dropped. What
-/// follows the line stays in the input.
+/// was typed at a terminal before the question appeared answers nothing and is dropped; and Enter
+/// alone counts only after a second without one, so that a key that is held consents to nothing.
+/// What follows the line stays in the input.
 /// \return nothing if a signal asked the program to end
 /// \throws UsageError at the end of the input
 [[nodiscard]] std::optional<std::string> attended_answer(const std::string& question);

@@ -97,6 +97,13 @@ void add_subject_option(CLI::App& command, std::filesystem::path& subject) {
   command.add_option("--subject", subject, "Subject model (default: built in)");
 }
 
+void add_on_option(CLI::App& command, std::string& model) {
+  command.add_option(
+      "--on", model,
+      "Device model that simulated hands hold: a name of touchtrial device models, or "
+      "a file (default: the study's, or ideal)");
+}
+
 CLI::Validator place_validator() {
   return refusing("://",
                   "is an address, not a file; sync writes to a study on a server, and report, "

@@ -63,6 +63,7 @@ void add_device_fit_command(CLI::App& device, Action& action);
 void add_device_accept_command(CLI::App& device, Action& action);
 void add_device_monitor_command(CLI::App& device, Action& action);
 void add_device_conform_command(CLI::App& device, Action& action);
+void add_device_compensation_command(CLI::App& device, Action& action);
 
 /// \name Files
 /// Every variable must live as long as the command.
@@ -91,6 +92,8 @@ void add_signing_options(CLI::App& command, SigningFiles& files);
 void add_pack_option(CLI::App& command, std::filesystem::path& pack);
 /// --subject; see subject_for.
 void add_subject_option(CLI::App& command, std::filesystem::path& subject);
+/// --on: what simulated hands hold; see subject_for.
+void add_on_option(CLI::App& command, std::string& model);
 /// Refuses addresses where a file or folder of this machine is needed. The message does not repeat
 /// the address, which may contain a password.
 [[nodiscard]] CLI::Validator place_validator();

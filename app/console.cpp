@@ -1,8 +1,10 @@
 #include "app/console.hpp"
 
+#include "analysis/text_table.hpp"
 #include "core/errors.hpp"
 #include "core/printable.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <iostream>
@@ -10,6 +12,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace touchtrial::app {
@@ -52,6 +55,12 @@ void confirm(const std::string& about, bool yes) {
   std::string answer;
   std::getline(std::cin, answer);
   if (answer != "yes") throw UsageError("not confirmed; nothing was done");
+}
+
+std::size_t columns_of_output() {
+  winsize size{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return analysis::kTextWidth;
+  return std::clamp<std::size_t>(size.ws_col, 80, analysis::kTextWidth);
 }
 
 std::string shell_word(const std::string& text) {

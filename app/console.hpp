@@ -6,6 +6,7 @@
 #include "core/strict_json.hpp"
 
 #include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -30,6 +31,10 @@ void print(const std::string& text);
 /// \param yes  --yes: nothing is printed or asked
 /// \throws UsageError if the answer is not "yes", or standard input is no terminal
 void confirm(const std::string& about, bool yes);
+
+/// The columns of the terminal on standard output, from 80 to 100, which is also the width of a
+/// file or pipe: analysis::kTextWidth.
+[[nodiscard]] std::size_t columns_of_output();
 
 /// An argument as a shell reads it back.
 [[nodiscard]] std::string shell_word(const std::string& text);

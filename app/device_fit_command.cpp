@@ -1,14 +1,17 @@
 // device fit: whether a study's plane and its stiffness fit the devices of a driver, even if none
 // is at hand.
+#include "analysis/planning/level_report.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/device_words.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "device/acceptance/certificate.hpp"
 #include "device/registry.hpp"
 #include "device/workspace_fit.hpp"
 #include "engine/image_file.hpp"
+#include "protocols/design/key_protection.hpp"
 #include "protocols/design/study.hpp"
 
 #include <algorithm>
@@ -217,6 +220,21 @@ void check_with_certificate(const fs::path& file, const design::Study& study, co
   device::require_stable(certificate, study.rendering.stiffness_n_per_mm);
 }
 
+/// How strong the stimuli are, if the study is prepared here with a key that anybody may read.
+void print_levels(const design::Study& study, const fs::path& file) {
+  const design::PackPlace place = pack_place_for(file, {});
+  if (!is_there(place.key) || design::is_protected(place.key) ||
+      !is_there(place.pack / "pack.json")) {
+    print("levels of the stimuli: run touchtrial prepare, whose key and pack they need\n");
+    return;
+  }
+  design::StudyKey key = design::rekeyed(design::load_study_key(place.key), study);
+  key.pack_folder = place.pack;
+  analysis::Document document;
+  document.sections.push_back(planning::levels_section(study, levels_of_pack(key)));
+  print(analysis::document_text(document, columns_of_output()));
+}
+
 int fit(const DeviceFitArguments& arguments) {
   const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   const design::Study study = design::load_study(arguments.study);
@@ -230,6 +248,7 @@ int fit(const DeviceFitArguments& arguments) {
     check_with_certificate(arguments.certificate.empty() ? usual : arguments.certificate, study,
                            fit);
   }
+  if (!arguments.json) print_levels(study, arguments.study);
   const std::string warning = device::check_stiffness(fit.rendered, fit.limits);
   if (!warning.empty()) spdlog::warn("{}", warning);
   return 0;

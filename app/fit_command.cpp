@@ -38,6 +38,7 @@ struct FitArguments {
   fs::path key;
   fs::path pack;
   fs::path subject;
+  std::string on;
   fs::path out;
   std::vector<std::string> accuracies;
   std::vector<std::string> fixed;
@@ -51,8 +52,8 @@ planning::FreeParameters free_of(const FitArguments& arguments) {
   const auto is_free = [&](const char* name) {
     return std::ranges::find(arguments.fixed, name) == arguments.fixed.end();
   };
-  return {is_free("weber"),   is_free("lapse"), is_free("position"),
-          is_free("classes"), is_free("swaps"), is_free("spread")};
+  return {is_free("feature_noise"), is_free("lapse"), is_free("position"),
+          is_free("classes"),       is_free("swaps"), is_free("spread")};
 }
 
 engine::Pack pack_for(const store::StudyStore& store, const design::StudyKey& key,
@@ -153,7 +154,7 @@ planning::FitCounts counts_of(const FitArguments& arguments, const design::Study
 int fit_study(const FitArguments& arguments) {
   const store::StudyStore store = unblinded(arguments.source);
   const design::StudyKey key = key_of_database(store, arguments.source, arguments.key);
-  const simulation::SubjectModel subject = subject_for(arguments.subject, key.study);
+  const simulation::SubjectModel subject = subject_for(arguments.subject, key.study, arguments.on);
   design::require_choice_of_classes(key.study, "fit");
   const analysis::Outcomes outcomes = analysis::load_outcomes(store, key);
   const planning::FitCounts counts =
@@ -223,7 +224,7 @@ int fit_published(const FitArguments& arguments) {
   refuse_database(arguments.source);
   const design::Study study = design::load_study(arguments.source);
   design::require_choice_of_classes(study, "fit");
-  const simulation::SubjectModel subject = subject_for(arguments.subject, study);
+  const simulation::SubjectModel subject = subject_for(arguments.subject, study, arguments.on);
   const std::vector<double> wanted = accuracies_of(arguments, study);
   const design::StudyKey key = simulated_key(study, arguments.source);
   prepare_simulated_pack(key);
@@ -249,17 +250,18 @@ void add_fit_command(CLI::App& program, Action& action) {
   command->add_option("--subject", arguments->subject,
                       "Subject model with the fixed parameters and the starting values (default: "
                       "built in)");
+  add_on_option(*command, arguments->on);
   CLI::Option* key = add_key_option(*command, arguments->key);
   CLI::Option* pack = command->add_option("--pack", arguments->pack, "Pack of the study");
   command->add_option("-o,--out", arguments->out, "Subject file to write");
   command
-      ->add_option(
-          "--fix", arguments->fixed,
-          "Parameters that keep the subject model's values: weber, lapse, position, classes, "
-          "swaps, spread")
+      ->add_option("--fix", arguments->fixed,
+                   "Parameters that keep the subject model's values: feature_noise, lapse, "
+                   "position, classes, "
+                   "swaps, spread")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"weber", "lapse", "position", "classes", "swaps", "spread"}));
+      ->check(CLI::IsMember({"feature_noise", "lapse", "position", "classes", "swaps", "spread"}));
   CLI::Option* accuracies =
       command
           ->add_option("--accuracies", arguments->accuracies,

@@ -177,6 +177,7 @@ void write_power_results(const fs::path& folder, const planning::PowerReport& re
 struct PowerArguments {
   fs::path study;
   fs::path subject;
+  std::string on;
   fs::path folder;
   std::vector<fs::path> combine;
   std::vector<std::string> methods;
@@ -209,7 +210,7 @@ struct PowerPreparation {
   PowerPreparation(const PowerArguments& arguments, design::Study loaded)
       : study(std::move(loaded)),
         test(test_for(study, arguments)),
-        subject(subject_for(arguments.subject, study)),
+        subject(subject_for(arguments.subject, study, arguments.on)),
         key(simulated_key(study, arguments.study)) {
     // Shards begin at the same time and share the pack.
     prepare_simulated_pack(key, true);
@@ -344,6 +345,7 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
       ->capture_default_str();
   add_seed_option(command, plan.seed, "Seed of everything random");
   add_subject_option(command, arguments.subject);
+  add_on_option(command, arguments.on);
   command
       .add_option("--methods", arguments.methods,
                   "The two methods to test, as A,B, if a comparison has more than two")

@@ -1,5 +1,6 @@
 // prepare: the force fields and the key of a study. Nothing that it prints links a stimulus to its
 // code.
+#include "analysis/planning/level_report.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/passphrases.hpp"
@@ -19,6 +20,8 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -195,13 +198,33 @@ std::string plane_text(const PlaneGeometry& plane) {
                      remark.empty() ? "" : ": " + remark);
 }
 
+/// Those of a prepared stimulus, by its class, exemplar and method.
+const simulation::PlaneLevels& levels_of(const design::PreparedStimulus& stimulus,
+                                         const design::Study& study,
+                                         const simulation::StimulusLevels& levels) {
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
+    const design::StimulusIndex& index = levels.stimuli[i];
+    if (study.classes[index.class_index].label == stimulus.class_label &&
+        index.exemplar == stimulus.exemplar &&
+        study.methods[index.method].label == stimulus.method) {
+      place = i;
+    }
+  }
+  return levels.levels[place];
+}
+
 /// The whole report, with its stages if it has any. Fields: docs/data-dictionary.md,
 /// "prepare --json".
 std::string prepare_json(const design::PrepareReport& report, const design::PackPlace& place,
-                         const PlaneGeometry& plane) {
+                         const PlaneGeometry& plane, const design::Study& study,
+                         const simulation::StimulusLevels& levels) {
   Json stimuli = Json::array();
-  for (const design::PreparedStimulus& stimulus : report.stimuli)
+  for (const design::PreparedStimulus& stimulus : report.stimuli) {
     stimuli.push_back(stimulus_json(stimulus));
+    stimuli.back()["levels"] =
+        Json::parse(planning::levels_json(levels_of(stimulus, study, levels)));
+  }
   Json skipped = Json::array();
   for (const design::SkippedWork& work : report.skipped) {
     skipped.push_back({{"what", work.what}, {"why", work.why}, {"bytes", work.bytes}});
@@ -213,6 +236,8 @@ std::string prepare_json(const design::PrepareReport& report, const design::Pack
                    {"height_mm", plane.height_mm()},
                    {"remark", remark_on(plane)}}},
                  {"stimuli", stimuli},
+                 {"blank", {{"levels", Json::parse(planning::levels_json(levels.blank))}}},
+                 {"differences", Json::parse(planning::differences_json(study, levels))},
                  {"skipped", skipped},
                  {"warnings", report.warnings}};
   if (!report.study_stages.empty()) {
@@ -357,6 +382,16 @@ std::string loop_work_table(const design::Study& study) {
   return text + "work round closed loops: circles at constant depth, and press, slide, lift\n";
 }
 
+/// Without the warnings, which are printed as such.
+std::string levels_text(const design::Study& study, const simulation::StimulusLevels& levels) {
+  analysis::Document document;
+  document.sections.push_back(planning::levels_section(study, levels));
+  std::erase_if(document.sections.front().blocks, [](const analysis::Block& block) {
+    return std::holds_alternative<analysis::Warnings>(block);
+  });
+  return analysis::document_text(document, columns_of_output()) + "\n";
+}
+
 /// Where everything is, and what each file is for.
 std::string places_text(const design::StudyKey& key, const design::PackPlace& place) {
   std::string text = fmt::format("pack     {}\n", place.pack.string());
@@ -373,6 +408,7 @@ std::string places_text(const design::StudyKey& key, const design::PackPlace& pl
 int prepare(const PrepareArguments& arguments) {
   const design::Study study = design::load_study(arguments.study);
   design::check_images_exist(study);
+  static_cast<void>(simulation::level_devices(study));  // whether the device is there
   const PlaneGeometry plane = design::plane_of(study);
   const design::PackPlace place = pack_place_for(arguments.study, arguments.pack);
   if (arguments.passphrase && is_there(place.key) && !design::is_protected(place.key)) {
@@ -382,16 +418,20 @@ int prepare(const PrepareArguments& arguments) {
   key.pack_folder = place.pack;
   save_key(arguments, key, place.key);
   save_station_files(key, place);
-  const design::PrepareReport report = design::prepare_pack(
-      key, place.pack, progress_bar("preparing"), {.explain = arguments.explain});
+  design::PrepareReport report = design::prepare_pack(key, place.pack, progress_bar("preparing"),
+                                                      {.explain = arguments.explain});
+  const simulation::StimulusLevels levels = levels_of_pack(key);
+  for (std::string& warning : planning::level_warnings(study, levels)) {
+    report.warnings.push_back(std::move(warning));
+  }
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
   if (arguments.json) {
-    print(prepare_json(report, place, plane));
+    print(prepare_json(report, place, plane, study, levels));
     return 0;
   }
   print((arguments.explain ? explanation_text(report) + "\n" : "") + table_of(report) +
-        gains_of(report, study.rendering.model) + line_of_totals(report) + plane_text(plane) +
-        places_text(key, place));
+        gains_of(report, study.rendering.model) + levels_text(study, levels) +
+        line_of_totals(report) + plane_text(plane) + places_text(key, place));
   if (arguments.loop_work) print(loop_work_table(study));
   return 0;
 }

@@ -2,12 +2,14 @@
 #include "analysis/outcomes.hpp"
 #include "analysis/page/report_folder.hpp"
 #include "analysis/page/study_document.hpp"
+#include "analysis/planning/level_report.hpp"
 #include "analysis/quality.hpp"
 #include "analysis/results.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/store/study_store.hpp"
 
@@ -18,8 +20,7 @@
 #include <memory>
 #include <utility>
 
-#include <sys/ioctl.h>
-#include <unistd.h>
+#include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
 namespace {
@@ -40,14 +41,6 @@ struct ReportArguments {
 void write_report(const ReportArguments& arguments, const analysis::ReportFiles& files) {
   analysis::write_report_folder(arguments.folder, files);
   print((arguments.folder / "report.html").string() + "\n");
-}
-
-/// The columns of the terminal on standard output, from 80 to kTextWidth, which is also the width
-/// of a file or pipe.
-std::size_t columns_of_output() {
-  winsize size{};
-  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return analysis::kTextWidth;
-  return std::clamp<std::size_t>(size.ws_col, 80, analysis::kTextWidth);
 }
 
 analysis::Provenance provenance_for(const store::StudyStore& store,
@@ -135,6 +128,18 @@ int report_question(const store::StudyStore& store, const ReportArguments& argum
   return 0;
 }
 
+/// With the levels of the stimuli, if the study's pack is in reach.
+std::unique_ptr<const analysis::Results> with_levels_if_any(
+    std::unique_ptr<const analysis::Results> results, const design::StudyKey& key) {
+  if (!is_there(key.pack_folder / "pack.json")) return results;
+  try {
+    return planning::with_levels(std::move(results), key.study, levels_of_pack(key));
+  } catch (const FileError& error) {
+    spdlog::warn("without the levels of the stimuli: {}", error.what());
+  }
+  return results;
+}
+
 int report(const ReportArguments& arguments) {
   const store::StudyStore store = collect::open_study(arguments.database.string());
   if (!arguments.folder.empty()) {
@@ -149,8 +154,8 @@ int report(const ReportArguments& arguments) {
   analysis::Outcomes outcomes = outcomes_of(store, key);
   if (arguments.is_public) outcomes = analysis::without_identities(std::move(outcomes));
   const analysis::TraceSource traces{store, key};
-  const auto results =
-      analysis::analysis_of(outcomes.design).results(outcomes, wishes_of(arguments, traces));
+  const auto results = with_levels_if_any(
+      analysis::analysis_of(outcomes.design).results(outcomes, wishes_of(arguments, traces)), key);
   if (!arguments.folder.empty()) return write_outcomes(store, outcomes, *results, arguments);
   print_results(store, *results, arguments);
   return 0;

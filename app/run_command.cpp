@@ -27,6 +27,10 @@ void check(const RunOptions& options) {
   if (options.headless && options.device != RunOptions{}.device) {
     throw UsageError("run: --device is for people; omit it with --headless");
   }
+  if (!options.on.empty() && !options.is_simulated() && options.device != "simulated") {
+    throw UsageError(
+        "run: --on is for simulated hands; add --subject or --device simulated, or omit --on");
+  }
   if (options.is_simulated() && options.participant.empty()) {
     throw UsageError(
         "run: nobody can be asked for a simulated participant's id; give --participant, for "
@@ -102,10 +106,18 @@ void add_device_options(CLI::App& command, RunOptions& options) {
                    "Black on white for this participant; recorded");
 }
 
+/// Refused whatever else is asked: nobody has seen what a shaped force does to a real tip.
+void refuse_compensation() {
+  throw UsageError(
+      "run: --compensate: forces are shaped in simulations alone; people need an accelerometer's "
+      "certificate of this very device first, and no session takes one yet; leave the option out");
+}
+
 void add_simulation_options(CLI::App& command, RunOptions& options) {
   command.add_option(
       "--subject", options.subject,
       "Simulate the participant by this subject model, or by the built-in one if empty");
+  add_on_option(command, options.on);
   add_seed_option(command, options.seed, "Seed of the simulated participant");
   command.add_flag("--headless", options.headless, "Open no window; for simulated participants");
   command.add_flag("--real-time", options.real_time, "Simulate the participant in real time");
@@ -119,8 +131,12 @@ void add_run_command(CLI::App& program, Action& action) {
   add_session_options(*command, *options);
   add_device_options(*command, *options);
   add_simulation_options(*command, *options);
+  auto compensate = std::make_shared<bool>(false);
+  command->add_flag("--compensate", *compensate,
+                    "Refused: shape forces for the device's mass (touchtrial device compensation)");
   command->callback([=, &action] {
     action = [=] {
+      if (*compensate) refuse_compensation();
       check(*options);
       return run_study_session(*options);
     };

@@ -28,6 +28,7 @@ struct SimulateArguments {
   fs::path study;
   fs::path database;
   fs::path subject;
+  std::string on;
   simulation::SimulationOptions options;
   bool keep_blind = false;
   bool json = false;
@@ -70,7 +71,7 @@ int simulate(const SimulateArguments& arguments) {
   if (arguments.database.empty()) throw UsageError("simulate: --db is empty; give it a file name");
   refuse_existing(arguments.database);
   const design::Study study = design::load_study(arguments.study);
-  const simulation::SubjectModel subject = subject_for(arguments.subject, study);
+  const simulation::SubjectModel subject = subject_for(arguments.subject, study, arguments.on);
   const design::StudyKey key = simulated_key(study, arguments.study);
   refuse_other_key(key_path_for(arguments.database, {}), key);
   prepare_simulated_pack(key);
@@ -107,6 +108,7 @@ void add_simulate_command(CLI::App& program, Action& action) {
       ->capture_default_str();
   add_seed_option(*command, options.seed, "Seed of everything random in participants");
   add_subject_option(*command, arguments->subject);
+  add_on_option(*command, arguments->on);
   add_jobs_option(*command, options.jobs);
   command->add_flag("--keep-blind", arguments->keep_blind, "Do not close and unblind at the end");
   add_json_flag(*command, arguments->json);

@@ -1,5 +1,6 @@
 // stimuli sheet: a contact sheet of a prepared study.
 #include "analysis/figures/gnuplot.hpp"
+#include "analysis/planning/level_report.hpp"
 #include "analysis/sheet/stimulus_sheet.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
@@ -8,10 +9,13 @@
 #include "core/files.hpp"
 #include "protocols/design/prepare.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <system_error>
+#include <vector>
 
 namespace touchtrial::app {
 namespace {
@@ -71,6 +75,23 @@ void check_output(const SheetArguments& arguments, const design::Study& study,
   if (kind != ".html") analysis::require_gnuplot();
 }
 
+/// How strong each stimulus is on the study's device, and the blank plane beside it.
+void add_levels(design::StudyKey key, const fs::path& pack, analysis::StimulusSheet& sheet) {
+  key.pack_folder = pack;
+  const simulation::StimulusLevels levels = levels_of_pack(key);
+  const std::string blank = planning::range_words(levels.blank);
+  sheet.level_of =
+      key.study.device.empty() ? "all shipped devices" : simulation::device_of(key.study).name;
+  for (std::vector<analysis::SheetCard>& line : sheet.lines) {
+    for (analysis::SheetCard& card : line) {
+      const auto keyed = std::ranges::find(key.stimuli, card.code, &design::KeyedStimulus::code);
+      const auto place = std::ranges::find(levels.stimuli, keyed->stimulus);
+      const auto at = static_cast<std::size_t>(place - levels.stimuli.begin());
+      card.level = planning::range_words(levels.levels[at]) + " dB (blank " + blank + ")";
+    }
+  }
+}
+
 int draw_sheet(const SheetArguments& arguments) {
   const design::Study study = design::load_study(arguments.study);
   const design::PackPlace place = pack_place_for(arguments.study, arguments.pack);
@@ -80,8 +101,9 @@ int draw_sheet(const SheetArguments& arguments) {
   design::check_images_exist(key.study);
   const std::string kind = kind_of(arguments.output);
   const int side_px = key.stimuli.size() > kMany ? kSideOfManyPx : kSidePx;
-  const analysis::StimulusSheet sheet = analysis::make_stimulus_sheet(
-      key, engine::Pack(place.pack), side_px, progress_bar("drawing"));
+  analysis::StimulusSheet sheet = analysis::make_stimulus_sheet(key, engine::Pack(place.pack),
+                                                                side_px, progress_bar("drawing"));
+  add_levels(key, place.pack, sheet);
   if (kind == ".png") analysis::draw_sheet_png(sheet, arguments.output);
   if (kind == ".pdf") analysis::draw_sheet_pdf(sheet, arguments.output);
   if (kind == ".html")

@@ -8,15 +8,19 @@
 #include "core/files.hpp"
 #include "core/public_keys.hpp"
 #include "device/device_settings.hpp"
+#include "engine/pack/pack.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
 #include "protocols/design/key_protection.hpp"
+#include "protocols/session/stimulus_source.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -270,13 +274,25 @@ void refuse_other_key(const std::filesystem::path& path, const design::StudyKey&
   }
 }
 
-simulation::SubjectModel subject_for(const std::filesystem::path& path,
-                                     const design::Study& study) {
+simulation::StimulusLevels levels_of_pack(const design::StudyCodes& key) {
+  const engine::Pack pack(key.pack_folder);
+  const session::StimulusSource source(pack, key.study.rendering);
+  const auto cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return simulation::levels_of(key, source, simulation::level_devices(key.study), cores);
+}
+
+simulation::SubjectModel subject_for(const std::filesystem::path& path, const design::Study& study,
+                                     const std::string& on) {
   simulation::SubjectModel subject =
       path.empty()
           ? simulation::parse_subject_model(default_subject_json(), "the default subject model")
           : simulation::load_subject_model(path);
   subject.check_labels(study);
+  if (!on.empty()) {
+    subject.device = device::device_model(on);
+  } else if (!study.device.empty()) {
+    subject.device = simulation::device_of(study);
+  }
   return subject;
 }
 

@@ -5,6 +5,7 @@
 #include "app/heads.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/design/study_key.hpp"
+#include "protocols/simulation/stimulus_levels.hpp"
 #include "protocols/simulation/subject_model.hpp"
 #include "protocols/store/personal_data.hpp"
 #include "protocols/store/study_store.hpp"
@@ -105,6 +106,12 @@ void save_station_files(const design::StudyKey& key, const design::PackPlace& pl
 /// \throws as plane_of and prepare_pack
 void prepare_simulated_pack(const design::StudyKey& key, bool wait = false);
 
+/// The levels of a study's stimuli (docs/perception.md), on the device that it names, else on all
+/// that the program ships, with all of the processor's cores.
+/// \throws FileError if the key's pack is not there or lacks a stimulus
+/// \throws StudyError if the study names a device that is not there
+[[nodiscard]] simulation::StimulusLevels levels_of_pack(const design::StudyCodes& key);
+
 /// Refuses to overwrite another key, of which there may be no copy. The same key may stay when its
 /// database was removed.
 /// \throws StoreError if another key is at `path`
@@ -115,8 +122,11 @@ void refuse_other_key(const std::filesystem::path& path, const design::StudyKey&
 [[nodiscard]] std::string_view default_subject_json() noexcept;
 
 /// \param path  a subject model; empty: the built-in one
-/// \throws as load_subject_model and SubjectModel::check_labels
+/// \param on  model of the device that it holds, a name or a file; empty: the study's, or ideal
+/// \throws as load_subject_model, SubjectModel::check_labels, device::device_model and
+///   simulation::device_of
 [[nodiscard]] simulation::SubjectModel subject_for(const std::filesystem::path& path,
-                                                   const design::Study& study);
+                                                   const design::Study& study,
+                                                   const std::string& on);
 
 }  // namespace touchtrial::app

@@ -28,6 +28,11 @@ if(TOUCHTRIAL_SANITIZE)
     # release build that must be free of warnings.
     target_compile_options(touchtrial_settings INTERFACE -Wno-error)
   endif()
+  if(TOUCHTRIAL_SANITIZE MATCHES "address")
+    add_library(touchtrial_kept_libraries OBJECT "${CMAKE_SOURCE_DIR}/tests/support/keep_libraries.cpp")
+    target_sources(touchtrial_settings INTERFACE $<TARGET_OBJECTS:touchtrial_kept_libraries>)
+    target_link_options(touchtrial_settings INTERFACE -Wl,--export-dynamic-symbol=dlclose)
+  endif()
   if(TOUCHTRIAL_SANITIZE STREQUAL "thread")
     # Stands in for oneTBB, whose own build the sanitizer cannot see into: tests/tsan/README.md.
     target_include_directories(touchtrial_settings BEFORE INTERFACE "${CMAKE_SOURCE_DIR}/tests/tsan")

@@ -101,6 +101,7 @@ struct DeviceSettings {
   Inverse3Settings inverse3;
   ReplaySettings replay;
   InstrumentSettings instruments;
+  std::string simulated_on;  ///< model that a simulated hand holds; not in the file; empty: ideal
   std::map<std::string, DeviceUse> uses;  ///< by driver; those that the file mentions
 
   /// \return the defaults for a driver that the file does not mention

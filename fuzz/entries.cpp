@@ -142,7 +142,8 @@ void read_as_subject(ByteView bytes) {
   accept_or_refuse([&] {
     const simulation::SubjectModel model =
         simulation::parse_subject_model(text_of(bytes), "subject.json");
-    require(model.weber >= 0.0 && model.explore_s > 0.0, "a subject's numbers are in range");
+    require(model.feature_noise >= 0.0 && model.explore_s > 0.0,
+            "a subject's numbers are in range");
   });
 }
 

@@ -109,7 +109,7 @@ void warn_of_bounds(const FitProblem& problem, const std::vector<double>& at, Ac
     const bool at_lower = at[i] - bounds.lower[i] < kHair && !is_lapse;
     if (!at_lower && bounds.upper[i] - at[i] >= kHair) continue;
     std::string name = "the bias for the first position";
-    if (parameter.kind == ParameterKind::weber) name = "weber";
+    if (parameter.kind == ParameterKind::feature_noise) name = "feature_noise";
     if (is_lapse) name = "lapse";
     if (parameter.kind == ParameterKind::class_bias) {
       name = "the bias of \"" + fit.classes[parameter.class_index] + "\"";

@@ -2,19 +2,23 @@
 
 #include "analysis/planning/noise_lines.hpp"
 #include "core/parallel.hpp"
+#include "core/random.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
+#include "protocols/simulation/own_knowledge.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 namespace touchtrial::planning {
 namespace {
 
 constexpr int kAcuityGroups = 8;
+constexpr int kThresholdGroups = 4;
 /// The number of pieces of a stimulus's explorations that threads share. Their sums are added in a
 /// fixed order.
 constexpr int kPieces = 4;
@@ -84,6 +88,43 @@ void settle(std::span<const AnswerTable> pieces, int row, double lapse, std::spa
   for (double& value : slopes) value *= (1.0 - lapse) / lines;
 }
 
+/// Which of the equally likely groups a line's person belongs to.
+struct PersonGroup {
+  std::uint8_t acuity;
+  std::uint8_t threshold;
+};
+
+/// The supports of the groups of people that a subject model has: all, where they differ.
+class GroupSupports {
+ public:
+  GroupSupports(const simulation::SubjectModel& subject,
+                const simulation::FeltKnowledge& knowledge) {
+    const bool thresholds_differ = subject.sense && subject.threshold_spread_db > 0.0;
+    acuities_ = normal_groups(subject.feature_noise_spread > 0.0 ? kAcuityGroups : 1);
+    thresholds_ = normal_groups(thresholds_differ ? kThresholdGroups : 1);
+    for (const double acuity : acuities_) {
+      const double factor = std::exp(subject.feature_noise_spread * acuity);
+      const engine::FeltNoise noise{subject.feature_noise * factor, subject.common_noise * factor};
+      for (const double shift : thresholds_) {
+        std::optional<simulation::FeltFloor> floor;
+        if (subject.sense) floor = simulation::floor_of(noise, subject.threshold_spread_db * shift);
+        supports_.emplace_back(knowledge, noise, floor);
+      }
+    }
+  }
+
+  [[nodiscard]] const LinearSupports& of(PersonGroup person) const noexcept {
+    const std::size_t acuity = acuities_.size() > 1 ? person.acuity : 0;
+    const std::size_t threshold = thresholds_.size() > 1 ? person.threshold : 0;
+    return supports_[acuity * thresholds_.size() + threshold];
+  }
+
+ private:
+  std::vector<double> acuities_;
+  std::vector<double> thresholds_;
+  std::vector<LinearSupports> supports_;
+};
+
 }  // namespace
 
 std::vector<double> nearness_of(const PictureLayout& layout) {
@@ -120,13 +161,12 @@ struct AnswerModel::State {
 
   /// Adds all noise lines of one piece of a stimulus's explorations, in every layout.
   void add_piece(int place, int piece, const simulation::SubjectModel& subject,
-                 const std::vector<LinearSupports>& groups, const std::vector<LayoutBias>& layouts,
-                 BankPart part, AnswerTable& sums) const;
+                 const GroupSupports& groups, const std::vector<LayoutBias>& layouts, BankPart part,
+                 AnswerTable& sums) const;
   void add_likings(const simulation::SubjectModel& subject, std::span<const double> numbers,
                    const LayoutBias& layout, const std::vector<int>& pictures,
                    std::vector<double>& at) const;
   [[nodiscard]] std::vector<int> pictures_of(const simulation::SubjectModel& subject) const;
-  [[nodiscard]] std::vector<LinearSupports> acuities(const simulation::SubjectModel& subject) const;
 
   simulation::FeltKnowledge knowledge;
   std::vector<std::string> classes;
@@ -134,8 +174,8 @@ struct AnswerModel::State {
   std::vector<design::StimulusIndex> stimuli;
   std::vector<std::vector<engine::FeltFeatures>> felt;  ///< by stimulus
   std::vector<NoisePoints> points;                      ///< by stimulus
-  std::vector<std::vector<std::uint8_t>> acuity;  ///< by stimulus, group of each line's person
-  int dimensions;                                 ///< of noise
+  std::vector<std::vector<PersonGroup>> person;         ///< by stimulus, of each line
+  int dimensions;                                       ///< of noise
   RadialDistribution radial;
 };
 
@@ -157,12 +197,15 @@ AnswerModel::State::State(const simulation::FeltKnowledge& learnt, const simulat
     felt.emplace_back(own.begin(), own.end());
     points.emplace_back(numbers, own.size() * static_cast<std::size_t>(options.directions),
                         options.seed, static_cast<std::uint64_t>(place));
-    auto& groups = acuity.emplace_back();
+    RandomStream thresholds(options.seed, "answer model: thresholds",
+                            static_cast<std::uint64_t>(place));
+    auto& groups = person.emplace_back();
     for (std::size_t i = 0; i < own.size() * static_cast<std::size_t>(options.directions); ++i) {
       const double z = points.back().point(i).back();
       const double share = 0.5 * std::erfc(-z / std::numbers::sqrt2);
-      groups.push_back(static_cast<std::uint8_t>(
-          std::min(kAcuityGroups - 1, static_cast<int>(share * kAcuityGroups))));
+      const int acuity = std::min(kAcuityGroups - 1, static_cast<int>(share * kAcuityGroups));
+      groups.push_back({static_cast<std::uint8_t>(acuity),
+                        static_cast<std::uint8_t>(thresholds.below(kThresholdGroups))});
     }
   }
 }
@@ -180,15 +223,6 @@ std::vector<int> AnswerModel::State::pictures_of(const simulation::SubjectModel&
   return pictures;
 }
 
-std::vector<LinearSupports> AnswerModel::State::acuities(
-    const simulation::SubjectModel& subject) const {
-  std::vector<LinearSupports> groups;
-  for (const double z : normal_groups(subject.weber_spread > 0.0 ? kAcuityGroups : 1)) {
-    groups.emplace_back(knowledge, subject.weber * std::exp(subject.weber_spread * z));
-  }
-  return groups;
-}
-
 /// Adds the preferences of this line's person to those that everybody has.
 void AnswerModel::State::add_likings(const simulation::SubjectModel& subject,
                                      std::span<const double> numbers, const LayoutBias& layout,
@@ -203,7 +237,7 @@ void AnswerModel::State::add_likings(const simulation::SubjectModel& subject,
 }
 
 void AnswerModel::State::add_piece(int place, int piece, const simulation::SubjectModel& subject,
-                                   const std::vector<LinearSupports>& groups,
+                                   const GroupSupports& groups,
                                    const std::vector<LayoutBias>& layouts, BankPart part,
                                    AnswerTable& sums) const {
   const std::vector<int> pictures = pictures_of(subject);
@@ -223,10 +257,10 @@ void AnswerModel::State::add_piece(int place, int piece, const simulation::Subje
     for (std::size_t j = 0; j < directions; ++j) {
       const std::size_t line = i * directions + j;
       const std::span<const double> numbers = points[place].point(line);
-      const LinearSupports& person = groups[groups.size() > 1 ? acuity[place][line] : 0];
+      const LinearSupports& felt_by = groups.of(person[place][line]);
       set_direction(numbers, direction);
-      person.at(felt[place][i], felt_at);
-      person.noise(direction, slope);
+      felt_by.at(felt[place][i], felt_at);
+      felt_by.noise(direction, slope);
       for (std::size_t l = 0; l < layouts.size(); ++l) {
         for (std::size_t k = 0; k < prototypes; ++k) at[k] = felt_at[k] + bias[l][k];
         if (people_differ) add_likings(subject, numbers, layouts[l], pictures, at);
@@ -263,7 +297,7 @@ AnswerTable AnswerModel::answers(const simulation::SubjectModel& subject,
   const std::vector<LayoutBias> bias =
       biases(subject, state.classes, alike ? layouts.first(1) : layouts);
   const auto rows = static_cast<int>(bias.size());
-  const std::vector<LinearSupports> groups = state.acuities(subject);
+  const GroupSupports groups(subject, state.knowledge);
   const auto tasks = static_cast<std::size_t>(stimuli) * kPieces;
   std::vector<AnswerTable> sums(tasks, AnswerTable(rows, 1, classes, slopes));
   in_parallel(state.options.jobs, tasks, [&](std::size_t task) {
@@ -288,8 +322,8 @@ AnswerModel answer_model_of(const design::StudyKey& key, const engine::Pack& pac
   subject.check_labels(key.study);
   const session::StimulusSource source(pack, key.study.rendering);
   const simulation::LabelledFields fields(key, source);
-  const simulation::FeltKnowledge knowledge = simulation::learn_by_feeling(
-      fields, subject, key.study.rendering.max_force_n, options.seed, options.jobs);
+  const simulation::FeltKnowledge knowledge =
+      simulation::typical_knowledge(fields, key.study, subject, options.seed, options.jobs);
   const simulation::FeltBank bank(
       fields, key.study, subject,
       {.explorations = options.explorations, .seed = options.seed, .jobs = options.jobs}, progress);

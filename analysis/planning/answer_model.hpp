@@ -80,8 +80,9 @@ struct BankPart {
 /// straight lines. Each exploration has a fixed set of noise directions (shifted Sobol points); the
 /// model integrates over all amounts of noise along a direction in closed form. Every call uses the
 /// same points, so the result is a continuous, almost smooth function of the parameters. The points
-/// also represent differences between people, except that Weber fractions come in eight equally
-/// likely groups. Immutable, thread-safe; refers to none of its arguments.
+/// also represent differences between people, except that noises come in eight, and
+/// thresholds in four equally likely groups. Immutable, thread-safe; refers to none of its
+/// arguments.
 class AnswerModel {
  public:
   /// \param classes  labels, in the study's order
@@ -93,7 +94,7 @@ class AnswerModel {
 
   /// Cost: explorations x directions x stimuli x layouts x some 0.1 us on one thread; the number of
   /// layouts matters only if positions are preferred.
-  /// \param subject  weber > 0; its labels are the study's
+  /// \param subject  feature_noise > 0; its labels are the study's
   /// \param slopes  whether to compute the derivatives by the pictures' biases, without lapses
   /// \throws std::invalid_argument if a label is not the study's
   [[nodiscard]] AnswerTable answers(const simulation::SubjectModel& subject,

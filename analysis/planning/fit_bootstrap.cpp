@@ -130,7 +130,7 @@ std::vector<double> LocalAnswers::fitted_to(const Cells& counts) const {
 constexpr int kPool = 32;
 
 bool people_differ(const simulation::SubjectModel& subject) {
-  return subject.weber_spread > 0.0 || subject.lapse_spread > 0.0 ||
+  return subject.feature_noise_spread > 0.0 || subject.lapse_spread > 0.0 ||
          subject.position_bias_spread > 0.0 || subject.class_bias_spread > 0.0;
 }
 
@@ -142,7 +142,7 @@ std::vector<double> deviates(RandomStream& random) {
 }
 
 simulation::SubjectModel without_spreads(simulation::SubjectModel subject) {
-  subject.weber_spread = 0.0;
+  subject.feature_noise_spread = 0.0;
   subject.lapse_spread = 0.0;
   subject.position_bias_spread = 0.0;
   subject.class_bias_spread = 0.0;
@@ -160,7 +160,7 @@ std::vector<simulation::SubjectModel> pool_of(const simulation::SubjectModel& po
   const std::vector<double> lapse = deviates(random);
   const std::vector<double> position = deviates(random);
   for (int i = 0; i < kPool; ++i) {
-    pool[i].weber *= std::exp(population.weber_spread * acuity[i]);
+    pool[i].feature_noise *= std::exp(population.feature_noise_spread * acuity[i]);
     if (population.lapse > 0.0 && population.lapse < 1.0) {
       const double odds = population.lapse / (1.0 - population.lapse) *
                           std::exp(population.lapse_spread * lapse[i]);

@@ -7,10 +7,10 @@ namespace touchtrial::planning {
 namespace {
 
 // Beyond these bounds, answers are perfect, at chance, or all the same.
-constexpr double kLeastWeber = 1e-3;
-constexpr double kMostWeber = 10.0;
+constexpr double kLeastFeatureNoise = 1e-3;
+constexpr double kMostFeatureNoise = 10.0;
 constexpr double kMostLogOdds = 20.0;
-/// The step of ln(weber) for the derivative.
+/// The step of ln(feature_noise) for the derivative.
 constexpr double kStep = 2e-4;
 
 double bias_of(const simulation::SubjectModel& subject, const std::string& label) {
@@ -40,8 +40,9 @@ FitProblem::FitProblem(const AnswerModel& model, const FitEvidence& evidence,
       eliminated_(eliminated),
       classes_free_(free.classes) {
   // Without any noise, the probabilities would be step functions.
-  subject_.weber = std::max(subject_.weber, kLeastWeber);
-  if (free.weber) add({ParameterKind::weber}, std::log(kLeastWeber), std::log(kMostWeber));
+  subject_.feature_noise = std::max(subject_.feature_noise, kLeastFeatureNoise);
+  if (free.feature_noise)
+    add({ParameterKind::feature_noise}, std::log(kLeastFeatureNoise), std::log(kMostFeatureNoise));
   if (free.lapse) add({ParameterKind::lapse}, 0.0, kMostLapse);
   if (free.position) add({ParameterKind::position}, -kMostLogOdds, kMostLogOdds);
   const auto classes = static_cast<int>(model_.classes().size());
@@ -63,9 +64,9 @@ std::vector<double> FitProblem::scales() const {
   constexpr double kBias = 0.3;
   std::vector<double> scales;
   for (const Parameter& parameter : parameters_) {
-    const bool is_weber = parameter.kind == ParameterKind::weber;
+    const bool is_noise = parameter.kind == ParameterKind::feature_noise;
     const bool is_lapse = parameter.kind == ParameterKind::lapse;
-    scales.push_back(is_weber ? kNoise : is_lapse ? kLapse : kBias);
+    scales.push_back(is_noise ? kNoise : is_lapse ? kLapse : kBias);
   }
   return scales;
 }
@@ -75,7 +76,7 @@ simulation::SubjectModel FitProblem::subject_at(std::span<const double> at) cons
   std::vector<double> biases(model_.classes().size(), 0.0);
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const Parameter& parameter = parameters_[i];
-    if (parameter.kind == ParameterKind::weber) subject.weber = std::exp(at[i]);
+    if (parameter.kind == ParameterKind::feature_noise) subject.feature_noise = std::exp(at[i]);
     if (parameter.kind == ParameterKind::lapse) subject.lapse = at[i];
     if (parameter.kind == ParameterKind::position) subject.position_bias = at[i];
     if (parameter.kind == ParameterKind::class_bias) {
@@ -99,8 +100,8 @@ std::vector<double> FitProblem::numbers_of(const simulation::SubjectModel& subje
   std::vector<double> numbers;
   for (const Parameter& parameter : parameters_) {
     switch (parameter.kind) {
-      case ParameterKind::weber:
-        numbers.push_back(std::log(std::max(subject.weber, kLeastWeber)));
+      case ParameterKind::feature_noise:
+        numbers.push_back(std::log(std::max(subject.feature_noise, kLeastFeatureNoise)));
         break;
       case ParameterKind::lapse:
         numbers.push_back(subject.lapse);
@@ -153,9 +154,10 @@ FitProblem::Tangent FitProblem::tangent(std::span<const double> at, BankPart par
   const double rate = lapse_slope(subject);
   const double lapse = mean_lapse(subject);
   simulation::SubjectModel noisier = subject;
-  noisier.weber *= std::exp(kStep);
-  const bool by_weber = std::ranges::count(parameters_, Parameter{ParameterKind::weber}) > 0;
-  const AnswerTable more = by_weber ? model_.answers(noisier, layouts, false, part) : table;
+  noisier.feature_noise *= std::exp(kStep);
+  const bool by_noise =
+      std::ranges::count(parameters_, Parameter{ParameterKind::feature_noise}) > 0;
+  const AnswerTable more = by_noise ? model_.answers(noisier, layouts, false, part) : table;
   for (const Parameter& parameter : parameters_) {
     auto& slopes = tangent.slopes.emplace_back(layouts.size(), std::vector<double>(cells));
     for (int layout = 0; layout < static_cast<int>(layouts.size()); ++layout) {
@@ -163,7 +165,7 @@ FitProblem::Tangent FitProblem::tangent(std::span<const double> at, BankPart par
         const int place = static_cast<int>(cell) / classes;
         const int answer = static_cast<int>(cell) % classes;
         slopes[layout][cell] =
-            parameter.kind == ParameterKind::weber
+            parameter.kind == ParameterKind::feature_noise
                 ? (more.answers(layout, place)[answer] - table.answers(layout, place)[answer]) /
                       kStep
                 : slope_of(parameter, table, layout, place, answer, rate, lapse);

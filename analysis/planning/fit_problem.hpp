@@ -16,7 +16,7 @@ inline constexpr double kMostLapse = 0.98;
 
 /// The parameters that are estimated; the others stay as in the subject model.
 struct FreeParameters {
-  bool weber = true;
+  bool feature_noise = true;
   bool lapse = true;
   bool position = true;
   bool classes = true;
@@ -24,7 +24,7 @@ struct FreeParameters {
   bool spread = true;  ///< of noise between people; from participants' own answers
 };
 
-enum class ParameterKind { weber, lapse, position, class_bias };
+enum class ParameterKind { feature_noise, lapse, position, class_bias };
 
 struct Parameter {
   ParameterKind kind{};
@@ -33,9 +33,9 @@ struct Parameter {
   friend bool operator==(const Parameter&, const Parameter&) = default;
 };
 
-/// Free parameters as numbers: ln(weber), the lapse, and biases as log odds. The sum of the class
-/// biases is 0, so that one of them, the eliminated one, follows from the others. Refers to model
-/// and evidence, which must outlive it.
+/// Free parameters as numbers: ln(feature_noise), the lapse, and biases as log odds. The sum of the
+/// class biases is 0, so that one of them, the eliminated one, follows from the others. Refers to
+/// model and evidence, which must outlive it.
 class FitProblem {
  public:
   /// \param subject  values of the fixed parameters, and the label swaps
@@ -70,7 +70,7 @@ class FitProblem {
 
  private:
   void add(Parameter parameter, double lower, double upper);
-  /// d P / d number for one cell, for any parameter but weber.
+  /// d P / d number for one cell, for any parameter but feature_noise.
   [[nodiscard]] double slope_of(const Parameter& parameter, const AnswerTable& table, int layout,
                                 int place, int answer, double lapse_rate, double lapse) const;
 

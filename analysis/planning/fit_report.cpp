@@ -18,7 +18,7 @@ std::string end_text(std::optional<double> end) {
 }
 
 std::string title_of(const ParameterEstimate& estimate) {
-  if (estimate.name == "weber") return "noise (weber)";
+  if (estimate.name == "feature_noise") return "noise of features";
   if (estimate.name == "position") return "bias: first position";
   return estimate.label.empty() ? estimate.name : "bias: " + estimate.label;
 }
@@ -30,8 +30,8 @@ std::string estimates_text(const SubjectFit& fit, const FitOrigin& origin) {
     const std::string simulated =
         one.bootstrap ? fmt::format("[{:.3f}, {:.3f}]", one.bootstrap->low, one.bootstrap->high)
                       : "-";
-    // The error is that of ln(weber).
-    const double error = one.monte_carlo_error * (one.name == "weber" ? one.value : 1.0);
+    // The error is that of ln(feature_noise).
+    const double error = one.monte_carlo_error * (one.name == "feature_noise" ? one.value : 1.0);
     table.add({title_of(one), fmt::format("{:.3f}", one.value),
                fmt::format("[{}, {}]", end_text(one.profile.lower), end_text(one.profile.upper)),
                simulated, one.standard_error ? fmt::format("{:.3f}", error) : "-"});
@@ -94,8 +94,9 @@ std::string goodness_text(const SubjectFit& fit) {
 }
 
 std::string biases_text(const simulation::SubjectModel& subject) {
-  std::string text = fmt::format("weber {:.4f}, lapse {:.4f}, bias for the first position {:+.3f}",
-                                 subject.weber, subject.lapse, subject.position_bias);
+  std::string text =
+      fmt::format("feature_noise {:.4f}, lapse {:.4f}, bias for the first position {:+.3f}",
+                  subject.feature_noise, subject.lapse, subject.position_bias);
   for (const simulation::ClassBias& bias : subject.class_bias) {
     text += fmt::format(", for {} {:+.3f}", bias.label, bias.log_odds);
   }
@@ -162,8 +163,8 @@ Json estimate_json(const ParameterEstimate& estimate) {
   Json object = {{"name", estimate.name}};
   if (!estimate.label.empty()) object["label"] = estimate.label;
   object["value"] = estimate.value;
-  // The errors are those of ln(weber).
-  const double unit = estimate.name == "weber" ? estimate.value : 1.0;
+  // The errors are those of ln(feature_noise).
+  const double unit = estimate.name == "feature_noise" ? estimate.value : 1.0;
   object["standard_error"] = nullptr;
   if (estimate.standard_error) object["standard_error"] = number(*estimate.standard_error * unit);
   object["profile"] = {number(estimate.profile.lower), number(estimate.profile.upper)};
@@ -222,7 +223,7 @@ std::string fit_json(const SubjectFit& fit, const FitOrigin& origin) {
   object["classes"] = fit.classes;
   object["fitted"] = Json::parse(simulation::subject_model_json(fit.subject));
   object["estimates"] = estimates_json(fit);
-  object["weber_lapse_correlation"] = number(fit.weber_lapse_correlation);
+  object["noise_lapse_correlation"] = number(fit.noise_lapse_correlation);
   object["differences_between_people"] = people_json(fit);
   object["label_swaps"] = swaps_json(fit);
   object["log_likelihood"] = number(fit.log_likelihood);

@@ -8,7 +8,7 @@
 namespace touchtrial::planning {
 namespace {
 
-constexpr std::array<double, 4> kCoarseWeber{0.1, 0.3, 0.8, 2.0};
+constexpr std::array<double, 4> kCoarseNoise{0.1, 0.3, 0.8, 2.0};
 constexpr std::array<double, 2> kCoarseLapse{0.02, 0.2};
 /// How many of the best pairs are fitted.
 constexpr std::size_t kFitted = 2;
@@ -22,9 +22,9 @@ struct Start {
 /// The best of a few combinations of noise and lapse, everything else being the subject's.
 Optimum best_of_grid(const FitProblem& problem, simulation::SubjectModel subject) {
   Optimum best{{}, -std::numeric_limits<double>::infinity()};
-  for (const double weber : kCoarseWeber) {
+  for (const double feature_noise : kCoarseNoise) {
     for (const double lapse : kCoarseLapse) {
-      subject.weber = weber;
+      subject.feature_noise = feature_noise;
       subject.lapse = lapse;
       const std::vector<double> at = problem.numbers_of(subject);
       const double value = problem.value(at, {});

@@ -1,3 +1,4 @@
+#include "analysis/planning/changes_words.hpp"
 #include "analysis/planning/subject_fit.hpp"
 
 #include <algorithm>
@@ -138,7 +139,7 @@ void warn_of_open_ends(const SubjectFit& fit, std::vector<std::string>& warnings
 }
 
 void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings) {
-  const auto r = fit.weber_lapse_correlation;
+  const auto r = fit.noise_lapse_correlation;
   if (r && std::abs(*r) > kHardlyApart) {
     warnings.push_back(
         fmt::format("noise and lapse can hardly be told apart (their estimates correlate {:.2f}): "
@@ -193,6 +194,12 @@ std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit&
   if (counts.methods.size() > 1) {
     warnings.push_back(
         "one noise, lapse and bias for all methods: methods differ only in what is felt");
+  }
+  if (const std::string ignored = keys_that_fits_ignore(fit.subject); !ignored.empty()) {
+    warnings.push_back(
+        "the fit takes all trials of a person as alike, and one training for all; "
+        "it ignores what the subject model says of " +
+        ignored + ", and so finds the noise of an average trial");
   }
   if (fit.p && *fit.p < kMisfit) {
     warnings.push_back(

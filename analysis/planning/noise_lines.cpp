@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include <boost/math/distributions/chi_squared.hpp>
@@ -37,9 +38,12 @@ int noise_dimensions(int prototypes) noexcept {
   return std::clamp(prototypes - 1, 1, engine::kFeltFeatures);
 }
 
-LinearSupports::LinearSupports(const simulation::FeltKnowledge& knowledge, double weber)
-    : middle_(mean_of(knowledge.examples)) {
-  const engine::FeltClassifier classifier(knowledge.examples, weber);
+LinearSupports::LinearSupports(const simulation::FeltKnowledge& knowledge, engine::FeltNoise noise,
+                               const std::optional<simulation::FeltFloor>& floor)
+    : floor_(floor) {
+  const std::vector<engine::FeltExample> examples = simulation::examples_above(knowledge, floor);
+  const engine::FeltClassifier classifier(examples, noise);
+  middle_ = mean_of(examples);
   constant_ = classifier.log_likelihoods(middle_);
   dimensions_ = noise_dimensions(static_cast<int>(constant_.size()));
   gradient_.resize(constant_.size() * engine::kFeltFeatures);
@@ -54,36 +58,44 @@ LinearSupports::LinearSupports(const simulation::FeltKnowledge& knowledge, doubl
   }
   const double first = constant_.front();
   for (double& value : constant_) value -= first;
-  factorise_noise(weber);
+  factorise_noise(noise);
 }
 
-/// The Cholesky factor of the noise's covariance, which is weber^2 times the products of the
-/// gradients. A prototype that depends linearly on the previous ones (equal stimuli, or more
-/// stimuli than features) gets no column.
-void LinearSupports::factorise_noise(double weber) {
+/// The Cholesky factor of the noise's covariance: the products of the gradients, and of their sums
+/// for what is common to all features. A prototype that depends linearly on the previous ones
+/// (equal stimuli, or more stimuli than features) gets no column.
+void LinearSupports::factorise_noise(engine::FeltNoise noise) {
   const auto rows = static_cast<int>(constant_.size());
+  std::vector<double> sums;
+  for (int k = 0; k < rows; ++k) {
+    const double* own = &gradient_[static_cast<std::size_t>(k) * engine::kFeltFeatures];
+    sums.push_back(std::accumulate(own, own + engine::kFeltFeatures, 0.0));
+  }
+  const auto covariance_of = [&](int a, int b) {
+    const double* first = &gradient_[static_cast<std::size_t>(a) * engine::kFeltFeatures];
+    const double* second = &gradient_[static_cast<std::size_t>(b) * engine::kFeltFeatures];
+    return noise.own * noise.own * product(first, second, engine::kFeltFeatures) +
+           noise.common * noise.common * (sums[a] * sums[b]);
+  };
   factor_.assign(static_cast<std::size_t>(rows) * dimensions_, 0.0);
   int column = 0;
   for (int pivot = 1; pivot < rows && column < dimensions_; ++pivot) {
-    const double* own = &gradient_[static_cast<std::size_t>(pivot) * engine::kFeltFeatures];
     const double* own_row = &factor_[static_cast<std::size_t>(pivot) * dimensions_];
-    const double variance = weber * weber * product(own, own, engine::kFeltFeatures);
+    const double variance = covariance_of(pivot, pivot);
     const double left = variance - product(own_row, own_row, column);
     constexpr double kNothing = 1e-12;
     if (!(left > kNothing * variance)) continue;
     const double root = std::sqrt(left);
     for (int k = pivot; k < rows; ++k) {
-      const double* other = &gradient_[static_cast<std::size_t>(k) * engine::kFeltFeatures];
       double* row = &factor_[static_cast<std::size_t>(k) * dimensions_];
-      const double covariance = weber * weber * product(own, other, engine::kFeltFeatures);
-      row[column] = (covariance - product(own_row, row, column)) / root;
+      row[column] = (covariance_of(pivot, k) - product(own_row, row, column)) / root;
     }
     ++column;
   }
 }
 
-void LinearSupports::at(const engine::FeltFeatures& felt,
-                        std::span<double> supports) const noexcept {
+void LinearSupports::at(engine::FeltFeatures felt, std::span<double> supports) const noexcept {
+  if (floor_) floor_->apply_to(felt);
   engine::FeltFeatures apart{};
   for (int i = 0; i < engine::kFeltFeatures; ++i) apart[i] = felt[i] - middle_[i];
   for (std::size_t k = 0; k < supports.size(); ++k) {

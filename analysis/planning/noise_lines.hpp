@@ -3,11 +3,14 @@
 /// Source: docs/fitting.md, "Probabilities of answers". Private to analysis/planning.
 #pragma once
 
+#include "engine/perception/felt_classifier.hpp"
 #include "engine/perception/felt_features.hpp"
+#include "protocols/simulation/felt_floor.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,30 +19,34 @@ namespace touchtrial::planning {
 /// \return the number of independent normals that describe the noise of the supports
 [[nodiscard]] int noise_dimensions(int prototypes) noexcept;
 
-/// Log densities of the prototypes, relative to the first, for a person with a given Weber
-/// fraction. They are linear in the features because all prototypes share one covariance.
+/// Log densities of the prototypes, relative to the first, for a person with a given noise of
+/// features. They are linear in the features because all prototypes share one covariance.
 /// Immutable, thread-safe.
 class LinearSupports {
  public:
   /// Evaluates a FeltClassifier at the examples' mean and one step along each feature. Cost: some
   /// 30 us.
-  /// \param weber  > 0
-  LinearSupports(const simulation::FeltKnowledge& knowledge, double weber);
+  /// \param noise  its own part > 0
+  /// \param floor  of the person, if there is one
+  LinearSupports(const simulation::FeltKnowledge& knowledge, engine::FeltNoise noise,
+                 const std::optional<simulation::FeltFloor>& floor = {});
 
   /// The supports without noise.
+  /// \param felt  before the person's floor
   /// \param supports  receives one number per prototype
-  void at(const engine::FeltFeatures& felt, std::span<double> supports) const noexcept;
+  void at(engine::FeltFeatures felt, std::span<double> supports) const noexcept;
 
-  /// What noise of the Weber fraction on every feature adds to the supports: a linear function of
+  /// What the noise of every feature adds to the supports: a linear function of
   /// independent standard normals.
   /// \param normals  noise_dimensions(prototypes) numbers
   /// \param supports  receives one number per prototype
   void noise(std::span<const double> normals, std::span<double> supports) const noexcept;
 
  private:
-  void factorise_noise(double weber);
+  void factorise_noise(engine::FeltNoise noise);
 
   int dimensions_;
+  std::optional<simulation::FeltFloor> floor_;
   engine::FeltFeatures middle_{};
   std::vector<double> constant_;  ///< by prototype, at the middle
   std::vector<double> gradient_;  ///< [prototype x kFeltFeatures]

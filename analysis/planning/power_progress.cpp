@@ -1,8 +1,11 @@
 #include "analysis/planning/power_progress.hpp"
 
+#include "analysis/planning/changes_words.hpp"
 #include "core/errors.hpp"
+#include "core/hash.hpp"
 #include "core/parallel.hpp"
 #include "core/strict_json.hpp"
+#include "device/simulated/simulated_hand.hpp"
 
 #include <algorithm>
 #include <span>
@@ -18,11 +21,22 @@ std::string with_spread(const char* name, double value, double spread) {
   return std::string(name) + " " + number_text(value) + " (spread " + number_text(spread) + ")";
 }
 
+/// Tells subject models apart whose words are alike.
+std::string digest_of(const simulation::SubjectModel& subject) {
+  constexpr std::size_t kShown = 12;
+  FieldHasher hasher;
+  hasher.add(simulation::subject_model_json(subject));
+  hasher.add(device::device_model_json(subject.device));
+  return to_hex(hasher.finish()).substr(0, kShown);
+}
+
 }  // namespace
 
 std::string words_of(const simulation::SubjectModel& subject) {
   std::string words =
-      with_spread("weber", subject.weber, subject.weber_spread) + ", " +
+      device::words_of_simulated(subject.device) + ", sense " +
+      std::string(simulation::name_of_sense(subject.sense)) + ", " +
+      with_spread("feature_noise", subject.feature_noise, subject.feature_noise_spread) + ", " +
       with_spread("lapse", subject.lapse, subject.lapse_spread) + ", " +
       with_spread("position bias", subject.position_bias, subject.position_bias_spread) +
       ", class bias spread " + number_text(subject.class_bias_spread);
@@ -32,10 +46,15 @@ std::string words_of(const simulation::SubjectModel& subject) {
   for (const auto& [one, other] : subject.label_swap) {
     words += ", " + in_quotes(one) + " swapped with " + in_quotes(other);
   }
+  if (subject.hand != device::HandKind::point_mass || subject.hand_spread != 0.0) {
+    words += ", hand " + std::string(device::name_of(subject.hand)) + " (spread " +
+             number_text(subject.hand_spread) + ")";
+  }
   return words + ", explores " + number_text(subject.explore_s) + " s at " +
          number_text(subject.slowest_mm_s) + " to " + number_text(subject.fastest_mm_s) +
          " mm/s with " + number_text(subject.push_n) + " N, " +
-         std::to_string(subject.training_passes) + " training passes";
+         std::to_string(subject.training_passes) + " training passes" + words_of_changes(subject) +
+         "; all of it " + digest_of(subject);
 }
 
 PowerProgress new_progress(PowerSetting setting, const PowerPlan& plan, const Shard& shard) {

@@ -34,7 +34,7 @@ struct PowerSetting {
   friend bool operator==(const PowerSetting&, const PowerSetting&) = default;
 };
 
-/// \return a subject model on one line: "weber 0.28 (spread 0.2), lapse 0.02 (spread 0), .."
+/// \return a subject model on one line: "feature_noise 0.28 (spread 0.2), lapse 0.02 (spread 0), .."
 [[nodiscard]] std::string words_of(const simulation::SubjectModel& subject);
 
 /// The studies of one size and hypothesis.

@@ -2,7 +2,9 @@
 
 #include "core/errors.hpp"
 #include "core/random.hpp"
+#include "protocols/simulation/condition.hpp"
 #include "protocols/simulation/felt_decision.hpp"
+#include "protocols/simulation/own_knowledge.hpp"
 #include "protocols/simulation/simulated_participant.hpp"
 
 #include <algorithm>
@@ -104,9 +106,8 @@ BankedFeelings::BankedFeelings(const simulation::LabelledFields& fields, const d
                                const design::Progress& progress)
     : bank_(fields, study, subject, {options.explorations, options.seed, options.jobs}, progress) {
   for (int i = 0; i < options.trainings; ++i) {
-    trainings_.push_back(std::make_shared<const simulation::FeltKnowledge>(
-        simulation::learn_by_feeling(fields, subject, study.rendering.max_force_n,
-                                     training_seed(options.seed, i), options.jobs)));
+    trainings_.push_back(
+        simulation::learn(fields, study, subject, training_seed(options.seed, i), options.jobs));
   }
 }
 
@@ -125,8 +126,7 @@ engine::FeltFeatures BankedFeelings::felt(const design::StimulusIndex& stimulus,
 
 std::shared_ptr<const simulation::FeltKnowledge> ServoFeelings::knowledge(
     std::uint64_t study_seed) const {
-  return std::make_shared<const simulation::FeltKnowledge>(
-      simulation::learn_by_feeling(fields_, subject_, study_.rendering.max_force_n, study_seed, 1));
+  return simulation::learn(fields_, study_, subject_, study_seed, 1);
 }
 
 engine::FeltFeatures ServoFeelings::felt(const design::StimulusIndex& stimulus,
@@ -139,7 +139,7 @@ engine::FeltFeatures ServoFeelings::felt(const design::StimulusIndex& stimulus,
 
 /// What the participants of one simulated study share.
 struct RehearsedStudy::Answering {
-  const simulation::FeltKnowledge& knowledge;
+  const std::shared_ptr<const simulation::FeltKnowledge>& learnt;
   Hypothesis hypothesis;
   std::uint64_t study_seed;
 };
@@ -161,18 +161,7 @@ RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::Sub
   require_answers(study, subject);
   const design::StudyKey key = design::simulated_study_key(study);
   for (int i = 0; i < most_participants * visits_; ++i) {
-    const int number = 1 + i / visits_;
-    PlannedSchedule& planned = schedules_.emplace_back();
-    planned.schedule = design::make_schedule(
-        study, key.draw_of(number, design::Draws::rehearsal, 1 + i % visits_));
-    for (const int class_index : planned.schedule.layout) {
-      planned.pictures.push_back(study.classes[class_index].label);
-    }
-    planned.scored = static_cast<int>(std::ranges::count(planned.schedule.presentations,
-                                                         design::PresentationKind::scored,
-                                                         &design::Presentation::kind));
-    planned.order_block =
-        design::order_block_of(study, key.stations, number, design::Draws::rehearsal);
+    schedules_.push_back(planned_visit(study, key, 1 + i / visits_, 1 + i % visits_));
   }
   if (!test_.margin) return;
   const double accuracy = accuracy_if_alike();
@@ -183,6 +172,28 @@ RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::Sub
         100.0 * *test_.margin, 100.0 * accuracy));
   }
   margin_loss_ = *test_.margin / accuracy;
+}
+
+RehearsedStudy::PlannedSchedule RehearsedStudy::planned_visit(const design::Study& study,
+                                                              const design::StudyKey& key,
+                                                              int number, int visit) const {
+  PlannedSchedule planned;
+  planned.schedule =
+      design::make_schedule(study, key.draw_of(number, design::Draws::rehearsal, visit));
+  for (const int class_index : planned.schedule.layout) {
+    planned.pictures.push_back(study.classes[class_index].label);
+  }
+  planned.scored = static_cast<int>(std::ranges::count(planned.schedule.presentations,
+                                                       design::PresentationKind::scored,
+                                                       &design::Presentation::kind));
+  planned.order_block =
+      design::order_block_of(study, key.stations, number, design::Draws::rehearsal);
+  planned.course = simulation::course_of(study, planned.schedule);
+  for (std::size_t i = 0; i < planned.course.size(); ++i) {
+    const int every = study.trials.break_every;
+    planned.break_before.push_back(every > 0 && i > 0 && static_cast<int>(i) % every == 0);
+  }
+  return planned;
 }
 
 double RehearsedStudy::accuracy_if_alike() const {
@@ -221,55 +232,92 @@ design::StimulusIndex RehearsedStudy::felt_stimulus(const design::StimulusIndex&
   return felt;
 }
 
+/// One participant of a simulated study, with the random numbers that planning alone needs.
+struct RehearsedStudy::Person {
+  Person(const simulation::SubjectModel& subject, const Answering& answering, int participant)
+      : number(participant),
+        knowledge(simulation::remembered(answering.learnt, subject, answering.study_seed, number)),
+        individual(subject, answering.study_seed, number),
+        decision(individual, *knowledge),
+        draws(answering.study_seed, "power: feelings", static_cast<std::uint64_t>(number)) {}
+
+  int number;
+  std::shared_ptr<const simulation::FeltKnowledge> knowledge;
+  simulation::Individual individual;
+  simulation::FeltDecision decision;
+  /// One stream for each participant: making a stream takes longer than the rest of a trial.
+  RandomStream draws;
+  std::optional<RandomStream> losses;
+};
+
+int RehearsedStudy::lost(int position, double loss, Person& person, int right,
+                         const design::Schedule& schedule) {
+  if (loss <= 0.0 || schedule.layout[position] != right) return position;
+  if (person.losses->uniform() >= loss) return position;
+  return another_position(position, schedule.layout.size(), *person.losses);
+}
+
 void RehearsedStudy::add_participant(int number, const Answering& answering,
                                      analysis::Outcomes& outcomes) const {
-  const simulation::Individual individual(subject_, answering.study_seed, number);
-  const simulation::FeltDecision decision(individual, answering.knowledge);
-  // One stream for each participant: making a stream takes longer than the rest of a trial.
-  RandomStream draws(answering.study_seed, "power: feelings", static_cast<std::uint64_t>(number));
-  std::optional<RandomStream> losses;
+  Person person(subject_, answering, number);
   if (first_half_loss_ + margin_loss_ > 0.0) {
-    losses.emplace(answering.study_seed, "power: losses", static_cast<std::uint64_t>(number));
+    person.losses.emplace(answering.study_seed, "power: losses",
+                          static_cast<std::uint64_t>(number));
   }
-  FeltTrial trial{answering.study_seed, number, 0, 0};
-  for (int visit = 1; visit <= visits_; ++visit) {
-    const int session = (number - 1) * visits_ + visit;
-    const PlannedSchedule& planned = schedules_[static_cast<std::size_t>(session) - 1];
-    const design::Schedule& schedule = planned.schedule;
-    const simulation::SeenPictures seen =
-        simulation::see(planned.pictures, subject_, individual, answering.knowledge);
-    outcomes.sessions.push_back(completed_session(number, session, visit, planned.order_block));
-    trial.nth = simulation::SimulatedParticipant::trials_before(visit);
-    int place = -1;
-    for (const design::Presentation& presentation : schedule.presentations) {
-      ++trial.nth;
-      trial.draw = draws.bits();
-      const std::uint64_t instead = draws.bits();
-      if (presentation.kind != design::PresentationKind::scored) continue;
-      ++place;
-      const design::StimulusIndex felt =
-          felt_stimulus(presentation.stimulus, answering.hypothesis, instead);
-      RandomStream random = simulation::stream_of_trial(
-          trial.study_seed, simulation::kAnswerPurpose, trial.participant, trial.nth);
-      int position = decision.answer(feelings_.felt(felt, trial), seen, random).position;
+  for (int visit = 1; visit <= visits_; ++visit) add_visit(person, visit, answering, outcomes);
+}
+
+void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answering,
+                               analysis::Outcomes& outcomes) const {
+  const int session = (person.number - 1) * visits_ + visit;
+  const PlannedSchedule& planned = schedules_[static_cast<std::size_t>(session) - 1];
+  const simulation::SeenPictures seen =
+      simulation::see(planned.pictures, subject_, person.individual, *person.knowledge);
+  simulation::Condition condition(subject_, answering.study_seed, person.number, visit,
+                                  static_cast<int>(planned.course.size()));
+  outcomes.sessions.push_back(
+      completed_session(person.number, session, visit, planned.order_block));
+  FeltTrial trial{answering.study_seed, person.number,
+                  simulation::SimulatedParticipant::trials_before(visit), 0};
+  int scored = 0;
+  for (std::size_t i = 0; i < planned.course.size(); ++i) {
+    const design::Presentation& presentation = planned.schedule.presentations[i];
+    const bool is_scored = presentation.kind == design::PresentationKind::scored;
+    simulation::TrialPlace place = planned.course[i];
+    const int begun = static_cast<int>(i) + 1;
+    if (planned.break_before[i]) condition.rest(begun - 1);
+    ++trial.nth;
+    trial.draw = person.draws.bits();
+    const std::uint64_t instead = person.draws.bits();
+    if (!place.carries_over) condition.forget();
+    // What is not scored is answered only if the next answer leans on it.
+    if (!is_scored && !(subject_.serial.is_on() && place.carries_over)) continue;
+    const design::StimulusIndex felt =
+        felt_stimulus(presentation.stimulus, answering.hypothesis, instead);
+    RandomStream random = simulation::stream_of_trial(trial.study_seed, simulation::kAnswerPurpose,
+                                                      trial.participant, trial.nth);
+    int position =
+        person.decision
+            .answer(feelings_.felt(felt, trial), seen, random, condition.before(begun, place.block))
+            .position;
+    if (is_scored) {
       const double loss =
-          loss_of(planned, place, presentation.stimulus.method, answering.hypothesis);
-      const bool is_right = schedule.layout[position] == presentation.stimulus.class_index;
-      if (loss > 0.0 && is_right && losses->uniform() < loss) {
-        position = another_position(position, schedule.layout.size(), *losses);
-      }
+          loss_of(planned, scored++, presentation.stimulus.method, answering.hypothesis);
+      position = lost(position, loss, person, presentation.stimulus.class_index, planned.schedule);
       outcomes.trials.push_back(
-          answered_trial(number, session, visit, presentation, schedule, position));
+          answered_trial(person.number, session, visit, presentation, planned.schedule, position));
     }
+    if (!subject_.serial.is_on()) continue;
+    place.label = empty_.classes[felt.class_index];
+    simulation::end_trial(condition, place, position, seen, *person.knowledge);
   }
 }
 
 analysis::Outcomes RehearsedStudy::outcomes(int participants, Hypothesis hypothesis,
                                             std::uint64_t study_seed) const {
   analysis::Outcomes outcomes = empty_;
-  const std::shared_ptr<const simulation::FeltKnowledge> knowledge =
-      feelings_.knowledge(study_seed);
-  const Answering answering{*knowledge, hypothesis, study_seed};
+  const std::shared_ptr<const simulation::FeltKnowledge> learnt = feelings_.knowledge(study_seed);
+  const Answering answering{learnt, hypothesis, study_seed};
   for (int number = 1; number <= participants; ++number) {
     add_participant(number, answering, outcomes);
   }

@@ -9,6 +9,7 @@
 #include "protocols/simulation/felt_bank.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "protocols/simulation/trial_course.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -34,7 +35,7 @@ class Feelings {
   Feelings(const Feelings&) = delete;
   Feelings& operator=(const Feelings&) = delete;
 
-  /// What the participants of a study have learnt before it.
+  /// What the participants of a study learn from before it: `simulation::learn`.
   [[nodiscard]] virtual std::shared_ptr<const simulation::FeltKnowledge> knowledge(
       std::uint64_t study_seed) const = 0;
   /// What a stimulus feels like in a presentation, before noise.
@@ -126,10 +127,22 @@ class RehearsedStudy {
     std::vector<std::string> pictures;  ///< labels, by position
     int scored = 0;                     ///< presentations
     int order_block = -1;               ///< analysis::SessionOutcome
+    simulation::TrialCourse course;     ///< by presentation
+    std::vector<bool> break_before;     ///< by presentation
   };
   struct Answering;
+  struct Person;
 
+  [[nodiscard]] PlannedSchedule planned_visit(const design::Study& study,
+                                              const design::StudyKey& key, int number,
+                                              int visit) const;
   void add_participant(int number, const Answering& answering, analysis::Outcomes& outcomes) const;
+  void add_visit(Person& person, int visit, const Answering& answering,
+                 analysis::Outcomes& outcomes) const;
+  /// Misses a right answer with a probability.
+  /// \param right  class
+  [[nodiscard]] static int lost(int position, double loss, Person& person, int right,
+                                const design::Schedule& schedule);
   /// \param draw  random bits
   [[nodiscard]] design::StimulusIndex felt_stimulus(const design::StimulusIndex& presented,
                                                     Hypothesis hypothesis,

@@ -36,13 +36,13 @@ Fitted at_best(const FitProblem& problem, const FitCounts& counts,
 
 /// A number as people read it.
 double readable(const Parameter& parameter, double number) {
-  return parameter.kind == ParameterKind::weber ? std::exp(number) : number;
+  return parameter.kind == ParameterKind::feature_noise ? std::exp(number) : number;
 }
 
 std::string name_of(const Parameter& parameter) {
   switch (parameter.kind) {
-    case ParameterKind::weber:
-      return "weber";
+    case ParameterKind::feature_noise:
+      return "feature_noise";
     case ParameterKind::lapse:
       return "lapse";
     case ParameterKind::position:
@@ -117,7 +117,7 @@ void add_bootstrap(const Fitted& fitted, const FitBootstrap& bootstrap, SubjectF
 std::optional<double> correlation(const Fitted& fitted) {
   const auto& parameters = fitted.problem.parameters();
   const std::size_t n = parameters.size();
-  const bool both = n >= 2 && parameters[0].kind == ParameterKind::weber &&
+  const bool both = n >= 2 && parameters[0].kind == ParameterKind::feature_noise &&
                     parameters[1].kind == ParameterKind::lapse;
   if (!both || !fitted.informed) return std::nullopt;
   return fitted.covariance[1] / std::sqrt(fitted.covariance[0] * fitted.covariance[n + 1]);
@@ -156,16 +156,16 @@ std::optional<PeopleSpread> spread_of(const AnswerModel& model, const FitCounts&
   constexpr double kMostNoise = 10.0;
   NoiseAnswers answers{std::log(kLeastNoise), 0.25, counts.classes.size(), {}};
   simulation::SubjectModel one = subject;
-  one.weber_spread = 0.0;
+  one.feature_noise_spread = 0.0;
   one.lapse = 0.0;
   one.lapse_spread = 0.0;
   for (double at = answers.least_log_noise; at <= std::log(kMostNoise); at += answers.step) {
-    one.weber = std::exp(at);
+    one.feature_noise = std::exp(at);
     answers.answers.push_back(cells_of(model.answers(one, counts.layouts), counts));
   }
   return people_spread(answers, counts.people,
-                       {std::log(subject.weber), std::min(mean_lapse(subject), kMostLapse),
-                        subject.weber_spread, used.weber, used.lapse});
+                       {std::log(subject.feature_noise), std::min(mean_lapse(subject), kMostLapse),
+                        subject.feature_noise_spread, used.feature_noise, used.lapse});
 }
 
 /// Whether the answers rule out the spread that a subject has.
@@ -176,8 +176,8 @@ bool rules_out(const PeopleSpread& people) {
 
 simulation::SubjectModel with_spread(simulation::SubjectModel subject, const PeopleSpread& people,
                                      const FreeParameters& used) {
-  subject.weber_spread = people.spread;
-  if (used.weber) subject.weber = std::exp(people.log_noise);
+  subject.feature_noise_spread = people.spread;
+  if (used.feature_noise) subject.feature_noise = std::exp(people.log_noise);
   if (used.lapse) subject.lapse = people.lapse;
   return subject;
 }
@@ -217,7 +217,7 @@ SubjectFit fit_subject(const AnswerModel& model, const FitCounts& counts,
   if (counts.layouts.size() < 2 && used.classes) used.position = false;
   const SwapSearch search = search_swaps(model, evidence, subject, used);
   SubjectFit fit = described(counts);
-  fit.given_spread = subject.weber_spread;
+  fit.given_spread = subject.feature_noise_spread;
   fit.people = spread_of(model, counts, search.subject, used);
   fit.spread_taken = used.spread && fit.people && rules_out(*fit.people);
   const simulation::SubjectModel start =
@@ -235,7 +235,7 @@ SubjectFit fit_subject(const AnswerModel& model, const FitCounts& counts,
   fit.expected = expected_confusions(counts, fitted.tangent.table);
   fit.g_squared = g_squared(fit.observed, fit.expected);
   fit.degrees_of_freedom = degrees_of_freedom(fit.observed, fitted.best.at.size());
-  fit.weber_lapse_correlation = correlation(fitted);
+  fit.noise_lapse_correlation = correlation(fitted);
   estimate(fitted, other, progress, fit);
   add_bootstrap(fitted, bootstrap_fit(fitted, options.bootstraps, options.seed, options.jobs), fit);
   fit.warnings = fit_warnings(counts, fit, options.free, used);

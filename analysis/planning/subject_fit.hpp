@@ -24,11 +24,12 @@ struct FitOptions {
 };
 
 struct ParameterEstimate {
-  std::string name;   ///< "weber", "lapse", "position" or "class"
+  std::string name;   ///< "feature_noise", "lapse", "position" or "class"
   std::string label;  ///< of the class; empty for the other parameters
   double value = 0.0;
-  std::optional<double> standard_error;         ///< by Fisher's information; of ln(weber) for weber
-  OpenInterval profile{};                       ///< 95 %, by the profile likelihood
+  std::optional<double>
+      standard_error;      ///< by Fisher's information; of ln(feature_noise) for feature_noise
+  OpenInterval profile{};  ///< 95 %, by the profile likelihood
   std::optional<analysis::Interval> bootstrap;  ///< 95 % of the studies simulated from the fit
   double monte_carlo_error = 0.0;  ///< standard error that the bank's finite size leaves
   bool at_bound = false;           ///< the estimate lies at a bound of the search
@@ -58,7 +59,7 @@ struct SubjectFit {
   int degrees_of_freedom = 0;  ///< cells that are free to vary, minus estimated parameters
   std::optional<double> p;     ///< of g_squared, by bootstrap
   int bootstraps = 0;
-  std::optional<double> weber_lapse_correlation;  ///< of the two estimates
+  std::optional<double> noise_lapse_correlation;  ///< of the two estimates
   std::optional<PeopleSpread> people;             ///< nothing with one participant
   double given_spread = 0.0;          ///< of noise between people, as the given subject has it
   bool spread_taken = false;          ///< the given spread was replaced by the participants'

@@ -95,7 +95,7 @@ std::string picture_rows(const std::vector<SheetCard>& line) {
                      });
 }
 
-std::string table_of(const std::vector<SheetCard>& line) {
+std::string table_of(const std::vector<SheetCard>& line, const std::string& level_of) {
   std::string table = "<table>\n<colgroup><col class=\"names\">";
   // Short lines have as many columns as long ones.
   for (std::size_t i = 0; i < kMaxSheetColumns; ++i) table += "<col>";
@@ -103,7 +103,7 @@ std::string table_of(const std::vector<SheetCard>& line) {
   for (const SheetCard& card : line) table += head_of(card);
   for (std::size_t i = line.size(); i < kMaxSheetColumns; ++i) table += "<td></td>";
   table += "</tr></thead>\n<tbody>\n" + picture_rows(line);
-  for (const SheetRow& row : figure_rows(line)) {
+  for (const SheetRow& row : figure_rows(line, level_of)) {
     table += "<tr class=\"figure\"><th scope=\"row\">" + row.name + " <small>" + row.unit +
              "</small></th>";
     for (const std::string& value : row.values) table += "<td>" + value + "</td>";
@@ -121,7 +121,7 @@ std::string sheet_html(const StimulusSheet& sheet) {
   html += "<p class=\"about\">" + xml_escaped(sheet.protocol + "; " + sheet.rendering) +
           "<br>seal " + sheet.seal + "</p>\n";
   html += "<p class=\"unblinds\" role=\"note\">" + std::string(kUnblinds) + "</p>\n";
-  for (const auto& line : sheet.lines) html += table_of(line);
+  for (const auto& line : sheet.lines) html += table_of(line, sheet.level_of);
   return html + "</body>\n</html>\n";
 }
 

@@ -30,7 +30,7 @@ constexpr int kHeadTop = 130;
 constexpr int kPanelTop = 204;
 constexpr int kPanelStep = 296;
 constexpr int kFiguresTop = kPanelTop + 3 * kPanelStep + 14;
-constexpr int kFigureStep = 20;
+constexpr int kFigureStep = 18;
 /// Pixels of a PNG per unit: enough for a projector.
 constexpr double kPixelsOfPage = 480.0 / kPanel;
 constexpr double kPointsOfPage = 29.7 / 2.54 * 72 / kPageWidth;  ///< points of a PDF per unit
@@ -199,7 +199,7 @@ void add_card(Page& page, const SheetCard& card, double x, double width, int sid
 
 void add_line(Page& page, const StimulusSheet& sheet, std::size_t number) {
   const auto& line = sheet.lines[number];
-  const std::vector<SheetRow> rows = figure_rows(line);
+  const std::vector<SheetRow> rows = figure_rows(line, sheet.level_of);
   const double room = kPageWidth - 2 * kMargin - kNamesWidth + kGap;
   const double width =
       std::min<double>(kWidestColumn, std::floor(room / static_cast<double>(line.size())));

@@ -60,11 +60,15 @@ const std::vector<Figure>& figures() {
 
 }  // namespace
 
-std::vector<SheetRow> figure_rows(const std::vector<SheetCard>& line) {
+std::vector<SheetRow> figure_rows(const std::vector<SheetCard>& line, const std::string& level_of) {
   std::vector<SheetRow> rows;
   for (const Figure& figure : figures()) {
     rows.push_back({figure.name, figure.unit, {}});
     for (const SheetCard& card : line) rows.back().values.push_back(figure.value(card));
+  }
+  if (!line.empty() && !line.front().level.empty()) {
+    rows.push_back({"level re threshold, " + level_of, "", {}});
+    for (const SheetCard& card : line) rows.back().values.push_back(card.level);
   }
   return rows;
 }

@@ -15,7 +15,9 @@ struct SheetRow {
   std::vector<std::string> values;
 };
 
-[[nodiscard]] std::vector<SheetRow> figure_rows(const std::vector<SheetCard>& line);
+/// \param level_of  StimulusSheet::level_of
+[[nodiscard]] std::vector<SheetRow> figure_rows(const std::vector<SheetCard>& line,
+                                                const std::string& level_of);
 
 /// "label, 2 of 5"
 [[nodiscard]] std::string title_of(const SheetCard& card);

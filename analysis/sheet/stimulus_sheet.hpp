@@ -38,6 +38,7 @@ struct SheetCard {
   engine::Gains gains;
   double picture_entropy = 0.0;  ///< nats
   double texture_entropy = 0.0;  ///< nats, of the texture's picture
+  std::string level;             ///< re published thresholds, in words: "12 to 31 dB"; may be empty
 };
 
 struct StimulusSheet {
@@ -48,6 +49,7 @@ struct StimulusSheet {
   bool simulated = false;
   int side_px = 0;                            ///< of the square that every picture fits in
   std::vector<std::vector<SheetCard>> lines;  ///< of at most kMaxSheetColumns
+  std::string level_of{};                     ///< the device of the cards' levels, in words
 };
 
 /// Reads fields from the pack and pictures from the study's images. Lines are sorted by method,

@@ -31,6 +31,7 @@
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/population.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "protocols/simulation/trial_course.hpp"
 
 #include <algorithm>
 #include <map>
@@ -329,12 +330,13 @@ std::unique_ptr<session::SessionClock> clock_for(const session::Explorer& explor
 }
 
 /// Fills in what the session's first event says about the simulated device.
-void describe_simulated(const session::Explorer& explorer, store::SessionOpening& opening) {
-  opening.device = "simulated";
+void describe_simulated(const session::Explorer& explorer, const device::DeviceModel& held,
+                        store::SessionOpening& opening) {
   if (const auto* const real_time = dynamic_cast<const session::RealTimeExplorer*>(&explorer)) {
     const device::DeviceInfo device{"simulated", "", device::HandOptions{}.max_force_n, true};
     session::describe_station(opening, device, real_time->scheduling(), device::kServoRateHz, "");
   }
+  opening.device = device::words_of_simulated(held);
   opening.simulated = true;
 }
 
@@ -349,7 +351,7 @@ class SimulatedSession {
         database_(options, study),
         source_(study.pack, study.key.study.rendering),
         instruments_(instruments_for(options)),
-        subject_(subject_for(*options.subject, study.key.study)),
+        subject_(subject_for(*options.subject, study.key.study, options.on)),
         population_(simulation::population_of(
             {study.key, source_, subject_, options.seed,
              static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))})) {}
@@ -366,13 +368,16 @@ class SimulatedSession {
   /// \param window  null: the participant answers directly
   int run_before(ParticipantWindow* window) {
     const std::unique_ptr<session::Explorer> explorer = explorer_for(options_);
-    const EnteredSession entered = enter_session(
-        options_, study_, database_,
-        [&](store::SessionOpening& opening) { describe_simulated(*explorer, opening); });
+    const EnteredSession entered =
+        enter_session(options_, study_, database_, [&](store::SessionOpening& opening) {
+          describe_simulated(*explorer, subject_.device, opening);
+        });
     const std::unique_ptr<session::SessionClock> clock = clock_for(*explorer, entered.clock);
     const std::unique_ptr<simulation::SimulatedParticipant> mind =
         population_->participant(entered.enrolment);
-    mind->come_to(options_.visit);
+    mind->come_to(options_.visit,
+                  simulation::course_of(study_.key.study,
+                                        design::make_schedule(study_.key.study, entered.draw)));
     std::optional<WindowSubject> before_window;
     if (window != nullptr) before_window.emplace(*window, *mind, options_.real_time);
     session::AlwaysReady devices;

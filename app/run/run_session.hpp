@@ -38,6 +38,7 @@ struct RunOptions {
   std::string station{};  ///< of a study with several; empty: its only one
   /// A simulated participant instead of a person: a model file, or "default".
   std::optional<std::filesystem::path> subject;
+  std::string on;          ///< model of the device that a simulated hand holds; empty: ideal
   std::uint64_t seed = 1;  ///< of the simulated participant
   bool headless = false;
   bool real_time = false;   ///< run a simulated participant in real time

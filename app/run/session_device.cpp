@@ -80,6 +80,7 @@ SessionDevice::SessionDevice(const RunOptions& options, const PlaneGeometry& pla
                              session::Attendant& attendant)
     : settings_(device::device_settings_for(options.settings)),
       driver_(chosen_driver(options.device, settings_)) {
+  settings_.simulated_on = options.on;
   first_ = open();
   first_->halt();
   info_ = first_->info();

@@ -331,7 +331,10 @@ class Procedure {
         0.001 * SlowStrokes::kSpeedMmS * std::max(figures.viscous_n_s_per_m.value, 0.0);
     std::string no_delay = figures.no_delay;
     if (figures.delay_ms && verdict_on_delay(*figures.delay_ms) == DelayVerdict::unclear) {
-      no_delay = "unclear: " + words_of(*figures.delay_ms, 1, "ms");
+      no_delay =
+          "unclear: " + words_of(*figures.delay_ms, 1, "ms") +
+          "; slow motors or soft arms round the turns of the push: switch off filters of the "
+          "force in driver and amplifier, tighten the arms, and shake it again";
     } else {
       result.delay_ms = figures.delay_ms;
     }

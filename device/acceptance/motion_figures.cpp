@@ -221,14 +221,29 @@ double way_in(const std::vector<double>& x, std::size_t middle, std::size_t half
   return way;
 }
 
+/// The mean of the ways, +1, 0 or -1, that the handle moves in a window, by the smooth weight.
+double mean_way_in(const std::vector<double>& x, std::size_t middle, const WindowWeight& weight) {
+  constexpr std::size_t kLocal = 4;
+  double way = 0.0;
+  for (std::size_t i = 0; i <= 2 * weight.half; ++i) {
+    const std::size_t at = middle - weight.half + i;
+    const double change_mm = x[at + kLocal] - x[at - kLocal];
+    if (change_mm != 0.0) way += weight.value[i] * std::copysign(1.0, change_mm);
+  }
+  return way;
+}
+
 /// Ticks from `from` to before `end`.
 struct TickRange {
   std::size_t from = 0;
   std::size_t end = 0;
 };
 
+enum class Turning { left_out, kept };
+
+/// \param turning  whether windows in which the handle turns round are kept
 std::vector<Window> windows_in(const EvenSeries& series, TickRange ticks, std::size_t half,
-                               double step_mm) {
+                               double step_mm, Turning turning) {
   constexpr std::size_t kEdge = 8;
   const WindowWeight weight(half);
   const std::vector<double>& x = series.position_mm;
@@ -236,8 +251,9 @@ std::vector<Window> windows_in(const EvenSeries& series, TickRange ticks, std::s
   const std::size_t first = ticks.from + half + static_cast<std::size_t>(kLatestDelay) + kEdge;
   for (std::size_t middle = first; middle + half + kEdge < ticks.end; middle += half / 2) {
     Window window;
-    window.way = way_in(x, middle, half, step_mm);
-    if (window.way == 0.0) continue;
+    const bool keeps = turning == Turning::kept;
+    window.way = keeps ? mean_way_in(x, middle, weight) : way_in(x, middle, half, step_mm);
+    if (!keeps && window.way == 0.0) continue;
     for (std::size_t i = 0; i <= 2 * half; ++i) {
       const double offset_m = 0.001 * (x[middle - half + i] - x[middle]);
       window.acceleration += weight.second[i] * offset_m;
@@ -352,13 +368,9 @@ constexpr double kRigidUnexplained = 0.02;
 struct WindowFits {
   std::optional<WindowFit> best;       ///< of those without negative damping
   std::optional<Measured> delay_ms{};  ///< if the fits agree, as they do for a rigid handle
-  /// Of the longest windows, which arms that yield disturb least, and which see a slow motor's time
-  /// constant as delay; nothing if they leave too much unexplained.
-  std::optional<WindowFit> slow{};
 };
 
 WindowFits fits_of(const std::vector<std::vector<Window>>& by_length, double friction_n) {
-  constexpr double kSlowUnexplained = 0.05;
   constexpr double kAgreeingTicks = 0.5;
   WindowFits fits;
   std::vector<WindowFit> free;
@@ -371,7 +383,6 @@ WindowFits fits_of(const std::vector<std::vector<Window>>& by_length, double fri
     if (fit && (!fits.best || fit->unexplained < fits.best->unexplained)) fits.best = fit;
   }
   if (free.empty()) return fits;
-  if (free.back().unexplained < kSlowUnexplained) fits.slow = free.back();
   const auto [least, greatest] =
       std::ranges::minmax(free, {}, [](const WindowFit& fit) { return fit.delay_ticks; });
   const WindowFit& clearest = *std::ranges::min_element(free, {}, &WindowFit::unexplained);
@@ -382,6 +393,20 @@ WindowFits fits_of(const std::vector<std::vector<Window>>& by_length, double fri
                            (2.0 * clearest.delay_error_ticks + spread) * ms + kDelayFloorMs +
                                kDelayMsUnexplained * clearest.unexplained};
   return fits;
+}
+
+/// The fit over windows so long that soft arms follow, whose resonance lies above what the windows
+/// let through: below it a structure turns no phase, so what comes late there is delay, or a
+/// motor's time constant. So long a window holds turns of the handle.
+/// \return nothing if it leaves too much unexplained
+std::optional<WindowFit> slow_fit(const EvenSeries& series, TickRange ticks, double friction_n,
+                                  double step_mm) {
+  constexpr std::size_t kLongHalf = 48;  // ticks
+  constexpr double kMostUnexplainedSlowly = 0.05;
+  const std::vector<Window> windows = windows_in(series, ticks, kLongHalf, step_mm, Turning::kept);
+  if (windows.size() <= 2 * kUnknowns) return std::nullopt;
+  const std::optional<WindowFit> fit = best_fit(windows, friction_n, 3);
+  return fit && fit->unexplained < kMostUnexplainedSlowly ? fit : std::nullopt;
 }
 
 /// A turn of the push.
@@ -579,10 +604,10 @@ std::optional<LaggingDelay> lagging_delay(const EvenSeries& series,
   return best;
 }
 
-/// Short stretches are not disturbed by soft arms, long ones less by encoder steps. What else may
-/// be the delay, because motors are slow, counts if it is longer; how far all disagree belongs to
-/// the error.
-/// \param slow  WindowFits::slow
+/// Short stretches are not disturbed by soft arms, long ones less by encoder steps; but a slow
+/// motor rounds a bend that soft arms round too. So the delay lies between what the bends say and
+/// what the slow motion says.
+/// \param slow  slow_fit
 MeasuredOrWhy delay_by_turns(const EvenSeries& series, TickRange ticks, double push_n,
                              const std::optional<WindowFit>& slow,
                              std::vector<std::pair<double, double>>& by_delay) {
@@ -590,7 +615,8 @@ MeasuredOrWhy delay_by_turns(const EvenSeries& series, TickRange ticks, double p
   constexpr double kFarHalf = 6.5;
   constexpr double kLongHalf = 8.0;
   constexpr double kNoLag = 1.0;
-  constexpr double kAlikeTicks = 0.75;
+  constexpr double kSlowEarlyTicks = 0.5;  // as in the shipped models
+  constexpr double kSlowTicksUnexplained = 10.0;
   constexpr double kUnseenTicks = 0.5;  // for a slow motor that no long window shows
   constexpr std::size_t kFewestTurns = 8;
   const std::vector<Turn> turns = turns_within(
@@ -609,19 +635,17 @@ MeasuredOrWhy delay_by_turns(const EvenSeries& series, TickRange ticks, double p
                               std::to_string(std::lround(kLatestBend * ms)) +
                               " ms: the delay is longer, or something held the handle"};
   }
-  const double bend = near->ticks + kTurnsEarlyTicks;
-  const bool lags = lagging->lag > kNoLag;
-  const double apart = slow ? std::abs(slow->delay_ticks - bend) : 0.0;
-  if (!lags && slow && apart <= kAlikeTicks && slow->unexplained < kRigidUnexplained) {
-    return {Measured{bend * ms, apart * ms + kTurnsFloorMs}};
+  double bend = near->ticks + kTurnsEarlyTicks;
+  double error = 0.0;
+  if (lagging->lag > kNoLag) {
+    bend = std::max(bend, lagging->delay + lagging->lag);
+    error += kLagShare * lagging->lag;
   }
-  double delay = bend;
-  if (lags) delay = std::max(delay, lagging->delay + lagging->lag);
-  if (slow) delay = std::max(delay, slow->delay_ticks);
-  const double error = 2.0 * near->error_ticks + std::abs(near->ticks - far->ticks) +
-                       (delay - bend) + (lags ? kLagShare * lagging->lag : 0.0) +
-                       (slow ? 0.0 : kUnseenTicks);
-  return {Measured{delay * ms, error * ms + kTurnsFloorMs}};
+  const double other = slow ? slow->delay_ticks + kSlowEarlyTicks : bend;
+  error += 0.5 * std::abs(other - bend);
+  error += slow ? kSlowTicksUnexplained * slow->unexplained
+                : 2.0 * near->error_ticks + std::abs(near->ticks - far->ticks) + kUnseenTicks;
+  return {Measured{0.5 * (bend + other) * ms, error * ms + kTurnsFloorMs}};
 }
 
 ShakeOrWhy no_shake(std::string why) {
@@ -740,7 +764,8 @@ ShakeOrWhy shake_figures(const ShakenStrokes& strokes, double friction_n, double
   const double least_mm = step_mm > 0.0 ? step_mm : kUnknownStepMm;
   std::vector<std::vector<Window>> by_length;
   for (const std::size_t half : kHalves) {
-    std::vector<Window> windows = windows_in(series, {from, end}, half, least_mm);
+    std::vector<Window> windows =
+        windows_in(series, {from, end}, half, least_mm, Turning::left_out);
     if (windows.size() >= kFewestWindows) by_length.push_back(std::move(windows));
   }
   if (by_length.empty()) {
@@ -750,8 +775,10 @@ ShakeOrWhy shake_figures(const ShakenStrokes& strokes, double friction_n, double
   WindowFits fits = fits_of(by_length, friction_n);
   if (fits.best) {
     const double viscous = std::max(-fits.best->unknowns[2] / fits.best->unknowns[0], 0.0);
-    fits = fits_of(by_length, friction_n - 0.001 * SlowStrokes::kSpeedMmS * viscous);
+    friction_n -= 0.001 * SlowStrokes::kSpeedMmS * viscous;
+    fits = fits_of(by_length, friction_n);
   }
+  const std::optional<WindowFit> slow = slow_fit(series, {from, end}, friction_n, least_mm);
   const std::optional<WindowFit>& best = fits.best;
   if (!best) return no_shake("the handle's motion does not tell its mass");
   if (best->unexplained > kMostUnexplained) {
@@ -769,7 +796,7 @@ ShakeOrWhy shake_figures(const ShakenStrokes& strokes, double friction_n, double
   figures.viscous_n_s_per_m = {
       viscous, 2.0 * best->errors[2] * mass_kg + kViscousFloor + 0.1 * std::abs(viscous)};
   const MeasuredOrWhy by_turns =
-      delay_by_turns(series, {from, end}, strokes.push_n(), fits.slow, figures.by_delay);
+      delay_by_turns(series, {from, end}, strokes.push_n(), slow, figures.by_delay);
   figures.delay_ms = fits.delay_ms ? fits.delay_ms : by_turns.measured;
   if (!figures.delay_ms) figures.no_delay = by_turns.why;
   return {figures, ""};

@@ -1,5 +1,5 @@
 /// \file A plug-in as the host sees it: its library, one open device of it, and everything that it
-/// says, judged before anybody believes it. Private to device/: it shows the C interface.
+/// says, judged before anybody believes it. It shows the C interface, which stays within device/.
 #pragma once
 
 #include "device/haptic_device.hpp"

@@ -104,16 +104,6 @@ namespace {
 constexpr PlaneGeometry kNamedPlane{0.2, 500, 500};
 constexpr double kNamedExploreS = 8.0 * 3600.0;
 
-void check(const HandOptions& o) {
-  const bool positive = o.mass_kg > 0.0 && o.explore_s > 0.0 && o.max_force_n > 0.0;
-  const bool not_negative = o.arm_stiffness_n_per_mm >= 0.0 && o.arm_damping_n_s_per_mm >= 0.0 &&
-                            o.push_n >= 0.0 && o.push_damping_n_s_per_mm >= 0.0 &&
-                            o.start_height_mm >= 0.0;
-  if (!positive || !not_negative) {
-    throw std::invalid_argument("SimulatedHand: an option is out of range");
-  }
-}
-
 /// \return the share of the push at a time after the start: from 0 to 1, level at both ends
 double push_share(double time_s) noexcept {
   const double u = std::min(time_s / SimulatedHand::kPushBuildUpS, 1.0);
@@ -128,28 +118,48 @@ std::vector<DeviceListing> list_simulated(const DeviceSettings&) {
   return {listing};
 }
 
-std::unique_ptr<HapticDevice> open_simulated(const DeviceSettings&) {
+std::unique_ptr<HapticDevice> open_simulated(const DeviceSettings& settings) {
   RandomStream random(1, "simulated device");
   HandOptions hand;
   hand.explore_s = kNamedExploreS;
   ExplorationOptions exploration;
   exploration.duration_s = kNamedExploreS;
-  return std::make_unique<SimulatedHand>(hand, ExplorationPath(kNamedPlane, exploration, random));
+  const std::string& held = settings.simulated_on;
+  return std::make_unique<SimulatedHand>(hand, ExplorationPath(kNamedPlane, exploration, random),
+                                         held.empty() ? DeviceModel{} : device_model(held));
 }
 
 }  // namespace
+
+std::string words_of_simulated(const DeviceModel& held) {
+  const bool ideal = held.name.empty() || held.name == "ideal";
+  return ideal ? "simulated" : "simulated " + held.name;
+}
 
 SimulatedHand::SimulatedHand(const HandOptions& options, ExplorationPath path,
                              const DeviceModel& device)
     : options_(options),
       path_(std::move(path)),
-      dynamics_(device, kServoTickS),
+      held_(options, device, kServoTickS),
       max_force_n_(device.max_force_n > 0.0 ? std::min(device.max_force_n, options.max_force_n)
-                                            : options.max_force_n) {
-  check(options);
+                                            : options.max_force_n),
+      device_(device) {
   last_tick_ = std::llround(options.explore_s * kServoRateHz);
-  const Vec2 start_mm = path_.at(0.0, stroke_).position_mm;
-  dynamics_.place({start_mm.x, start_mm.y, options.start_height_mm});
+  const Vec2 first_mm = path_.at(0.0, stroke_).position_mm;
+  held_.place({first_mm.x, first_mm.y, options.start_height_mm});
+}
+
+void SimulatedHand::feel_by(TipSense& sense) {
+  // No force goes through its motors, and nobody reads it.
+  DeviceModel unforced = device_;
+  unforced.delay_ticks = 0;
+  unforced.lowpass_hz = unforced.force_step_n = unforced.max_force_n = 0.0;
+  unforced.position_step_mm = 0.0;
+  unforced.velocity_readings = 0;
+  unforced.planted = {};
+  unforced_.emplace(options_, unforced, kServoTickS);
+  unforced_->place(held_.device.true_position_mm());
+  sense_ = &sense;
 }
 
 DeviceInfo SimulatedHand::info() const {
@@ -157,7 +167,7 @@ DeviceInfo SimulatedHand::info() const {
 }
 
 DeviceStatus SimulatedHand::read(DeviceSample& sample) noexcept {
-  sample = {dynamics_.read_position_mm(), dynamics_.read_velocity_mm_s(),
+  sample = {held_.device.read_position_mm(), held_.device.read_velocity_mm_s(),
             static_cast<std::uint64_t>(tick_) + 1};
   return tick_ < last_tick_ ? DeviceStatus::ok : DeviceStatus::stopped;
 }
@@ -165,16 +175,19 @@ DeviceStatus SimulatedHand::read(DeviceSample& sample) noexcept {
 DeviceStatus SimulatedHand::write(Vec3 force_n) noexcept {
   const double time_s = static_cast<double>(tick_) * kServoTickS;
   const PathPoint target = path_.at(time_s, stroke_);
-  const Vec3 tip_mm = dynamics_.true_position_mm();
-  const double damping = options_.arm_damping_n_s_per_mm;
-  const Vec2 pull_n =
-      options_.arm_stiffness_n_per_mm * (target.position_mm - Vec2{tip_mm.x, tip_mm.y}) +
-      damping * target.velocity_mm_s;
   const double push_n = options_.push_n * push_share(time_s);
-  dynamics_.tick(force_n, {{pull_n.x, pull_n.y, -push_n},
-                           options_.mass_kg,
-                           {damping, damping, options_.push_damping_n_s_per_mm}});
+  const Vec3 tip_mm = held_.device.true_position_mm();
+  held_.tick(force_n, target, push_n);
   ++tick_;
+  if (sense_ != nullptr) {
+    const Vec3 before_mm_s = yielding_mm_s_;
+    static_cast<void>(unforced_->tick({}, target, push_n));
+    const Vec3 own_mm_s = unforced_->device.true_velocity_mm_s();
+    yielding_mm_s_ = held_.device.true_velocity_mm_s() - Vec3{own_mm_s.x, own_mm_s.y, 0.0};
+    // mm/s in a tick of 1 ms are m/s^2.
+    static_assert(kServoTick == std::chrono::milliseconds(1));
+    sense_->feel(tip_mm, force_n, yielding_mm_s_ - before_mm_s);
+  }
   return DeviceStatus::ok;
 }
 

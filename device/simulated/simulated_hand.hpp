@@ -7,10 +7,13 @@
 #include "core/vec.hpp"
 #include "device/haptic_device.hpp"
 #include "device/model/device_model.hpp"
+#include "device/simulated/hand_on_tip.hpp"
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace touchtrial::device {
@@ -20,12 +23,6 @@ struct ExplorationOptions {
   double fastest_mm_s = 150.0;  ///< >= slowest
   double margin_mm = 8.0;       ///< kept from the plane's edge, >= 0; at most a fifth of a side
   double duration_s = 10.0;     ///< > 0
-};
-
-/// Place and speed of the path at one time.
-struct PathPoint {
-  Vec2 position_mm;
-  Vec2 velocity_mm_s;
 };
 
 /// Strokes end to end. Each starts and ends at rest, speeds up and slows down smoothly (continuous
@@ -61,22 +58,24 @@ class ExplorationPath {
   std::vector<Stroke> strokes_;
 };
 
-/// A hand on a stylus, as a point mass. Defaults: a light pen grip, near critical damping.
-struct HandOptions {
-  double mass_kg = 0.1;                    ///< of hand and stylus as felt at the tip, > 0
-  double arm_stiffness_n_per_mm = 0.2;     ///< spring towards the path, along the plane, >= 0
-  double arm_damping_n_s_per_mm = 0.008;   ///< of motion against the path's, >= 0
-  double push_n = 0.7;                     ///< steady push on the plane, >= 0
-  double push_damping_n_s_per_mm = 0.008;  ///< of motion across the plane, >= 0
-  double start_height_mm = 15.0;           ///< above the plane, >= 0
-  double explore_s = 10.0;                 ///< after which the hand stops, > 0
-  double max_force_n = 3.3;                ///< of the device that it holds, > 0; a model's too
+/// \return how records name a simulated hand's device: "simulated", with a model's name unless it is
+///   ideal
+[[nodiscard]] std::string words_of_simulated(const DeviceModel& held);
+
+/// What a simulated hand notices of its own tip.
+class TipSense {
+ public:
+  virtual ~TipSense() = default;
+  /// One tick, on the thread of the servo. Must not block, allocate or throw.
+  /// \param force_n  commanded for the tick
+  /// \param acceleration_m_s2  of the tip, less what the hand does by itself
+  virtual void feel(Vec3 position_mm, Vec3 force_n, Vec3 acceleration_m_s2) noexcept = 0;
 };
 
-/// The driver "simulated". Along the plane a spring and a damper pull the mass towards the path. A
-/// push, which builds up smoothly while the hand comes down from above, presses it on the plane.
-/// The servo's forces move it, through the device that it holds: an ideal one unless a model is
-/// given (device/model). Virtual time: each `write` is one tick. The motion depends on the options,
+/// The driver "simulated". Along the plane the arm pulls the hand towards the path. A push, which
+/// builds up smoothly while the hand comes down from above, presses it on the plane. The servo's
+/// forces move it, through the device that it holds: an ideal one unless a model is given
+/// (device/model). Virtual time: each `write` is one tick. The motion depends on the options,
 /// the path, the device and the forces alone. Not thread-safe.
 class SimulatedHand final : public HapticDevice {
  public:
@@ -98,11 +97,25 @@ class SimulatedHand final : public HapticDevice {
   /// \return the virtual time since the hand was made
   [[nodiscard]] std::chrono::nanoseconds now() const noexcept;
 
+  /// Before the first tick.
+  /// \param sense  told of every tick; must outlive the hand
+  void feel_by(TipSense& sense);
+
+  /// How forces move the tip off the way that the same hand would take with the same device and no
+  /// forces: people know how a device feels in the air. Across the plane, its velocity itself. At
+  /// the end of the last tick.
+  /// \pre feel_by
+  [[nodiscard]] Vec3 yielding_velocity_mm_s() const noexcept { return yielding_mm_s_; }
+
  private:
   HandOptions options_;
   ExplorationPath path_;
-  DeviceDynamics dynamics_;
+  HeldDevice held_;
   double max_force_n_;  ///< of hand and device, the smaller one
+  DeviceModel device_;
+  TipSense* sense_ = nullptr;
+  Vec3 yielding_mm_s_;
+  std::optional<HeldDevice> unforced_;  ///< where somebody feels: moves as if nothing pushed
   std::size_t stroke_ = 0;
   std::int64_t tick_ = 0;
   std::int64_t last_tick_;

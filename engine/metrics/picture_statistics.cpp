@@ -1,5 +1,6 @@
 #include "engine/metrics/picture_statistics.hpp"
 
+#include "engine/fourier/faded_picture.hpp"
 #include "engine/fourier/real_fft.hpp"
 
 #include <algorithm>
@@ -7,7 +8,6 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -28,31 +28,11 @@ struct Ring {
   int coefficients = 0;
 };
 
-std::vector<double> hann(int count) {
-  std::vector<double> window(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) {
-    window[i] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (i + 0.5) / count);
-  }
-  return window;
-}
-
-void load_windowed(const GreyImage& image, RealFft<double>& fft) {
-  const double mean = mean_of(image);
-  const std::vector<double> down = hann(image.height());
-  const std::vector<double> across = hann(image.width());
-  double* to = fft.plane().data();
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) {
-      *to++ = (image.at(y, x) - mean) * down[y] * across[x];
-    }
-  }
-}
-
 std::vector<Ring> rings_of(const GreyImage& image) {
   const int height = image.height();
   const int width = image.width();
   RealFft<double> fft(height, width);
-  load_windowed(image, fft);
+  load_faded(image, fft);
   fft.forward();
   const double lowest = kLeastCycles / std::min(height, width);
   std::vector<Ring> rings(static_cast<std::size_t>(kRingsPerOctave * std::log2(kHighest / lowest)) +

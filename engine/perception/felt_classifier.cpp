@@ -25,9 +25,11 @@ struct Matrix {
   std::vector<double> values;
 };
 
-void check_noise(double noise) {
-  if (!std::isfinite(noise) || noise < 0.0) {
-    throw std::invalid_argument("FeltClassifier: noise must be a finite number >= 0");
+void check_noise(FeltNoise noise) {
+  for (const double deviation : {noise.own, noise.common}) {
+    if (!std::isfinite(deviation) || deviation < 0.0) {
+      throw std::invalid_argument("FeltClassifier: noise must be a finite number >= 0");
+    }
   }
 }
 
@@ -83,14 +85,15 @@ Matrix scatter_within(std::span<const FeltExample> examples,
 
 /// The covariance of FeltClassifier.
 /// \param freedom  degrees of freedom of the scatter within labels
-Matrix covariance_of(Matrix scatter, double freedom, double noise) {
+Matrix covariance_of(Matrix scatter, double freedom, FeltNoise noise) {
   const std::size_t n = scatter.size;
   const double off_diagonal = freedom / (freedom + static_cast<double>(n));
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) {
       scatter.at(i, j) *= (i == j ? 1.0 : off_diagonal) / std::max(freedom, 1.0);
+      scatter.at(i, j) += noise.common * noise.common;
     }
-    scatter.at(i, i) += noise * noise + kResolution * kResolution;
+    scatter.at(i, i) += noise.own * noise.own + kResolution * kResolution;
   }
   return scatter;
 }
@@ -165,7 +168,7 @@ void FeltStatistics::add_to_scatter(int label, std::span<const double> features,
   }
 }
 
-FeltClassifier::FeltClassifier(std::span<const FeltExample> examples, double noise) {
+FeltClassifier::FeltClassifier(std::span<const FeltExample> examples, FeltNoise noise) {
   check(examples);
   check_noise(noise);
   dimensions_ = examples.front().features.size();
@@ -175,7 +178,7 @@ FeltClassifier::FeltClassifier(std::span<const FeltExample> examples, double noi
   settle(std::move(covariance.values), std::move(means));
 }
 
-FeltClassifier::FeltClassifier(const FeltStatistics& statistics, double noise)
+FeltClassifier::FeltClassifier(const FeltStatistics& statistics, FeltNoise noise)
     : dimensions_(statistics.features()) {
   check_noise(noise);
   std::vector<std::vector<double>> means = means_of(statistics);

@@ -56,21 +56,29 @@ class FeltStatistics {
   std::vector<double> scatter_;
 };
 
+/// Normal noise of perception on features, which are logarithms of intensities. Converts from the
+/// noise of each feature's own alone.
+struct FeltNoise {
+  constexpr FeltNoise(double own_sd, double common_sd = 0.0)  // NOLINT(google-explicit-constructor)
+      : own(own_sd), common(common_sd) {}
+  double own;     ///< standard deviation of what each feature has by itself, >= 0
+  double common;  ///< standard deviation of what is added to all features alike, >= 0
+};
+
 /// Gaussian classes, each with its own mean, and one covariance for all: that of the examples
 /// within classes, shrunk towards its diagonal by d / (d + degrees of freedom) for d features, plus
 /// the noise of perception. Thread-safe once made.
 class FeltClassifier {
  public:
-  /// \param noise  standard deviation of each feature's perceptual noise, >= 0; for logarithms of
-  ///   intensities, the Weber fraction
+  /// \param noise  of perception
   /// \throws std::invalid_argument if there is no example, a label has none, examples differ in
   ///   length, or a number is out of range or not finite
-  FeltClassifier(std::span<const FeltExample> examples, double noise);
+  FeltClassifier(std::span<const FeltExample> examples, FeltNoise noise);
 
   /// The same, within rounding, from the summary of the examples. A label without examples has
   /// likelihood 0.
   /// \throws std::invalid_argument if no label has an example, or the noise is out of range
-  FeltClassifier(const FeltStatistics& statistics, double noise);
+  FeltClassifier(const FeltStatistics& statistics, FeltNoise noise);
 
   [[nodiscard]] int labels() const noexcept { return static_cast<int>(means_.size()); }
 

@@ -22,9 +22,9 @@ inline constexpr int kDirectionsAt = kNormalBandsAt + kFeltBands;
 inline constexpr int kPartsAt = kDirectionsAt + kFeltDirections;
 inline constexpr int kFeltFeatures = kPartsAt + kFeltParts;
 
-/// Natural logarithms of root mean square forces in newtons: in the lateral force's bands, in the
-/// normal force's bands, in the lateral force's component along each direction (all bands), and in
-/// the lateral force on each part of the plane (all bands). Doubling the forces adds ln 2 to each.
+/// Natural logarithms of root mean square forces in newtons, or of accelerations in thresholds: in
+/// the lateral bands, in the normal bands, in the lateral component along each direction (all
+/// bands), and laterally on each part of the plane (all bands). Doubling all adds ln 2 to each.
 using FeltFeatures = std::array<double, kFeltFeatures>;
 
 }  // namespace touchtrial::engine

@@ -1,6 +1,7 @@
 #include "engine/perception/texture_sense.hpp"
 
 #include "engine/fourier/real_fft.hpp"
+#include "engine/perception/threshold_weights.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,9 +13,9 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr int kWindow = 256;
+constexpr int kWindow = kSenseWindow;
 constexpr int kHop = kWindow / 2;
-constexpr int kBins = kWindow / 2;  // above the mean; the last is half the sample rate
+constexpr int kBins = kSenseBins;  // above the mean; the last is half the sample rate
 constexpr double kSettleS = 0.5;
 constexpr double kSlowestMmS = 20.0;
 constexpr int kFewestContacts = kWindow * 3 / 4;
@@ -52,8 +53,19 @@ class SummedPower {
   std::array<double, kBins + 1> sums_{};
 };
 
-double log_intensity(double power, double threshold_n) noexcept {
-  return 0.5 * std::log(power + threshold_n * threshold_n);
+/// Power of an intensity that is none by a curve, in thresholds.
+constexpr double kNoPower = 1e-12;
+
+using Weights = std::array<double, kBins + 1>;
+
+/// What a bin's power counts for.
+Weights weights_of(const SenseOptions& options) {
+  Weights weights;
+  weights.fill(1.0);
+  if (!options.curve) return weights;
+  const std::vector<double>& of_bins = threshold_weights(*options.curve, kWindow, options.rate_hz);
+  std::copy(of_bins.begin(), of_bins.end(), weights.begin());
+  return weights;
 }
 
 /// What half a window adds to its window.
@@ -63,18 +75,19 @@ struct HalfWindow {
   Vec3 end_mm;
 };
 
-/// Power on a part of the plane, N^2, summed over windows.
+/// Power on a part of the plane, summed over windows.
 struct PartPower {
   double lateral = 0.0;
   int windows = 0;
 };
 
-/// Powers, N^2, summed over windows.
+/// Powers, N^2 or squares of thresholds, summed over windows.
 struct FeltPower {
   std::array<double, kFeltBands> lateral{};
   std::array<double, kFeltBands> normal{};
   double xx = 0.0, yy = 0.0, xy = 0.0;
   std::array<PartPower, kFeltParts> parts{};
+  std::array<double, kBins + 1> bins{};  // of all axes, without weights
   int windows = 0;
 };
 
@@ -89,14 +102,16 @@ int part_at(Vec3 at_mm, const PlaneGeometry& plane) noexcept {
 }  // namespace
 
 struct TextureSense::State {
-  explicit State(const SenseOptions& chosen) : options(chosen), fft(1, kWindow) {}
+  explicit State(const SenseOptions& chosen)
+      : options(chosen), weights(weights_of(chosen)), fft(1, kWindow) {}
 
-  void take(Vec3 at_mm, Vec3 force_n) noexcept;
+  void take(Vec3 at_mm, Vec3 felt, bool touches) noexcept;
   void end_half() noexcept;
   [[nodiscard]] Spectrum spectrum_of(const Samples& samples) noexcept;
   void add_window(double speed_mm_s, Vec3 middle_mm) noexcept;
 
   SenseOptions options;
+  Weights weights;
   RealFft<float> fft;
   Samples hann = hann_window();
   Samples x{}, y{}, z{};
@@ -108,13 +123,13 @@ struct TextureSense::State {
   FeltPower power;
 };
 
-void TextureSense::State::take(Vec3 at_mm, Vec3 force_n) noexcept {
-  x[filled] = static_cast<float>(force_n.x);
-  y[filled] = static_cast<float>(force_n.y);
-  z[filled] = static_cast<float>(force_n.z);
+void TextureSense::State::take(Vec3 at_mm, Vec3 felt, bool touches) noexcept {
+  x[filled] = static_cast<float>(felt.x);
+  y[filled] = static_cast<float>(felt.y);
+  z[filled] = static_cast<float>(felt.z);
   const Vec2 step_mm{at_mm.x - last_mm.x, at_mm.y - last_mm.y};
   current.path_mm += std::sqrt(step_mm.x * step_mm.x + step_mm.y * step_mm.y);
-  current.contacts += force_n.z > 0.0 ? 1 : 0;
+  current.contacts += touches ? 1 : 0;
   current.end_mm = at_mm;
   ++filled;
   if (filled % kHop == 0) end_half();
@@ -154,10 +169,14 @@ void TextureSense::State::add_window(double speed_mm_s, Vec3 middle_mm) noexcept
   const Spectrum fz = spectrum_of(z);
   // One-sided, so that the powers of all bins sum to the variance; Hann's squares sum to 3/8.
   constexpr double kScale = 2.0 / (kWindow * (0.375 * kWindow));
-  const SummedPower xx([&](int k) { return kScale * std::norm(fx[k]); });
-  const SummedPower yy([&](int k) { return kScale * std::norm(fy[k]); });
-  const SummedPower zz([&](int k) { return kScale * std::norm(fz[k]); });
-  const SummedPower xy([&](int k) { return kScale * std::real(fx[k] * std::conj(fy[k])); });
+  const auto counted = [&](int k, double product) { return weights[k] * (kScale * product); };
+  const SummedPower xx([&](int k) { return counted(k, std::norm(fx[k])); });
+  const SummedPower yy([&](int k) { return counted(k, std::norm(fy[k])); });
+  const SummedPower zz([&](int k) { return counted(k, std::norm(fz[k])); });
+  const SummedPower xy([&](int k) { return counted(k, std::real(fx[k] * std::conj(fy[k]))); });
+  for (int k = 1; k <= kBins; ++k) {
+    power.bins[k] += kScale * (std::norm(fx[k]) + std::norm(fy[k]) + std::norm(fz[k]));
+  }
   const double longest = speed_mm_s * kWindow / options.rate_hz / kLongestFeltMm;  // in bins
   for (int band = 0; band < kFeltBands; ++band) {
     const double low = std::ldexp(longest, band);
@@ -195,7 +214,7 @@ void TextureSense::reset(const PlaneGeometry& plane) noexcept {
   state_->power = {};
 }
 
-void TextureSense::feel(Vec3 position_mm, Vec3 force_n) noexcept {
+void TextureSense::feel(Vec3 position_mm, Vec3 force_n, Vec3 felt) noexcept {
   State& s = *state_;
   if (!s.landed) {
     s.landed = force_n.z > 0.0;
@@ -203,7 +222,7 @@ void TextureSense::feel(Vec3 position_mm, Vec3 force_n) noexcept {
   } else if (s.unsettled > 0) {
     --s.unsettled;
   } else {
-    s.take(position_mm, force_n);
+    s.take(position_mm, felt, force_n.z > 0.0);
   }
   s.last_mm = position_mm;
 }
@@ -211,8 +230,10 @@ void TextureSense::feel(Vec3 position_mm, Vec3 force_n) noexcept {
 FeltFeatures TextureSense::features() const noexcept {
   const FeltPower& p = state_->power;
   const double share = p.windows > 0 ? 1.0 / p.windows : 0.0;
-  const auto intensity = [&](double mean_power) {
-    return log_intensity(std::max(0.0, mean_power), state_->options.threshold_n);
+  const SenseOptions& options = state_->options;
+  const double least = options.curve ? kNoPower : options.threshold_n * options.threshold_n;
+  const auto intensity = [least](double mean_power) {
+    return 0.5 * std::log(std::max(0.0, mean_power) + least);
   };
   FeltFeatures features{};
   for (int band = 0; band < kFeltBands; ++band) {
@@ -229,6 +250,12 @@ FeltFeatures TextureSense::features() const noexcept {
         intensity(part.windows > 0 ? part.lateral / part.windows : share * (p.xx + p.yy));
   }
   return features;
+}
+
+std::array<double, kSenseBins + 1> TextureSense::mean_powers() const noexcept {
+  std::array<double, kSenseBins + 1> mean = state_->power.bins;
+  for (double& power : mean) power /= std::max(1, state_->power.windows);
+  return mean;
 }
 
 int TextureSense::windows() const noexcept {

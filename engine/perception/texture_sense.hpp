@@ -5,14 +5,24 @@
 #include "core/plane_geometry.hpp"
 #include "core/vec.hpp"
 #include "engine/perception/felt_features.hpp"
+#include "engine/perception/vibration_threshold.hpp"
 
+#include <array>
 #include <memory>
+#include <optional>
 
 namespace touchtrial::engine {
+
+/// Samples of a window, and bins of its spectrum above the mean.
+inline constexpr int kSenseWindow = 256;
+inline constexpr int kSenseBins = kSenseWindow / 2;
 
 struct SenseOptions {
   double rate_hz = 1000.0;     ///< of the samples, > 0
   double threshold_n = 0.002;  ///< intensities far below this feel like none, >= 0
+  /// Intensities are in thresholds of this curve, of vibrations at their frequency in time;
+  /// nothing: as they are, with threshold_n. Who feels them adds the threshold: `above_threshold`.
+  std::optional<ThresholdCurve> curve = {};
   /// The plane, for its parts.
   PlaneGeometry plane{0.2, 500, 500};
 };
@@ -20,10 +30,10 @@ struct SenseOptions {
 /// Welch's method in windows of 256 samples (Hann, half overlapped, mean removed). Each window's
 /// frequencies are divided by the stroke's speed in it, so that bands are ranges of wavelength on
 /// the plane at any speed. A window counts if the hand moves at 20 mm/s or more and has contact
-/// (normal force > 0) in three quarters of it. The first half second of contact does not count: it
-/// describes the landing. A window belongs to the part of the plane where its middle lies; a part
-/// without any window feels like the whole. The result depends on the samples only. Not
-/// thread-safe; different objects may be used at the same time.
+/// (normal force > 0) in three quarters of it. The first half second of
+/// contact does not count: it describes the landing. A window belongs to the part of the plane
+/// where its middle lies; a part without any window feels like the whole. The result depends on the
+/// samples only. Not thread-safe; different objects may be used at the same time.
 class TextureSense {
  public:
   /// \throws std::invalid_argument if an option is out of range
@@ -37,10 +47,19 @@ class TextureSense {
 
   /// Adds the next sample; samples are evenly spaced in time. No allocation, lock or exception.
   /// Cost: some 20 ns, averaged over a window.
-  void feel(Vec3 position_mm, Vec3 force_n) noexcept;
+  void feel(Vec3 position_mm, Vec3 force_n) noexcept { feel(position_mm, force_n, force_n); }
+  /// The same for what a force does.
+  /// \param force_n  tells contact
+  /// \param felt  the vector whose intensities are felt: the force, or the tip's acceleration in
+  ///   m/s^2 for a curve
+  void feel(Vec3 position_mm, Vec3 force_n, Vec3 felt) noexcept;
 
   /// The intensities of all samples so far. Without a window that counts, each is the threshold.
   [[nodiscard]] FeltFeatures features() const noexcept;
+
+  /// One-sided powers of what was felt, summed over the three axes, in the mean over windows: by
+  /// bin, (m/s^2)^2 or N^2, without any weight. Zeros without a window that counts.
+  [[nodiscard]] std::array<double, kSenseBins + 1> mean_powers() const noexcept;
 
   /// The number of windows that have counted so far.
   [[nodiscard]] int windows() const noexcept;

@@ -158,7 +158,9 @@ Study read_study(const JsonValue& place) {
   study.options = read_options(root, *study.protocol);
   study.classes = read_classes(root.at("classes"));
   study.methods = read_methods(root.at("methods"));
-  if (const auto member = root.find("rendering")) study.rendering = read_rendering(*member);
+  if (const auto member = root.find("rendering")) {
+    study.rendering = read_rendering(*member, study.device);
+  }
   if (const auto member = root.find("trials")) study.trials = read_trials(*member);
   if (const auto member = root.find("practice")) study.practice = read_practice(*member);
   if (const auto member = root.find("session")) study.session = read_session(*member);

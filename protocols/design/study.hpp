@@ -99,6 +99,7 @@ struct Study {
   std::vector<StudyClass> classes;                 ///< >= 2, labels unique
   std::vector<StudyMethod> methods;                ///< >= 1, labels unique
   engine::RenderingOptions rendering;
+  std::string device;  ///< model of the device that the forces are for, or its file; may be empty
   TrialOptions trials;
   PracticePlan practice;
   SessionPlan session;

@@ -238,6 +238,7 @@ nlohmann::json parts_of(const Study& study) {
           {"classes", classes},
           {"methods", methods},
           {"rendering", to_json(study.rendering)},
+          {"device", study.device},
           {"trials", to_json(study.trials)},
           {"practice", to_json(study.practice)},
           {"session", to_json(study.session)},

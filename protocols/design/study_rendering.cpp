@@ -1,6 +1,9 @@
 /// \file The study file's "rendering".
 #include "protocols/design/study_sections.hpp"
 
+#include <algorithm>
+#include <cstddef>
+
 namespace touchtrial::design {
 namespace {
 
@@ -59,6 +62,18 @@ nlohmann::json gains_json(const engine::RenderingOptions& rendering) {
   return {{"tangential_n", rendering.gains->tangential_n}, {"normal_n", rendering.gains->normal_n}};
 }
 
+/// A name or a path; whether there is such a model is said where one is needed.
+std::string read_device(const JsonValue& place) {
+  constexpr std::size_t kLongest = 200;
+  const std::string& device = place.text();
+  const bool plain =
+      std::ranges::none_of(device, [](unsigned char c) { return c < 0x20 || c == 0x7F; });
+  if (device.empty() || device.size() > kLongest || !plain) {
+    place.refuse("must be a model's name, as touchtrial device models lists them, or a file's");
+  }
+  return device;
+}
+
 void read_texture(const JsonObject& object, engine::RenderingOptions& options) {
   read_number(object, "filter_mm", {.low = 0.0, .high = 10.0}, options.filter_mm);
   read_number(object, "texture_stiffness_n_per_mm", {.low = 0.0, .high = 100.0, .open_low = true},
@@ -74,16 +89,17 @@ void read_texture(const JsonObject& object, engine::RenderingOptions& options) {
 
 }  // namespace
 
-engine::RenderingOptions read_rendering(const JsonValue& place) {
+engine::RenderingOptions read_rendering(const JsonValue& place, std::string& device) {
   const JsonObject object =
       place.object({"model", "pitch_mm", "stiffness_n_per_mm", "damping_n_s_per_mm", "filter_mm",
                     "texture_stiffness_n_per_mm", "gains", "equalise", "reference_grey", "friction",
-                    "neighbourhood", "max_force_n"});
+                    "neighbourhood", "max_force_n", "device"});
   engine::RenderingOptions options;
   if (const auto model = object.find("model")) options.model = model->choice(kModelNames);
   read_friction(object, options);
   read_wall(object, options);
   read_texture(object, options);
+  if (const auto member = object.find("device")) device = read_device(*member);
   return options;
 }
 

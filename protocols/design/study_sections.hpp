@@ -124,7 +124,8 @@ void refuse_same_label(const JsonValue& place, const std::string& label, const s
 [[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place,
                                                    std::size_t most_images = kMaxImagesOfClass);
 [[nodiscard]] std::vector<StudyMethod> read_methods(const JsonValue& place);
-[[nodiscard]] engine::RenderingOptions read_rendering(const JsonValue& place);
+/// \param device  receives Study::device, if there is one
+[[nodiscard]] engine::RenderingOptions read_rendering(const JsonValue& place, std::string& device);
 [[nodiscard]] TrialOptions read_trials(const JsonValue& place);
 [[nodiscard]] PracticePlan read_practice(const JsonValue& place);
 [[nodiscard]] SessionPlan read_session(const JsonValue& place);

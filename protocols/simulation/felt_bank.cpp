@@ -54,7 +54,8 @@ FeltBank::FeltBank(const LabelledFields& fields, const design::Study& study,
     const std::size_t place = i / each;
     const std::uint64_t index = (std::uint64_t{place} << kExplorationBits) + i % each;
     felt_[i] = feel_exploration(*fields.all()[place].model, fields.plane(), subject, servo,
-                                RandomStream(options.seed, "subject: felt bank", index));
+                                RandomStream(options.seed, "subject: felt bank", index),
+                                hand_of_participant(subject, options.seed, 1 + i % each));
     count.one_more();
   };
   in_parallel(options.jobs, felt_.size(), feel);
@@ -73,7 +74,8 @@ engine::FeltFeatures feel_trial(const LabelledField& field, const PlaneGeometry&
                                 std::uint64_t seed, int number, std::uint64_t nth) {
   return feel_exploration(*field.model, plane, subject,
                           session::trial_servo_options(study, device::kServoRateHz, {}),
-                          stream_of_trial(seed, kExplorationPurpose, number, nth));
+                          stream_of_trial(seed, kExplorationPurpose, number, nth),
+                          hand_of_participant(subject, seed, static_cast<std::uint64_t>(number)));
 }
 
 }  // namespace touchtrial::simulation

@@ -1,5 +1,7 @@
 #include "protocols/simulation/felt_decision.hpp"
 
+#include "protocols/simulation/thought_time.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -15,14 +17,17 @@ double deviation(std::string_view purpose, std::uint64_t seed, std::uint64_t num
   return RandomStream(seed, purpose, number).normal();
 }
 
+/// Moves a probability by log odds. 0 and 1 have none, and stay.
+double moved(double probability, double log_odds) {
+  if (probability <= 0.0 || probability >= 1.0) return probability;
+  return 1.0 / (1.0 + std::exp(-(std::log(probability / (1.0 - probability)) + log_odds)));
+}
+
 /// Varies the log odds, so that the result stays a probability. A median of 0 or 1 has none: then
 /// all participants are alike.
 double individual_lapse(const SubjectModel& subject, std::uint64_t seed, std::uint64_t number) {
-  const double median = subject.lapse;
-  if (subject.lapse_spread == 0.0 || median <= 0.0 || median >= 1.0) return median;
-  const double log_odds = std::log(median / (1.0 - median)) +
-                          subject.lapse_spread * deviation("subject: lapse", seed, number);
-  return 1.0 / (1.0 + std::exp(-log_odds));
+  if (subject.lapse_spread == 0.0) return subject.lapse;
+  return moved(subject.lapse, subject.lapse_spread * deviation("subject: lapse", seed, number));
 }
 
 double individual_position_bias(const SubjectModel& subject, std::uint64_t seed,
@@ -39,6 +44,20 @@ double liking(const SubjectModel& subject, const std::string& label, std::uint64
   return subject.class_bias_spread * deviation("subject: bias for " + label, seed, number);
 }
 
+engine::FeltNoise individual_noise(const SubjectModel& subject, std::uint64_t seed,
+                                   std::uint64_t number) {
+  const double factor =
+      std::exp(subject.feature_noise_spread * deviation("subject: acuity", seed, number));
+  return {subject.feature_noise * factor, subject.common_noise * factor};
+}
+
+std::optional<FeltFloor> individual_floor(const SubjectModel& subject, engine::FeltNoise noise,
+                                          std::uint64_t seed, std::uint64_t number) {
+  if (!subject.sense) return std::nullopt;
+  return floor_of(noise,
+                  subject.threshold_spread_db * deviation("subject: threshold", seed, number));
+}
+
 constexpr double kQuickestThoughtS = 0.8;
 constexpr double kSlowestThoughtS = 4.0;
 
@@ -49,6 +68,12 @@ const std::string& matched_label(const SubjectModel& subject, const std::string&
     if (label == other) return one;
   }
   return label;
+}
+
+void lean(const std::optional<Moment::Leaning>& leaning, std::vector<double>& support) {
+  if (leaning && leaning->position < support.size()) {
+    support[leaning->position] += leaning->log_odds;
+  }
 }
 
 /// Index of the largest value; a random one of several equal ones.
@@ -73,8 +98,8 @@ Individual::Individual(const SubjectModel& subject, std::uint64_t seed, int numb
     : subject_(&subject),
       seed_(seed),
       number_(static_cast<std::uint64_t>(number)),
-      weber_(subject.weber *
-             std::exp(subject.weber_spread * deviation("subject: acuity", seed, number_))),
+      noise_(individual_noise(subject, seed, number_)),
+      floor_(individual_floor(subject, noise_, seed, number_)),
       lapse_(individual_lapse(subject, seed, number_)),
       position_bias_(individual_position_bias(subject, seed, number_)) {}
 
@@ -104,6 +129,20 @@ SeenPictures see(const std::vector<std::string>& labels, const SubjectModel& sub
   return seen;
 }
 
+std::optional<std::size_t> picture_of(const std::string& label, const SeenPictures& pictures,
+                                      const FeltKnowledge& knowledge) {
+  const auto& labels = knowledge.label_of_prototype;
+  const auto found = std::ranges::find(labels, label);
+  if (found == labels.end()) return std::nullopt;
+  return pictures.picture_of_prototype[static_cast<std::size_t>(found - labels.begin())];
+}
+
+void end_trial(Condition& condition, const TrialPlace& place, int answered,
+               const SeenPictures& pictures, const FeltKnowledge& knowledge) {
+  if (!place.carries_over) return condition.forget();
+  condition.after(static_cast<std::size_t>(answered), picture_of(place.label, pictures, knowledge));
+}
+
 std::vector<double> support_of_pictures(const engine::FeltClassifier& classifier,
                                         const SeenPictures& pictures,
                                         const engine::FeltFeatures& perceived) {
@@ -117,18 +156,34 @@ std::vector<double> support_of_pictures(const engine::FeltClassifier& classifier
 }
 
 FeltDecision::FeltDecision(const Individual& individual, const FeltKnowledge& knowledge)
-    : weber_(individual.weber()),
+    : noise_(individual.noise()),
+      floor_(individual.floor()),
       lapse_(individual.lapse()),
-      classifier_(knowledge.examples, individual.weber()) {}
+      classifier_(examples_above(knowledge, floor_), noise_) {}
 
 ParticipantAnswer FeltDecision::answer(const engine::FeltFeatures& felt,
-                                       const SeenPictures& pictures, RandomStream& random) const {
-  const bool lapses = random.uniform() < lapse_;
+                                       const SeenPictures& pictures, RandomStream& random,
+                                       const Moment& moment) const {
+  const double lapse = moment.lapse_log_odds == 0.0 ? lapse_ : moved(lapse_, moment.lapse_log_odds);
+  const bool lapses = random.uniform() < lapse;
   const int anything = static_cast<int>(random.below(pictures.bias.size()));
-  const double thought_s = random.uniform(kQuickestThoughtS, kSlowestThoughtS);
+  double thought_s = random.uniform(kQuickestThoughtS, kSlowestThoughtS);
+  const engine::FeltNoise noise{noise_.own * moment.noise_factor,
+                                noise_.common * moment.noise_factor};
   engine::FeltFeatures perceived = felt;
-  for (double& feature : perceived) feature += weber_ * random.normal();
-  const int named = strongest(support_of_pictures(classifier_, pictures, perceived), random);
+  if (floor_) floor_->apply_to(perceived);
+  for (double& feature : perceived) feature += noise.own * random.normal();
+  if (noise.common > 0.0) {
+    const double shared = noise.common * random.normal();
+    for (double& feature : perceived) feature += shared;
+  }
+  std::vector<double> support = support_of_pictures(classifier_, pictures, perceived);
+  lean(moment.to_answer, support);
+  lean(moment.to_stimulus, support);
+  const int named = strongest(support, random);
+  if (moment.thought != nullptr) {
+    thought_s = thought_time_s(*moment.thought, margin_of(support), random);
+  }
   return {lapses ? anything : named, std::chrono::milliseconds(std::llround(thought_s * 1000.0))};
 }
 

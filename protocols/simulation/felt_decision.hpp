@@ -5,11 +5,15 @@
 #include "core/random.hpp"
 #include "engine/perception/felt_classifier.hpp"
 #include "engine/perception/felt_features.hpp"
+#include "protocols/simulation/condition.hpp"
+#include "protocols/simulation/felt_floor.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 #include "protocols/simulation/simulated_participant.hpp"
 #include "protocols/simulation/subject_model.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,8 +40,10 @@ class Individual {
   /// \param number  of the participant, from 1
   Individual(const SubjectModel& subject, std::uint64_t seed, int number);
 
-  /// Standard deviation of the noise on the logarithm of every felt intensity.
-  [[nodiscard]] double weber() const noexcept { return weber_; }
+  /// Noise on the logarithms of felt intensities.
+  [[nodiscard]] engine::FeltNoise noise() const noexcept { return noise_; }
+  /// The threshold; nothing with a flat sense.
+  [[nodiscard]] const std::optional<FeltFloor>& floor() const noexcept { return floor_; }
   /// Probability of a random answer, 0 .. 1.
   [[nodiscard]] double lapse() const noexcept { return lapse_; }
   /// Log odds of each picture, whatever is felt.
@@ -48,7 +54,8 @@ class Individual {
   const SubjectModel* subject_;
   std::uint64_t seed_;
   std::uint64_t number_;
-  double weber_;
+  engine::FeltNoise noise_;
+  std::optional<FeltFloor> floor_;
   double lapse_;
   double position_bias_;
 };
@@ -66,6 +73,17 @@ struct SeenPictures {
 [[nodiscard]] SeenPictures see(const std::vector<std::string>& labels, const SubjectModel& subject,
                                const Individual& individual, const FeltKnowledge& knowledge);
 
+/// The position of the picture that a class is matched to; empty if the class was not learnt.
+[[nodiscard]] std::optional<std::size_t> picture_of(const std::string& label,
+                                                    const SeenPictures& pictures,
+                                                    const FeltKnowledge& knowledge);
+
+/// Ends a trial: keeps what of it the next answer leans on.
+/// \param place  of the trial
+/// \param answered  position of the picture
+void end_trial(Condition& condition, const TrialPlace& place, int answered,
+               const SeenPictures& pictures, const FeltKnowledge& knowledge);
+
 /// The support of each picture: the largest sum of log density and bias among the prototypes that
 /// are matched to it; minus infinity if there are none. Cost: a few microseconds.
 /// \param perceived  features with noise
@@ -80,17 +98,21 @@ class FeltDecision {
   /// \throws std::invalid_argument as FeltClassifier
   FeltDecision(const Individual& individual, const FeltKnowledge& knowledge);
 
-  /// Names a picture. Perceives each feature with a noise of the Weber fraction and takes the
+  /// Names a picture. Perceives each feature with noise of its own and takes the
   /// picture with the most support, one of several equal ones at random; or lapses, and takes any
   /// picture. Every call draws lapse, lapse's picture, time to think, noise and tie, in this order,
-  /// so that no draw shifts another. Cost: a few microseconds.
+  /// and at last a time to think that depends on the margin, so that no draw shifts another. Cost:
+  /// a few microseconds.
   /// \param felt  features without noise, natural logarithms of newtons
   /// \param random  stream_of_trial for kAnswerPurpose
+  /// \param moment  the participant's condition; its positions are those of `pictures`
   [[nodiscard]] ParticipantAnswer answer(const engine::FeltFeatures& felt,
-                                         const SeenPictures& pictures, RandomStream& random) const;
+                                         const SeenPictures& pictures, RandomStream& random,
+                                         const Moment& moment = {}) const;
 
  private:
-  double weber_;
+  engine::FeltNoise noise_;
+  std::optional<FeltFloor> floor_;
   double lapse_;
   engine::FeltClassifier classifier_;
 };

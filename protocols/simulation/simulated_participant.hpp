@@ -4,13 +4,15 @@
 #include "core/random.hpp"
 #include "device/simulated/simulated_hand.hpp"
 #include "engine/perception/felt_features.hpp"
-#include "engine/perception/texture_sense.hpp"
 #include "protocols/session/participant.hpp"
+#include "protocols/simulation/felt_exploration.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "protocols/simulation/trial_course.hpp"
 
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <variant>
 
 namespace touchtrial::simulation {
@@ -53,11 +55,16 @@ class SimulatedParticipant : public PromptParticipant {
  public:
   /// \param number  from 1
   SimulatedParticipant(const SubjectModel& subject, std::uint64_t seed, int number)
-      : subject_(subject), seed_(seed), number_(number) {}
+      : subject_(subject), seed_(seed), number_(number), sense_(subject) {}
 
-  /// Comes to a later visit, where paths and noise are others than at those before.
+  /// Comes to a visit, where paths and noise are others than at those before.
   /// \param visit  from 1
-  void come_to(int visit) noexcept { trials_begun_ = trials_before(visit); }
+  /// \param course  of the visit; may be empty
+  void come_to(int visit, TrialCourse course = {}) {
+    visit_ = visit;
+    trials_begun_ = trials_before(visit);
+    begin_visit(visit, std::move(course));
+  }
   /// How many trials a visit counts as coming after: more than any session has.
   [[nodiscard]] static std::uint64_t trials_before(int visit) noexcept {
     constexpr std::uint64_t kTrialsOfVisit = 1'000'000;
@@ -74,13 +81,20 @@ class SimulatedParticipant : public PromptParticipant {
   /// \param random  stream_of_trial for kAnswerPurpose
   [[nodiscard]] virtual ParticipantAnswer choose(const engine::FeltFeatures& felt,
                                                  RandomStream& random) = 0;
+  /// Called when the participant comes to a visit.
+  virtual void begin_visit(int /*visit*/, TrialCourse /*course*/) {}
+  /// Presentations of this visit that have begun.
+  [[nodiscard]] int begun() const noexcept {
+    return static_cast<int>(trials_begun_ - trials_before(visit_));
+  }
 
  private:
   const SubjectModel& subject_;
   std::uint64_t seed_;
   int number_;
-  engine::TextureSense sense_;
+  HandSense sense_;
   std::optional<device::SimulatedHand> hand_;
+  int visit_ = 1;
   std::uint64_t trials_begun_ = 0;
 };
 

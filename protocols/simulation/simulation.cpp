@@ -2,6 +2,7 @@
 
 #include "protocols/session/session_runner.hpp"
 #include "protocols/simulation/population.hpp"
+#include "protocols/simulation/trial_course.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -30,6 +31,7 @@ struct Setting {
   const design::StudyKey& key;
   const session::StimulusSource& source;
   const Population& population;
+  const device::DeviceModel& held;
   std::uint64_t seed;
   Digest seal;
 };
@@ -66,7 +68,7 @@ store::SessionOpening opening_of(const Setting& setting, const Place& place) {
   if (group && groups.open) opening.group = groups.labels[static_cast<std::size_t>(*group)];
   opening.study_id = setting.key.study_id;
   opening.seal = setting.seal;
-  opening.device = "simulated";
+  opening.device = device::words_of_simulated(setting.held);
   opening.simulated = true;
   return opening;
 }
@@ -90,7 +92,7 @@ FinishedSession run_session(const Setting& setting, const Place& place) {
   session.open({}, opening_of(setting, place), design::schedule_to_json(schedule, setting.key));
   const std::unique_ptr<SimulatedParticipant> participant =
       setting.population.participant(place.number);
-  participant->come_to(place.visit);
+  participant->come_to(place.visit, course_of(setting.key.study, schedule));
   finished.tally =
       session::run_session_in_virtual_time(session, setting.key, setting.source, *participant);
   finished.keys = store::wrap_participant_key(setting.key.investigator_box, place.session, key);
@@ -178,7 +180,7 @@ SimulationReport simulate_study(const design::StudyKey& key, const engine::Pack&
   const session::StimulusSource source(pack, key.study.rendering);
   const std::unique_ptr<const Population> population =
       population_of({key, source, subject, options.seed, options.jobs});
-  const Setting setting{key, source, *population, options.seed, key.seal};
+  const Setting setting{key, source, *population, subject.device, options.seed, key.seal};
   const int sessions = options.participants * key.study.visits.count;
   Collector collector(store, progress, key.study.visits, sessions);
   run_sessions(setting, options, store.next_session(), sessions, collector);

@@ -26,12 +26,11 @@ struct SimulationReport {
   std::int64_t ticks = 0;  ///< of the servo, without training
 };
 
-/// Trains the subject model once on the study's labelled fields: all participants know the classes
-/// equally well, and differ in acuity, paths and noise. Then runs one session for each participant
-/// and visit through the session state machine and stores it: everybody's first visit in the
-/// participants' order, then everybody's second, and so on. Groups have no effect. The stored data
-/// are a function of key, pack, subject, seed and first participant. At most a few sessions are in
-/// memory at a time.
+/// Teaches the participants the study's labelled fields as the subject model says. Then runs one
+/// session for each participant and visit through the session state machine and stores it:
+/// everybody's first visit in the participants' order, then everybody's second, and so on. Groups
+/// have no effect. The stored data are a function of key, pack, subject, seed and first
+/// participant. At most a few sessions are in memory at a time.
 /// \param progress  called after each session, from one thread at a time
 /// \throws StudyError if the subject names a class that the study does not have
 /// \throws FileError if the pack lacks a stimulus

@@ -2,9 +2,14 @@
 /// Format: docs/subject-file.md and config/schema/subject.schema.json.
 #pragma once
 
+#include "device/model/device_model.hpp"
+#include "device/simulated/hand_on_tip.hpp"
+#include "engine/perception/vibration_threshold.hpp"
 #include "protocols/design/study.hpp"
+#include "protocols/simulation/subject_changes.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,11 +28,19 @@ struct ClassBias {
 /// How participants explore, perceive, err and answer, and how they differ (`Individual` in
 /// protocols/simulation/felt_decision.hpp draws one of them).
 struct SubjectModel {
-  /// Standard deviation of the noise on the logarithm of every felt intensity, >= 0.
-  double weber = 0.0;
-  /// Differences between participants: each has a Weber fraction of weber * exp(spread * z), z
-  /// standard normal.
-  double weber_spread = 0.0;
+  /// The thresholds by which accelerations of the tip are felt; nothing: a flat sense of the
+  /// servo's forces, with a threshold of 2 mN.
+  std::optional<engine::ThresholdCurve> sense;
+  /// Differences between participants: standard deviation of all their thresholds, dB, >= 0. Of no
+  /// effect on the flat sense.
+  double threshold_spread_db = 0.0;
+  /// Standard deviation of the noise that each felt log intensity has by itself, >= 0.
+  double feature_noise = 0.0;
+  /// Standard deviation of the noise that all felt log intensities of a presentation share, >= 0:
+  /// how unsure the strength of a texture is, whatever its pattern.
+  double common_noise = 0.0;
+  /// Differences between participants: both noises times exp(spread * z), z standard normal.
+  double feature_noise_spread = 0.0;
   double lapse = 0.0;  ///< probability of a random answer, 0 .. 1
   /// Standard deviation between participants of the log odds of a lapse, >= 0.
   double lapse_spread = 0.0;
@@ -44,7 +57,28 @@ struct SubjectModel {
   double push_n = 0.7;      ///< force towards the plane, > 0
   double slowest_mm_s = 50.0;
   double fastest_mm_s = 150.0;
+  device::HandKind hand = device::HandKind::point_mass;
+  /// Differences between participants: stiffness, damping and mass of the hand times
+  /// exp(hand_spread * z), each with a z of its own, in [0, 1].
+  double hand_spread = 0.0;
   int training_passes = 8;  ///< explorations of each stimulus before the first trial, >= 1
+  Training training = Training::shared;
+  /// Standard deviation of the error, in every felt log intensity, with which a participant
+  /// remembers a stimulus, >= 0. Of no effect without training.
+  double memory_noise = 0.0;
+  /// The same for what an untrained participant expects of a picture, >= 0.
+  double mapping_noise = 0.0;
+  Learning learning;
+  /// Differences between the blocks and visits of a participant: standard deviation of the natural
+  /// logarithm of the noise, >= 0.
+  double period_noise_spread = 0.0;
+  SerialDependence serial;
+  Fatigue fatigue;
+  /// Nothing: from 0.8 to 4 s, each time equally likely, whatever is felt.
+  std::optional<ThoughtTime> thought;
+
+  /// What the hand holds; an ideal device unless a command or the study names one. Not in the file.
+  device::DeviceModel device;
 
   std::string source;  ///< the file, for error messages
 
@@ -52,6 +86,10 @@ struct SubjectModel {
   /// \throws StudyError with this file's JSON pointer if it lacks one
   void check_labels(const design::Study& study) const;
 };
+
+/// \return as subject files have it: "flat", "israr_2006" or "tan_1994"
+[[nodiscard]] std::string_view name_of_sense(
+    const std::optional<engine::ThresholdCurve>& sense) noexcept;
 
 /// Reads a subject file strictly: refuses unknown keys, wrong types and impossible values. Missing
 /// keys have the defaults above.
@@ -64,8 +102,9 @@ struct SubjectModel {
 /// \throws StudyError as load_subject_model
 [[nodiscard]] SubjectModel parse_subject_model(std::string_view text, const std::string& source);
 
-/// The text of a subject file with every key. parse_subject_model reads it back as the same model
-/// except for the source: numbers have all their digits. Indented; ends with a line feed.
+/// The text of a subject file with every key, but for `thought` if there is none.
+/// parse_subject_model reads it back as the same model except for the source: numbers have all
+/// their digits. Indented; ends with a line feed.
 [[nodiscard]] std::string subject_model_json(const SubjectModel& model);
 
 }  // namespace touchtrial::simulation

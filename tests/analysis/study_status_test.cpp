@@ -1,13 +1,17 @@
 #include "analysis/study_status.hpp"
 
+#include "analysis/collection_records.hpp"
 #include "analysis/fake_study.hpp"
 #include "analysis/page/study_document.hpp"
+#include "analysis/quality.hpp"
+#include "analysis/study_head.hpp"
 #include "analysis/text_matching.hpp"
 #include "protocols/design/deviation_codes.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -17,6 +21,18 @@ namespace {
 using analysis::PersonStatus;
 using analysis::StudyStatus;
 using std::chrono::milliseconds;
+
+/// What the report's JSON says of the devices' certificates, before and after unblinding.
+std::pair<bool, bool> unverified_in_json(FakeStudy& study) {
+  const auto told = [](const std::string& text) {
+    return nlohmann::json::parse(text).at("unverified_device").get<bool>();
+  };
+  const bool blind = told(analysis::quality_json(analysis::make_quality(study.store())));
+  analysis::StudyHead head;
+  head.collection = analysis::load_collection(study.store());
+  const bool open = told(analysis::framed_json(head, "{}"));
+  return {blind, open};
+}
 
 /// One complete with a certificate, one without, one open, one stopped whose place P05 takes.
 void fill(FakeStudy& study) {
@@ -105,6 +121,7 @@ TEST_CASE("A session without a valid certificate is stamped in status, reports a
   felt.station->calibration = "c0ffee";
   study.add(felt);
   CHECK_FALSE(analysis::provenance_of(study.store(), "study.db").unverified);
+  CHECK(unverified_in_json(study) == std::pair(false, false));
   felt.participant = "P02";
   felt.enrolment = 2;
   felt.station->calibration = design::kUnverifiedDevice;
@@ -116,6 +133,7 @@ TEST_CASE("A session without a valid certificate is stamped in status, reports a
   CHECK(contains(analysis::status_text(status, {}), "UNVERIFIED DEVICE"));
   const analysis::Provenance provenance = analysis::provenance_of(study.store(), "study.db");
   CHECK(provenance.unverified);
+  CHECK(unverified_in_json(study) == std::pair(true, true));
   CHECK(analysis::further_stamp(true, provenance) == "PILOT, UNVERIFIED DEVICE");
   CHECK(analysis::further_stamp(false, provenance) == "UNVERIFIED DEVICE");
 }

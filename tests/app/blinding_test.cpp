@@ -51,7 +51,7 @@ struct OddStudy : StudyFolder {
     odd["seed"] = std::stoll(kOddSeed);
     replace_file(path() / "cloths.json", odd.dump());
     replace_file(path() / "quick.json",
-                 R"({"weber": 0.1, "explore_s": 0.5, "training_passes": 1})");
+                 R"({"feature_noise": 0.1, "explore_s": 0.5, "training_passes": 1})");
     const ProgramResult prepared = StudyFolder::run({"prepare", in("cloths.json")});
     INFO(prepared.errors);
     REQUIRE(prepared.exit_code == 0);

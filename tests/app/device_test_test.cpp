@@ -8,10 +8,12 @@
 #include "support/temp_folder.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -280,6 +282,17 @@ TEST_CASE("device accept takes what was typed before a prompt for no answer to i
   run.answer("no force acts for 12 s", "q");
   CHECK(run.finish() == 1);
   CHECK_THAT(run.shown(), holds_text("nothing was written") && !holds_text("is pushed along axis"));
+}
+
+TEST_CASE("device accept takes a held Enter for one answer, and goes on at a fresh one") {
+  const DeviceFolder folder(dhd_settings());
+  TerminalRun run(folder.words(
+      "accept", {"dhd", "--skip", "rest", "--certificate", folder.path("c.json").string()}));
+  run.hold_enter("[Enter, s, q] ", std::chrono::seconds(2));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  run.answer("let go of Enter", "");
+  run.answer("us late", "\x03");  // the live line of the run
+  CHECK(run.finish() == 128 + SIGINT);
 }
 
 TEST_CASE("device accept loses no answer after that to a reset") {

@@ -31,11 +31,11 @@ TEST_CASE("fit prints tables, writes a subject file that simulate reads, and sta
   INFO(ran.errors);
   REQUIRE(ran.exit_code == 0);
   CHECK_THAT(ran.output, holds_text("SIMULATED"));
-  CHECK_THAT(ran.output, holds_text("noise (weber)"));
+  CHECK_THAT(ran.output, holds_text("noise of features"));
   CHECK_THAT(ran.output, holds_text("corduroy"));
   const json fitted = json::parse(content(study.path() / "fitted.json"));
   CHECK(fitted.at("explore_s") == 1.5);
-  CHECK(fitted.at("weber").get<double>() > 0.0);
+  CHECK(fitted.at("feature_noise").get<double>() > 0.0);
   CHECK(study
             .run({"simulate", study.in("cloths.json"), "--participants", "1", "--db",
                   study.in("again.db"), "--subject", study.in("fitted.json")})
@@ -47,7 +47,7 @@ TEST_CASE("fit prints tables, writes a subject file that simulate reads, and sta
   CHECK(object.at("participants") == 4);
   CHECK(object.at("trials") == 24);
   REQUIRE(object.at("estimates").size() == 2);
-  CHECK(object.at("estimates")[0].at("name") == "weber");
+  CHECK(object.at("estimates")[0].at("name") == "feature_noise");
   CHECK(object.at("estimates")[1].at("name") == "position");
   CHECK(object.at("label_swaps").at("tried").empty());
   // The result does not depend on the number of threads.

@@ -108,7 +108,8 @@ TEST_CASE("a merged study verifies with its key, its pack and its traces, and ex
   const ProgramResult verified = study.run({"verify", study.in("C.db"), "--json"});
   INFO(verified.output << verified.errors);
   CHECK(verified.exit_code == 0);
-  for (const json& check : json::parse(verified.output).at("checks")) {
+  const json report = json::parse(verified.output);
+  for (const json& check : report.at("checks")) {
     CHECK(check.at("state") == "passed");
   }
   const ProgramResult bids = study.run({"export", study.in("C.db"), "--format", "bids", "--traces",

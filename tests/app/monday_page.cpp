@@ -68,7 +68,8 @@ MondayDesk::MondayDesk() {
     engine::write_png(study() / (kLabels[i] + "-photo.png"), texture_number(static_cast<int>(i)));
   }
   replace_file(study() / "study.json", document.dump());
-  replace_file(root() / "quick.json", R"({"weber": 0.1, "explore_s": 0.5, "training_passes": 2})");
+  replace_file(root() / "quick.json",
+               R"({"feature_noise": 0.1, "explore_s": 0.5, "training_passes": 2})");
   // `run` has a participant, who takes as long as a person would if the desk asks for that; nobody
   // is there whom `withdraw` could ask.
   make_program(

@@ -62,7 +62,7 @@ struct StudyFolder {
     }
     replace_file(path() / "cloths.json", study_of(protocol).dump());
     replace_file(path() / "quick.json",
-                 R"({"weber": 0.1, "explore_s": 1.5, "training_passes": 2})");
+                 R"({"feature_noise": 0.1, "explore_s": 1.5, "training_passes": 2})");
   }
   [[nodiscard]] const fs::path& path() const { return folder.path(); }
   [[nodiscard]] std::string in(const std::string& name) const { return (path() / name).string(); }

@@ -4,7 +4,9 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 
 #include <fcntl.h>
 #include <pty.h>
@@ -85,6 +87,17 @@ void TerminalRun::answer(const std::string& prompt, const std::string& line) {
   read_until(prompt);
   const std::string typed = line + "\r";
   REQUIRE(::write(terminal_, typed.data(), typed.size()) == static_cast<ssize_t>(typed.size()));
+}
+
+void TerminalRun::hold_enter(const std::string& prompt, std::chrono::milliseconds held) {
+  answer(prompt, "");
+  std::chrono::milliseconds next{660};
+  for (std::chrono::milliseconds passed{0}; passed + next <= held;) {
+    std::this_thread::sleep_for(next);
+    passed += next;
+    next = std::chrono::milliseconds(40);
+    REQUIRE(::write(terminal_, "\r", 1) == 1);
+  }
 }
 
 int TerminalRun::finish() {

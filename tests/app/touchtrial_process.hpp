@@ -1,6 +1,7 @@
 /// \file Runs the built program as a user would.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -42,6 +43,9 @@ class TerminalRun {
 
   /// Reads until the text was shown, then types the line.
   void answer(const std::string& prompt, const std::string& line);
+  /// Reads until the text was shown, then holds Enter down for so long, as a keyboard repeats it:
+  /// for the second time after 660 ms, then every 40 ms.
+  void hold_enter(const std::string& prompt, std::chrono::milliseconds held);
   /// The exit code.
   [[nodiscard]] int finish();
   [[nodiscard]] const std::string& shown() const { return shown_; }

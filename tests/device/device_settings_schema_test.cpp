@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "device/device_settings.hpp"
+#include "device/known_keys.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -90,16 +91,7 @@ std::string refusal(const Pointer& place, const json& value) {
 
 /// \return the keys that the reader knows in an object, by its own error
 std::set<std::string> keys_of_reader(const Pointer& place) {
-  const std::string mark = "known here: ";
-  const std::string message = refusal(place / "qqqqqqqqqqqqqqqqqqqq", 1);
-  REQUIRE(message.find(mark) != std::string::npos);
-  std::string list = message.substr(message.find(mark) + mark.size()) + ", ";
-  std::set<std::string> keys;
-  for (auto end = list.find(", "); end != std::string::npos; end = list.find(", ")) {
-    keys.insert(list.substr(0, end));
-    list.erase(0, end + 2);
-  }
-  return keys;
+  return known_keys_in(refusal(place / "qqqqqqqqqqqqqqqqqqqq", 1));
 }
 
 /// \return for a list of three numbers: `number` first, with others that are valid beside it

@@ -134,6 +134,7 @@ const std::vector<Room>& rooms() {
         {"device", "touchtrial::device", {"core"}},
         {"protocols/store", "touchtrial::store", {"core"}},
         {"protocols/collect", "touchtrial::collect", {"core", "protocols/store"}},
+        {"protocols/procedures", "touchtrial::procedures", {"core"}},
         {"protocols/design", "touchtrial::design", {"core", "engine"}},
         {"protocols/identification/design",
          "touchtrial::design::identification",

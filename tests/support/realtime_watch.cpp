@@ -1,6 +1,7 @@
 #include "support/realtime_watch.hpp"
 
 #include "device/platform/realtime.hpp"
+#include "support/sanitized.hpp"
 
 #include <atomic>
 #include <cerrno>
@@ -9,14 +10,6 @@
 
 #include <dlfcn.h>
 #include <pthread.h>
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define TOUCHTRIAL_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define TOUCHTRIAL_SANITIZED
-#endif
-#endif
 
 namespace {
 

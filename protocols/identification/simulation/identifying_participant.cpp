@@ -1,5 +1,9 @@
 #include "protocols/identification/simulation/identifying_participant.hpp"
 
+#include "protocols/simulation/own_knowledge.hpp"
+
+#include <utility>
+
 namespace touchtrial::simulation::identification {
 namespace {
 
@@ -8,38 +12,65 @@ class IdentifyingPopulation final : public Population {
   explicit IdentifyingPopulation(const PopulationSetting& setting)
       : subject_(setting.subject),
         seed_(setting.seed),
-        knowledge_(learn_by_feeling(LabelledFields(setting.key, setting.source), setting.subject,
-                                    setting.key.study.rendering.max_force_n, setting.seed,
-                                    setting.jobs)) {}
+        learnt_(learn(LabelledFields(setting.key, setting.source), setting.key.study,
+                      setting.subject, setting.seed, setting.jobs)) {}
 
   std::unique_ptr<SimulatedParticipant> participant(int number) const override {
-    return std::make_unique<IdentifyingParticipant>(subject_, knowledge_, seed_, number);
+    return std::make_unique<IdentifyingParticipant>(
+        subject_, remembered(learnt_, subject_, seed_, number), seed_, number);
   }
 
  private:
   const SubjectModel& subject_;
   std::uint64_t seed_;
-  FeltKnowledge knowledge_;
+  std::shared_ptr<const FeltKnowledge> learnt_;
 };
+
+/// A pointer that owns nothing.
+std::shared_ptr<const FeltKnowledge> borrowed(const FeltKnowledge& knowledge) {
+  return {std::shared_ptr<const FeltKnowledge>(), &knowledge};
+}
 
 }  // namespace
 
 IdentifyingParticipant::IdentifyingParticipant(const SubjectModel& subject,
-                                               const FeltKnowledge& knowledge, std::uint64_t seed,
-                                               int number)
+                                               std::shared_ptr<const FeltKnowledge> knowledge,
+                                               std::uint64_t seed, int number)
     : SimulatedParticipant(subject, seed, number),
       subject_(subject),
-      knowledge_(knowledge),
+      seed_(seed),
+      number_(number),
+      knowledge_(std::move(knowledge)),
       individual_(subject, seed, number),
-      decision_(individual_, knowledge) {}
+      decision_(individual_, *knowledge_),
+      condition_(subject, seed, number) {}
+
+IdentifyingParticipant::IdentifyingParticipant(const SubjectModel& subject,
+                                               const FeltKnowledge& knowledge, std::uint64_t seed,
+                                               int number)
+    : IdentifyingParticipant(subject, borrowed(knowledge), seed, number) {}
 
 void IdentifyingParticipant::see_pictures(const std::vector<std::string>& labels) {
-  pictures_ = see(labels, subject_, individual_, knowledge_);
+  pictures_ = see(labels, subject_, individual_, *knowledge_);
+}
+
+void IdentifyingParticipant::begin_visit(int visit, TrialCourse course) {
+  course_ = std::move(course);
+  condition_ = Condition(subject_, seed_, number_, visit, static_cast<int>(course_.size()));
+}
+
+void IdentifyingParticipant::rest() {
+  condition_.rest(begun());
 }
 
 ParticipantAnswer IdentifyingParticipant::choose(const engine::FeltFeatures& felt,
                                                  RandomStream& random) {
-  return decision_.answer(felt, pictures_, random);
+  const auto nth = static_cast<std::size_t>(begun());
+  const TrialPlace place = nth >= 1 && nth <= course_.size() ? course_[nth - 1] : TrialPlace{};
+  const ParticipantAnswer answer =
+      decision_.answer(felt, pictures_, random, condition_.before(begun(), place.block));
+  end_trial(condition_, place, answer.position, pictures_, *knowledge_);
+  return answer;
 }
 
 std::unique_ptr<const Population> make_population(const PopulationSetting& setting) {

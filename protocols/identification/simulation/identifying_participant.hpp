@@ -1,6 +1,7 @@
 /// \file A simulated participant who knows the classes by touch and names the one that was felt.
 #pragma once
 
+#include "protocols/simulation/condition.hpp"
 #include "protocols/simulation/felt_decision.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 #include "protocols/simulation/population.hpp"
@@ -13,34 +14,45 @@
 
 namespace touchtrial::simulation::identification {
 
-/// Perceives the felt intensities with Weber noise and names the picture whose class makes them
-/// likeliest, bias included; or lapses, and names any picture. Refers to subject and knowledge,
+/// Perceives the felt intensities with noise and names the picture whose class makes them
+/// likeliest, bias and condition included; or lapses, and names any picture. Refers to the subject,
 /// which must outlive it.
 class IdentifyingParticipant final : public SimulatedParticipant {
  public:
   /// \param number  from 1
+  IdentifyingParticipant(const SubjectModel& subject,
+                         std::shared_ptr<const FeltKnowledge> knowledge, std::uint64_t seed,
+                         int number);
+  /// \param knowledge  must outlive this
   IdentifyingParticipant(const SubjectModel& subject, const FeltKnowledge& knowledge,
                          std::uint64_t seed, int number);
 
   /// \throws std::invalid_argument if a class that was learnt has no picture
   void see_pictures(const std::vector<std::string>& labels) override;
 
+  void rest() override;
+
  protected:
   [[nodiscard]] ParticipantAnswer choose(const engine::FeltFeatures& felt,
                                          RandomStream& random) override;
+  void begin_visit(int visit, TrialCourse course) override;
 
  private:
   const SubjectModel& subject_;
-  const FeltKnowledge& knowledge_;
+  std::uint64_t seed_;
+  int number_;
+  std::shared_ptr<const FeltKnowledge> knowledge_;
   Individual individual_;
   FeltDecision decision_;
+  Condition condition_;
+  TrialCourse course_;
   SeenPictures pictures_;
 };
 
-/// Trains the subject model on the study's labelled fields, once: all participants know the classes
-/// alike, and differ in acuity, paths and noise.
+/// Teaches the study's labelled fields as the subject model says: to all alike, to each by passes
+/// of their own, or not at all.
 /// \throws StudyError if the subject names a class that the study does not have
-/// \throws FileError if the pack lacks a stimulus
+/// \throws FileError if the pack lacks a stimulus, or a picture is needed and cannot be read
 [[nodiscard]] std::unique_ptr<const Population> make_population(const PopulationSetting& setting);
 
 }  // namespace touchtrial::simulation::identification

@@ -13,7 +13,7 @@ const std::vector<planning::PictureLayout> kLayouts = {{2, 0, 1, 4, 3}, {4, 3, 2
 /// A subject with every kind of error, equal for everybody.
 simulation::SubjectModel erring_subject() {
   simulation::SubjectModel subject = planned_subject();
-  subject.weber = 1.0;
+  subject.feature_noise = 1.0;
   subject.lapse = 0.15;
   subject.position_bias = 0.8;
   subject.class_bias = {{"brick", 0.5}, {"cloth", -0.3}};
@@ -56,7 +56,7 @@ TEST_CASE("probabilities of answers are the shares of answers given one by one")
 TEST_CASE("probabilities of answers average over differences between people") {
   const PlannedStudy planned(60);
   simulation::SubjectModel subject = erring_subject();
-  subject.weber_spread = 0.5;
+  subject.feature_noise_spread = 0.5;
   subject.lapse_spread = 1.0;
   subject.position_bias_spread = 0.7;
   subject.class_bias_spread = 0.6;
@@ -72,7 +72,7 @@ TEST_CASE("several images and methods have probabilities of their own") {
 TEST_CASE("probabilities add up to one, and do not depend on jobs or on codes") {
   const PlannedStudy planned(24);
   simulation::SubjectModel subject = erring_subject();
-  subject.weber_spread = 0.3;
+  subject.feature_noise_spread = 0.3;
   const planning::AnswerTable alone = planned.model(2, 1).answers(subject, kLayouts, true);
   const planning::AnswerTable crowd = planned.model(2, 4).answers(subject, kLayouts, true);
   for (int layout = 0; layout < 2; ++layout) {
@@ -115,7 +115,7 @@ TEST_CASE("slopes by a picture's bias agree with finite differences") {
 TEST_CASE("stimuli that feel the same share their answers evenly, whatever the noise") {
   const PlannedStudy planned(8, {.smooth = true});
   simulation::SubjectModel subject = planned_subject();
-  subject.weber = GENERATE(1e-3, 0.5);
+  subject.feature_noise = GENERATE(1e-3, 0.5);
   const planning::AnswerTable table = planned.model().answers(subject, kLayouts);
   for (int place = 0; place < 5; ++place) {
     for (int c = 0; c < 5; ++c) CHECK(table.answers(0, place)[c] == Approx(0.2).margin(1e-9));
@@ -125,7 +125,7 @@ TEST_CASE("stimuli that feel the same share their answers evenly, whatever the n
 TEST_CASE("answers that are all lapses are at chance") {
   const PlannedStudy planned(8);
   simulation::SubjectModel subject = planned_subject();
-  subject.weber = 0.3;
+  subject.feature_noise = 0.3;
   subject.lapse = 1.0;
   const planning::AnswerTable lapsing = planned.model().answers(subject, kLayouts);
   for (int c = 0; c < 5; ++c) CHECK(lapsing.answers(0, 3)[c] == Approx(0.2).margin(1e-12));

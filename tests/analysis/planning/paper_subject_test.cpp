@@ -20,7 +20,7 @@ TEST_CASE(
   const simulation::SubjectModel paper =
       simulation::load_subject_model(kConfig / "subjects/paper.json");
   simulation::SubjectModel other = paper;
-  other.weber = 0.157;
+  other.feature_noise = 0.157;
   other.lapse = 0.08;
   other.class_bias = {
       {"bark", -2.05}, {"cloth", -3.06}, {"pebbles", 0.57}, {"straw", 2.83}, {"brick", 1.71}};

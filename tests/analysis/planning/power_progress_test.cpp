@@ -179,6 +179,17 @@ TEST_CASE("a shard of another study, plan or number of shards is refused by name
       Catch::Contains("not complete"));
 }
 
+TEST_CASE("to a power run another hand is another subject model") {
+  const simulation::SubjectModel usual;
+  simulation::SubjectModel grip;
+  grip.hand = device::HandKind::stylus_grip;
+  simulation::SubjectModel spread;
+  spread.hand_spread = 0.2;
+  CHECK(planning::words_of(grip) != planning::words_of(usual));
+  CHECK(planning::words_of(spread) != planning::words_of(usual));
+  CHECK(planning::words_of(spread).find("hand point_mass (spread 0.2)") != std::string::npos);
+}
+
 TEST_CASE("progress is unchanged after writing and reading") {
   const TempFolder folder;
   const auto file = folder.path() / "progress.json";

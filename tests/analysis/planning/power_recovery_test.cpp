@@ -42,7 +42,7 @@ TinyStudyOptions briefly(const char* trials) {
 /// A subject who feels hardly anything, so that power grows with the number of participants.
 simulation::SubjectModel dull_subject() {
   simulation::SubjectModel subject = hasty_subject();
-  subject.weber = 6.0;
+  subject.feature_noise = 6.0;
   return subject;
 }
 

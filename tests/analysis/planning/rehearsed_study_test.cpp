@@ -9,8 +9,13 @@
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <optional>
+#include <tuple>
+#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -34,6 +39,10 @@ std::vector<analysis::TrialOutcome> scored(const analysis::Outcomes& outcomes) {
   for (const analysis::TrialOutcome& trial : outcomes.trials) {
     if (trial.scored) trials.push_back(trial);
   }
+  // Simulate has everybody's first visit before the second ones.
+  std::ranges::stable_sort(trials, {}, [](const analysis::TrialOutcome& trial) {
+    return std::tuple(trial.participant, trial.visit, trial.row.trial);
+  });
   return trials;
 }
 
@@ -121,6 +130,76 @@ TEST_CASE("the servo path agrees with simulate for a comparison of two methods")
   }
 }
 
+/// Somebody with every kind of change from trial to trial.
+simulation::SubjectModel changing_subject(simulation::Training training) {
+  simulation::SubjectModel subject = hasty_subject();
+  subject.training = training;
+  subject.memory_noise = 0.3;
+  subject.mapping_noise = 0.4;
+  subject.learning = {.factor = 6.0, .trials = 30.0, .forgotten = 0.9, .spread = 0.5};
+  subject.period_noise_spread = 0.5;
+  subject.serial = {.answer = 1.0, .answer_spread = 0.5, .stimulus = -2.0, .stimulus_spread = 0.5};
+  subject.fatigue = {.noise_per_min = 0.8, .lapse_per_min = 3.0, .recovered = 0.6};
+  subject.thought = simulation::ThoughtTime{};
+  return subject;
+}
+
+TEST_CASE(
+    "the servo path agrees with simulate for people who change, over visits, blocks, breaks, catch "
+    "trials and lead-ins") {
+  const auto training =
+      GENERATE(simulation::Training::own, simulation::Training::shared, simulation::Training::none);
+  TinyStudyOptions options;
+  options.pictures = true;
+  options.comparison = true;
+  options.images = 2;
+  options.side_px = 60;
+  options.trials = R"({"repeats":2,"catch":4,"lead_in":2,"break_every":7})";
+  options.visits = GENERATE(R"({"count":2})", R"({"count":2,"methods":"divided"})");
+  RehearsedTinyStudy study(options, changing_subject(training));
+  const planning::RehearsedStudy planned = study.planned(study.servo);
+  const analysis::Outcomes fast = planned.outcomes(2, planning::Hypothesis::population, 5);
+  const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 2, 5);
+  check_same_answers(fast, whole);
+}
+
+TEST_CASE("every change from trial to trial changes answers, and how long people think does not") {
+  TinyStudyOptions options;
+  options.side_px = 60;
+  options.trials = R"({"repeats":4,"lead_in":2,"break_every":7})";
+  options.visits = R"({"count":2})";
+  RehearsedTinyStudy study(options, changing_subject(simulation::Training::own));
+  const planning::BankedFeelings bank = study.bank();
+  const auto answers = [&](const simulation::SubjectModel& subject) {
+    const planning::RehearsedStudy planned(study.tiny.key().study, subject, study.test, bank, 10);
+    std::vector<std::optional<int>> given;
+    for (const analysis::TrialOutcome& trial :
+         scored(planned.outcomes(10, planning::Hypothesis::population, 5))) {
+      given.push_back(trial.response);
+    }
+    return given;
+  };
+  const auto all = answers(study.subject);
+  REQUIRE(all.size() == 10 * 2 * 20);
+  using Subject = simulation::SubjectModel;
+  const auto differs_with = [&](const std::function<void(Subject&)>& change) {
+    Subject other = study.subject;
+    change(other);
+    return answers(other) != all;
+  };
+  CHECK(differs_with([](Subject& one) { one.learning = {}; }));
+  CHECK(differs_with([](Subject& one) { one.learning.forgotten = 0.0; }));
+  CHECK(differs_with([](Subject& one) { one.learning.spread = 0.0; }));
+  CHECK(differs_with([](Subject& one) { one.period_noise_spread = 0.0; }));
+  CHECK(differs_with([](Subject& one) { one.serial.answer = 0.0; }));
+  CHECK(differs_with([](Subject& one) { one.serial.stimulus = 0.0; }));
+  CHECK(differs_with([](Subject& one) { one.fatigue.noise_per_min = 0.0; }));
+  CHECK(differs_with([](Subject& one) { one.fatigue.lapse_per_min = 0.0; }));
+  CHECK(differs_with([](Subject& one) { one.fatigue.recovered = 0.0; }));
+  CHECK(differs_with([](Subject& one) { one.memory_noise = 0.0; }));
+  CHECK_FALSE(differs_with([](Subject& one) { one.thought.reset(); }));
+}
+
 /// Repeats what the servo path felt, without a servo.
 class RememberedFeelings final : public planning::Feelings {
  public:
@@ -151,7 +230,8 @@ class RememberedFeelings final : public planning::Feelings {
 
 TEST_CASE(
     "the fast path answers as the servo path does when the bank holds its very explorations") {
-  const RehearsedTinyStudy study;
+  const RehearsedTinyStudy study(
+      {}, GENERATE(hasty_subject(), changing_subject(simulation::Training::own)));
   const RememberedFeelings remembered(study, 2, 9);
   const analysis::Outcomes fast =
       study.planned(remembered).outcomes(2, planning::Hypothesis::population, 9);
@@ -213,7 +293,7 @@ TEST_CASE("a bank of independent explorations gives the accuracies and confusion
 TEST_CASE("under the null nobody feels what is presented") {
   const RehearsedTinyStudy study({}, [] {
     simulation::SubjectModel sure = hasty_subject();
-    sure.weber = 0.05;
+    sure.feature_noise = 0.05;
     sure.lapse = 0.0;
     return sure;
   }());
@@ -287,6 +367,29 @@ TEST_CASE("with a margin, methods are alike, or the first is worse by the margin
             .attainable == 0.05);
   study.test.margin = 1.0;
   CHECK_THROWS_WITH(study.planned(bank), Catch::Contains("register a smaller margin"));
+}
+
+TEST_CASE("with trainings of their own people are on average no better than with a shared one") {
+  TinyStudyOptions options;
+  options.side_px = 60;
+  simulation::SubjectModel subject = hasty_subject();
+  subject.training_passes = 2;
+  const RehearsedTinyStudy shared(options, subject);
+  subject.training = simulation::Training::own;
+  const RehearsedTinyStudy own(options, subject);
+  subject.memory_noise = 0.4;
+  const RehearsedTinyStudy forgetful(options, subject);
+  constexpr int kStudies = 40;
+  const auto share = [&](const RehearsedTinyStudy& study) {
+    const planning::BankedFeelings bank = study.bank(60, 12);
+    const Answers answers = answers_of(study.planned(bank), kStudies, 1);
+    return answers.correct / answers.trials;
+  };
+  // 4,000 answers each: binomial standard errors of 0.8 points, of a difference between people and
+  // trainings of 1.5.
+  const double with_own = share(own);
+  CHECK(with_own < share(shared) + 0.045);
+  CHECK(share(forgetful) < with_own - 0.02);
 }
 
 TEST_CASE("a study whose participants could never answer is refused") {

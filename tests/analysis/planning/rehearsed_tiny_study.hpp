@@ -13,8 +13,8 @@ namespace touchtrial {
 /// A subject who explores briefly: the tests need many explorations, but not good ones.
 [[nodiscard]] inline simulation::SubjectModel hasty_subject() {
   simulation::SubjectModel subject;
-  subject.weber = 0.5;
-  subject.weber_spread = 0.3;
+  subject.feature_noise = 0.5;
+  subject.feature_noise_spread = 0.3;
   subject.lapse = 0.05;
   subject.lapse_spread = 0.5;
   subject.position_bias = 0.3;

@@ -16,7 +16,7 @@ const PlannedStudy& planned_study() {
 
 simulation::SubjectModel start() {
   simulation::SubjectModel subject = planned_subject();
-  subject.weber = 0.3;
+  subject.feature_noise = 0.3;
   subject.lapse = 0.05;
   return subject;
 }
@@ -49,7 +49,7 @@ bool warns_of(const planning::SubjectFit& fit, const std::string& words) {
 
 TEST_CASE("the intervals of a fit hold the true noise, lapses and biases, and it finds the swap") {
   simulation::SubjectModel truth = planned_subject();
-  truth.weber = 0.9;
+  truth.feature_noise = 0.9;
   truth.lapse = 0.08;
   truth.position_bias = 1.5;
   truth.class_bias = {{"bark", 1.2}, {"straw", -1.2}};
@@ -57,15 +57,15 @@ TEST_CASE("the intervals of a fit hold the true noise, lapses and biases, and it
   const planning::SubjectFit fit = fitted(simulated_counts(planned_study(), truth, 24, 8, 3));
   CHECK(fit.subject.label_swap ==
         std::vector<std::pair<std::string, std::string>>{{"pebbles", "brick"}});
-  CHECK(holds(named(fit, "weber").profile, truth.weber));
+  CHECK(holds(named(fit, "feature_noise").profile, truth.feature_noise));
   CHECK(holds(named(fit, "lapse").profile, truth.lapse));
   CHECK(holds(named(fit, "position").profile, truth.position_bias));
   CHECK(holds(named(fit, "class", "bark").profile, 1.2));
   CHECK(holds(named(fit, "class", "cloth").profile, 0.0));
   CHECK(holds(named(fit, "class", "straw").profile, -1.2));
   // With 960 trials, the intervals are informative.
-  CHECK(named(fit, "weber").profile.upper.value() < 1.3);
-  CHECK(named(fit, "weber").profile.lower.value() > 0.6);
+  CHECK(named(fit, "feature_noise").profile.upper.value() < 1.3);
+  CHECK(named(fit, "feature_noise").profile.lower.value() > 0.6);
   CHECK(named(fit, "position").profile.lower.value() > 0.3);
   CHECK(named(fit, "lapse").profile.upper.value() < 0.25);
   CHECK(fit.p.value() > 0.01);
@@ -76,43 +76,43 @@ TEST_CASE("the intervals of a fit hold the true noise, lapses and biases, and it
 
 TEST_CASE("intervals of the profile and of simulated studies have similar widths") {
   simulation::SubjectModel truth = planned_subject();
-  truth.weber = 0.9;
+  truth.feature_noise = 0.9;
   truth.lapse = 0.1;
   const planning::SubjectFit fit =
       fitted(simulated_counts(planned_study(), truth, 20, 5, 8),
              {.free = {.position = false, .classes = false, .swaps = false}, .bootstraps = 199});
   REQUIRE(fit.estimates.size() == 2);
-  const planning::ParameterEstimate& weber = named(fit, "weber");
-  const double profile = weber.profile.upper.value() - weber.profile.lower.value();
-  const double simulated = weber.bootstrap->high - weber.bootstrap->low;
+  const planning::ParameterEstimate& feature_noise = named(fit, "feature_noise");
+  const double profile = feature_noise.profile.upper.value() - feature_noise.profile.lower.value();
+  const double simulated = feature_noise.bootstrap->high - feature_noise.bootstrap->low;
   CHECK(simulated / profile > 0.6);
   CHECK(simulated / profile < 1.6);
-  CHECK(weber.monte_carlo_error < *weber.standard_error);
+  CHECK(feature_noise.monte_carlo_error < *feature_noise.standard_error);
   CHECK(fit.subject.position_bias == 0.0);
 }
 
 TEST_CASE("people who differ are fitted as such, and --fix spread says that they are not") {
   simulation::SubjectModel truth = planned_subject();
-  truth.weber = 0.6;
-  truth.weber_spread = 1.2;
+  truth.feature_noise = 0.6;
+  truth.feature_noise_spread = 1.2;
   const planning::FitCounts counts = simulated_counts(planned_study(), truth, 30, 6, 11);
   const planning::SubjectFit fit = fitted(counts);
   REQUIRE(fit.people.has_value());
   CHECK(fit.people->alike_p < 0.001);
   CHECK(fit.spread_taken);
-  CHECK(holds(fit.people->interval, truth.weber_spread));
-  CHECK(fit.subject.weber_spread == fit.people->spread);
+  CHECK(holds(fit.people->interval, truth.feature_noise_spread));
+  CHECK(fit.subject.feature_noise_spread == fit.people->spread);
   CHECK(warns_of(fit, "participants differ more than the subject says (spread of noise 0.00"));
   CHECK(fit.p.value() > 0.01);
   const planning::SubjectFit alike = fitted(counts, {.free = {.spread = false}, .bootstraps = 20});
   CHECK_FALSE(alike.spread_taken);
-  CHECK(alike.subject.weber_spread == 0.0);
+  CHECK(alike.subject.feature_noise_spread == 0.0);
   CHECK(warns_of(alike, "the fit describes people who are not these"));
 }
 
 TEST_CASE("people who do not differ keep the spread that the subject has") {
   simulation::SubjectModel truth = planned_subject();
-  truth.weber = 0.6;
+  truth.feature_noise = 0.6;
   const planning::FitCounts counts = simulated_counts(planned_study(), truth, 20, 5, 12);
   const planning::SubjectFit fit = fitted(counts, {.bootstraps = 0});
   REQUIRE(fit.people.has_value());
@@ -123,7 +123,7 @@ TEST_CASE("people who do not differ keep the spread that the subject has") {
 
 TEST_CASE("a fit is a function of its arguments, for any number of jobs") {
   simulation::SubjectModel truth = planned_subject();
-  truth.weber = 0.7;
+  truth.feature_noise = 0.7;
   const planning::FitCounts counts = simulated_counts(planned_study(), truth, 6, 3, 4);
   const auto fit = [&](int jobs) {
     return planning::fit_subject(planned_study().model(1, jobs), counts, start(),
@@ -131,15 +131,15 @@ TEST_CASE("a fit is a function of its arguments, for any number of jobs") {
   };
   const planning::SubjectFit alone = fit(1);
   const planning::SubjectFit crowd = fit(4);
-  CHECK(alone.subject.weber == crowd.subject.weber);
+  CHECK(alone.subject.feature_noise == crowd.subject.feature_noise);
   CHECK(alone.log_likelihood == crowd.log_likelihood);
   CHECK(alone.p == crowd.p);
-  CHECK(named(alone, "weber").profile.upper == named(crowd, "weber").profile.upper);
+  CHECK(named(alone, "feature_noise").profile.upper == named(crowd, "feature_noise").profile.upper);
 }
 
 TEST_CASE("a fit takes no swap that the answers do not call for, and keeps a fixed one") {
   simulation::SubjectModel truth = planned_subject();
-  truth.weber = 1.5;
+  truth.feature_noise = 1.5;
   const planning::FitCounts counts = simulated_counts(planned_study(), truth, 10, 5, 2);
   const planning::SubjectFit fit = fitted(counts, {.bootstraps = 0});
   CHECK(fit.subject.label_swap.empty());
@@ -173,14 +173,14 @@ const std::vector<std::vector<double>> kAllRight = {
 TEST_CASE("if all answers are right, noise has an upper limit but no lower one") {
   const planning::SubjectFit fit = fitted(made_up(kAllRight, 8));
   CHECK(warns_of(fit, "every answer is right"));
-  CHECK_FALSE(named(fit, "weber").profile.lower);
-  CHECK(named(fit, "weber").profile.upper.value() > fit.subject.weber);
+  CHECK_FALSE(named(fit, "feature_noise").profile.lower);
+  CHECK(named(fit, "feature_noise").profile.upper.value() > fit.subject.feature_noise);
   CHECK(named(fit, "lapse").profile.lower == 0.0);
   CHECK(named(fit, "lapse").profile.upper.value() < 0.1);
   // Short explorations cause some errors even without noise; the fit is right at least as often.
   const planning::FitCounts counts = made_up(kAllRight, 8);
   simulation::SubjectModel still = planned_subject();
-  still.weber = 1e-3;
+  still.feature_noise = 1e-3;
   const planning::Confusions best = planning::expected_confusions(
       counts, planned_study().model(1).answers(still, counts.layouts));
   double right = 0.0;
@@ -224,7 +224,8 @@ TEST_CASE(
   const planning::SubjectFit fit = fitted(made_up(chance, 6), {.bootstraps = 20});
   const double right = fit.expected[0][0][0] / 60.0;
   CHECK(right == Approx(0.2).margin(0.05));
-  const bool open = !named(fit, "weber").profile.lower || !named(fit, "weber").profile.upper;
+  const bool open =
+      !named(fit, "feature_noise").profile.lower || !named(fit, "feature_noise").profile.upper;
   CHECK(open);
   CHECK(warns_of(fit, "cannot be told from guessing"));
   CHECK(warns_of(fit, "an end of the profile"));

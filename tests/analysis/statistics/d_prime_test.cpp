@@ -16,6 +16,14 @@ TEST_CASE("proportion_correct_of gives the published values for five alternative
   CHECK(analysis::proportion_correct_of(-1.0, 5) == Approx(0.04678562774305576).margin(1e-10));
 }
 
+// Expected values: the example in the help text of Palamedes, function PAL_SDT_MAFC_DPtoPC.
+TEST_CASE("proportion_correct_of gives the values of Palamedes for 25 alternatives") {
+  const double expected[] = {0.0400, 0.1997, 0.5218, 0.8263, 0.9648, 0.9961};
+  for (int d = 0; d <= 5; ++d) {
+    CHECK(analysis::proportion_correct_of(d, 25) == Approx(expected[d]).margin(5e-5));
+  }
+}
+
 TEST_CASE("proportion_correct_of is chance at d' = 0 and the normal integral for two") {
   for (int m = 2; m <= 12; ++m) CHECK(analysis::proportion_correct_of(0.0, m) == Approx(1.0 / m));
   for (double d = -4.0; d <= 6.0; d += 0.5) {

@@ -88,6 +88,22 @@ Ids together(Ids a, const Ids& b) {
   return a;
 }
 
+/// The checks of a driver that passes on a vendor's library, which knows real time alone.
+Checks checks_beside_a_library(const device::ConformanceSubject& subject) {
+  device::PacedClock clock(device::PacedClock::Time{});
+  device::ConformanceOptions options = brief(true);
+  options.judges_time = false;
+  const Checks checks = device::check_conformance(subject, clock, options);
+  INFO(text_of(checks));
+  CHECK(failed(checks) == Ids{});
+  for (const ConformanceId id :
+       {ConformanceId::pushing, ConformanceId::rearming, ConformanceId::closing_zero,
+        ConformanceId::rest_zero, ConformanceId::opening_twice, ConformanceId::reopening}) {
+    CHECK(passed(checks).count(id) == 1);
+  }
+  return checks;
+}
+
 }  // namespace
 
 TEST_CASE("conformance: the example plug-in passes every check, its calls' time not judged here") {
@@ -249,17 +265,7 @@ TEST_CASE("conformance: the dhd driver passes on its stand-in, with real time no
     const Vec3 dhd = fake->force_n.get();
     return Vec3{dhd.y, dhd.z, dhd.x};
   };
-  device::PacedClock clock(device::PacedClock::Time{});
-  device::ConformanceOptions options = brief(true);
-  options.judges_time = false;
-  const Checks checks = device::check_conformance(subject, clock, options);
-  INFO(text_of(checks));
-  CHECK(failed(checks) == Ids{});
-  for (const ConformanceId id :
-       {ConformanceId::pushing, ConformanceId::rearming, ConformanceId::closing_zero,
-        ConformanceId::rest_zero, ConformanceId::opening_twice, ConformanceId::reopening}) {
-    CHECK(passed(checks).count(id) == 1);
-  }
+  const Checks checks = checks_beside_a_library(subject);
   CHECK_THAT(finding(checks, ConformanceId::halting), holds_text("ms; not judged"));
 }
 
@@ -270,17 +276,7 @@ TEST_CASE("conformance: the openhaptics driver passes on its stand-in, real time
   device::ConformanceSubject subject;
   subject.open = [&] { return std::make_unique<device::OpenHapticsDevice>(settings); };
   subject.motor_force_n = [&fake] { return fake->force_n.get(); };
-  device::PacedClock clock(device::PacedClock::Time{});
-  device::ConformanceOptions options = brief(true);
-  options.judges_time = false;
-  const Checks checks = device::check_conformance(subject, clock, options);
-  INFO(text_of(checks));
-  CHECK(failed(checks) == Ids{});
-  for (const ConformanceId id :
-       {ConformanceId::pushing, ConformanceId::rearming, ConformanceId::closing_zero,
-        ConformanceId::rest_zero, ConformanceId::opening_twice, ConformanceId::reopening}) {
-    CHECK(passed(checks).count(id) == 1);
-  }
+  static_cast<void>(checks_beside_a_library(subject));
 }
 
 }  // namespace touchtrial

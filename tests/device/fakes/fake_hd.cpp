@@ -6,6 +6,8 @@
 // [assumed]  no text says so; the strictest that is plausible
 #include "device/fakes/fake_hd.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -21,9 +23,13 @@ using Callback = std::uint32_t (*)(void*);
 constexpr std::uint32_t kDevice = 7;
 constexpr std::uint32_t kNoDevice = 0xFFFFFFFF;
 
+/// Never destroyed, as the driver keeps the library loaded for ever; goes with a library that is
+/// closed all the same.
+alignas(FakeHd) std::array<std::byte, sizeof(FakeHd)> room;
+
 /// As the test that loads it orders; the environment orders for a program of its own.
 FakeHd* new_state() {
-  auto* const made = new FakeHd;  // never freed: the driver keeps the library loaded for ever
+  auto* const made = new (room.data()) FakeHd;
   if (std::getenv("FAKE_HD_NEEDS_RESET") != nullptr) {
     made->calibration_styles = kHdEncoderReset;
     made->calibrated = false;

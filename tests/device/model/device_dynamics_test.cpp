@@ -1,8 +1,7 @@
-// Laws of a modelled device, each against a formula of physics or of sampled systems.
-#include "device/model/device_model.hpp"
+// The stages of a modelled device, each against a formula of physics or of sampled systems. The
+// laws of the whole are in laws_test.cpp.
+#include "device/model/held_devices.hpp"
 #include "device/platform/realtime.hpp"
-#include "device/servo/servo.hpp"
-#include "device/simulated/simulated_hand.hpp"
 #include "support/catch.hpp"
 #include "support/realtime_watch.hpp"
 
@@ -19,86 +18,7 @@ namespace {
 
 using device::DeviceDynamics;
 using device::DeviceModel;
-using device::FrictionShape;
 using Outside = DeviceDynamics::Outside;
-
-constexpr double kT = 0.001;
-constexpr double kPi = std::numbers::pi;
-
-DeviceModel model_of(double mass_kg) {
-  DeviceModel model;
-  model.name = "test";
-  model.mass_kg = mass_kg;
-  return model;
-}
-
-Vec3 random_vec(RandomStream& random, double size) {
-  const double x = random.uniform(-size, size);
-  const double y = random.uniform(-size, size);
-  return {x, y, random.uniform(-size, size)};
-}
-
-/// A spring to a place, in the world outside.
-Outside spring(const DeviceDynamics& tip, double stiffness_n_per_mm, Vec3 place_mm = {}) {
-  return {stiffness_n_per_mm * (place_mm - tip.true_position_mm())};
-}
-
-/// The simulated hand's equations, written out: a mass without a device, by the semi-implicit step.
-struct PlainHand {
-  device::HandOptions options;
-  Vec3 position_mm;
-  Vec3 velocity_mm_s;
-
-  /// What the hand does to the tip.
-  [[nodiscard]] Outside outside(double time_s, const device::PathPoint& target) const {
-    const double u = std::min(time_s / device::SimulatedHand::kPushBuildUpS, 1.0);
-    const Vec2 off_mm = target.position_mm - Vec2{position_mm.x, position_mm.y};
-    const double damping = options.arm_damping_n_s_per_mm;
-    const Vec2 pull_n = options.arm_stiffness_n_per_mm * off_mm + damping * target.velocity_mm_s;
-    return {{pull_n.x, pull_n.y, -(options.push_n * (u * u * (3.0 - 2.0 * u)))},
-            options.mass_kg,
-            {damping, damping, options.push_damping_n_s_per_mm}};
-  }
-  void tick(Vec3 force_n, const Outside& hand) {
-    const double tick_per_mass = kT * 1000.0 / options.mass_kg;
-    const auto after = [tick_per_mass](double before_mm_s, double n, double damping) {
-      return (before_mm_s + tick_per_mass * n) / (1.0 + tick_per_mass * damping);
-    };
-    const Vec3 all_n = force_n + hand.force_n;
-    velocity_mm_s = {after(velocity_mm_s.x, all_n.x, hand.damping_n_s_per_mm.x),
-                     after(velocity_mm_s.y, all_n.y, hand.damping_n_s_per_mm.y),
-                     after(velocity_mm_s.z, all_n.z, hand.damping_n_s_per_mm.z)};
-    position_mm = position_mm + kT * velocity_mm_s;
-  }
-};
-
-TEST_CASE("a hand moves by the same equations with an ideal device and without one, bit for bit") {
-  const device::HandOptions options{
-      .arm_damping_n_s_per_mm = 0.006, .push_damping_n_s_per_mm = 0.011, .explore_s = 5.0};
-  RandomStream path_random(4, "device_dynamics_test");
-  const device::ExplorationPath path({0.2, 500, 500}, {.duration_s = 5.0}, path_random);
-  device::SimulatedHand simulated(options, path);
-  device::DeviceSample sample;
-  REQUIRE(simulated.read(sample) == device::DeviceStatus::ok);
-  PlainHand plain{options, sample.position_mm, {}};
-  DeviceDynamics dynamics(device::device_model("ideal"));
-  dynamics.place(sample.position_mm);
-  RandomStream random(5, "device_dynamics_test");
-  std::size_t stroke = 0;
-  for (int i = 0; i < 4999; ++i) {
-    const Vec3 force_n = random_vec(random, 1.0);
-    const Outside hand =
-        plain.outside(i * device::kServoTickS, path.at(i * device::kServoTickS, stroke));
-    plain.tick(force_n, hand);
-    dynamics.tick(force_n, hand);
-    REQUIRE(simulated.write(force_n) == device::DeviceStatus::ok);
-    REQUIRE(simulated.read(sample) == device::DeviceStatus::ok);
-    REQUIRE(dynamics.read_position_mm() == plain.position_mm);
-    REQUIRE(dynamics.read_velocity_mm_s() == plain.velocity_mm_s);
-    REQUIRE(sample.position_mm == plain.position_mm);
-    REQUIRE(sample.velocity_mm_s == plain.velocity_mm_s);
-  }
-}
 
 TEST_CASE("a held force moves a free mass as Newton says") {
   DeviceModel model = model_of(0.2);
@@ -121,27 +41,6 @@ TEST_CASE("a device without any mass has the least mass") {
 
 // Friction.
 
-TEST_CASE("at rest a force up to static friction moves nothing, and a greater one does") {
-  DeviceModel model = model_of(0.1);
-  model.coulomb_n = 0.2;
-  model.static_n = GENERATE(0.0, 0.35);
-  model.zero_order_hold = GENERATE(false, true);
-  const double holds_n = std::max(model.static_n, model.coulomb_n);
-  DeviceDynamics tip(model);
-  tip.place({1.0, 2.0, 3.0});
-  RandomStream random(1, "device_dynamics_test");
-  for (int i = 0; i < 1000; ++i) {
-    const Vec3 direction = random_vec(random, 1.0);
-    tip.tick((random.uniform(0.0, 0.999) * holds_n / norm(direction)) * direction,
-             {.damping_n_s_per_mm = {0.01, 0.0, 0.02}});
-  }
-  tip.tick({holds_n, 0.0, 0.0}, {});
-  CHECK(tip.true_velocity_mm_s() == Vec3{});
-  CHECK(tip.true_position_mm() == Vec3{1.0, 2.0, 3.0});
-  tip.tick({1.01 * holds_n, 0.0, 0.0}, {});
-  CHECK(tip.true_velocity_mm_s().x > 0.0);
-}
-
 TEST_CASE("friction of each axis alone holds more than one newton's worth of a diagonal force") {
   DeviceModel model = model_of(0.1);
   model.coulomb_n = 0.2;
@@ -149,42 +48,13 @@ TEST_CASE("friction of each axis alone holds more than one newton's worth of a d
   DeviceDynamics isotropic(model);
   isotropic.tick(diagonal_n, {});
   CHECK(norm(isotropic.true_velocity_mm_s()) > 0.0);
-  model.friction = FrictionShape::per_axis;
+  model.friction = device::FrictionShape::per_axis;
   DeviceDynamics per_axis(model);
   per_axis.tick(diagonal_n, {});
   CHECK(per_axis.true_velocity_mm_s() == Vec3{});
   per_axis.tick({0.19, 0.25, 0.0}, {});
   CHECK(per_axis.true_velocity_mm_s().x == 0.0);
   CHECK(per_axis.true_velocity_mm_s().y > 0.0);
-}
-
-TEST_CASE("friction never adds energy, never turns the motion, and is never above its limit") {
-  DeviceModel model = model_of(0.08);
-  model.coulomb_n = 0.25;
-  model.static_n = GENERATE(0.0, 0.5);
-  model.stribeck_mm_s = model.static_n > 0.0 ? 10.0 : 0.0;
-  model.viscous_n_s_per_m = 0.7;
-  model.zero_order_hold = true;
-  DeviceDynamics tip(model);
-  RandomStream random(2, "device_dynamics_test");
-  const double tick_per_mass = 1000.0 * kT / (0.08 + 0.02);
-  const double damping = 0.7e-3 + 0.004;
-  int moving = 0;
-  for (int i = 0; i < 20'000; ++i) {
-    const Vec3 before = tip.true_velocity_mm_s();
-    const Vec3 force_n = random_vec(random, 1.2);
-    tip.tick(force_n, {.mass_kg = 0.02, .damping_n_s_per_mm = {0.004, 0.004, 0.004}});
-    const Vec3 after = tip.true_velocity_mm_s();
-    const double per_newton = tick_per_mass / (1.0 + tick_per_mass * damping);
-    const Vec3 without =
-        (1.0 / (1.0 + tick_per_mass * damping)) * (before + tick_per_mass * force_n);
-    const Vec3 friction_n = (1.0 / per_newton) * (without - after);
-    REQUIRE(dot(after, after) <= dot(without, without));
-    REQUIRE(dot(after, without) >= 0.0);
-    REQUIRE(norm(friction_n) <= std::max(model.coulomb_n, model.static_n) + 1e-9);
-    moving += norm(after) > 0.0 ? 1 : 0;
-  }
-  CHECK(moving > 10'000);
 }
 
 TEST_CASE("a mass on a spring loses four times F / k of amplitude a cycle to Coulomb friction") {
@@ -234,56 +104,7 @@ TEST_CASE("friction falls from static to Coulomb with speed") {
   CHECK(lost_n == Approx(0.2 + 0.4 * std::exp(-ratio * ratio)).epsilon(1e-3));
 }
 
-/// Strokes along x at 100 mm/s by an arm, while a texture's force pushes along it.
-/// \return the amplitude of the motion about the stroke at the force's frequency
-double amplitude_along_stroke(double coulomb_n, double frequency_hz) {
-  DeviceModel model = model_of(0.1);
-  model.coulomb_n = coulomb_n;
-  DeviceDynamics tip(model);
-  std::complex<double> sum;
-  constexpr int kSettled = 2000;
-  constexpr int kTicks = 6000;
-  for (int i = 0; i < kTicks; ++i) {
-    const double t_s = i * kT;
-    const double target_mm = 100.0 * t_s;
-    if (i >= kSettled) {
-      sum +=
-          (tip.true_position_mm().x - target_mm) * std::polar(1.0, -2.0 * kPi * frequency_hz * t_s);
-    }
-    const double pull_n = 0.2 * (target_mm - tip.true_position_mm().x) + 0.008 * 100.0;
-    tip.tick({0.1 * std::sin(2.0 * kPi * frequency_hz * t_s), 0.0, 0.0},
-             {{pull_n, 0.0, 0.0}, 0.0, {0.008, 0.008, 0.008}});
-  }
-  return 2.0 * std::abs(sum) / (kTicks - kSettled);
-}
-
-TEST_CASE("at constant speed the spectrum along a stroke does not depend on Coulomb friction") {
-  const double frequency_hz = GENERATE(10.0, 40.0, 160.0);
-  const double without_mm = amplitude_along_stroke(0.0, frequency_hz);
-  REQUIRE(without_mm > 0.0);
-  CHECK(amplitude_along_stroke(0.3, frequency_hz) == Approx(without_mm).epsilon(0.01));
-}
-
 // Readings.
-
-TEST_CASE("readings are whole steps, and at most half a step wrong") {
-  DeviceModel model = model_of(0.1);
-  model.position_step_mm = GENERATE(0.055, 0.01);
-  DeviceDynamics tip(model);
-  RandomStream random(3, "device_dynamics_test");
-  const double step_mm = model.position_step_mm;
-  for (int i = 0; i < 5000; ++i) {
-    tip.tick(random_vec(random, 2.0), spring(tip, 0.1));
-    const Vec3 read = tip.read_position_mm();
-    for (const double value : {read.x, read.y, read.z}) {
-      REQUIRE(std::abs(value / step_mm - std::round(value / step_mm)) < 1e-9);
-    }
-    const Vec3 wrong = read - tip.true_position_mm();
-    for (const double value : {wrong.x, wrong.y, wrong.z}) {
-      REQUIRE(std::abs(value) <= 0.5 * step_mm * (1.0 + 1e-9));
-    }
-  }
-}
 
 TEST_CASE("a velocity from n readings lags a steady acceleration by half of n - 1 ticks") {
   DeviceModel model = model_of(0.1);
@@ -369,109 +190,12 @@ TEST_CASE("planted faults turn and scale forces, and let the handle fall") {
   CHECK(tip.true_velocity_mm_s().y == Approx(1000.0 * kT * (0.6 - 0.5) / 0.1));
 }
 
-// Linear stages together.
-
-struct Linear {
-  double mass_kg, stiffness_n_per_mm, damping_n_s_per_mm, lowpass_hz;
-  int delay_ticks;
-  bool hold;
-};
-
-DeviceModel model_of(const Linear& linear) {
-  DeviceModel model = model_of(linear.mass_kg);
-  model.viscous_n_s_per_m = 500.0 * linear.damping_n_s_per_mm;  // the other half comes from outside
-  model.lowpass_hz = linear.lowpass_hz;
-  model.delay_ticks = linear.delay_ticks;
-  model.zero_order_hold = linear.hold;
-  return model;
-}
-
-/// \return the steady amplitude at x under a sine of 1 N, by correlation over whole periods
-double steady_amplitude_mm(const DeviceModel& model, double frequency_hz, double stiffness_n_per_mm,
-                           double damping_n_s_per_mm) {
-  DeviceDynamics tip(model);
-  std::complex<double> sum;
-  constexpr int kSettled = 20'000;
-  constexpr int kCounted = 2000;  // whole periods of every multiple of 0.5 Hz
-  for (int i = 0; i < kSettled + kCounted; ++i) {
-    const double phase = 2.0 * kPi * frequency_hz * i * kT;
-    if (i >= kSettled) sum += tip.true_position_mm().x * std::polar(1.0, -phase);
-    Outside outside = spring(tip, stiffness_n_per_mm);
-    outside.damping_n_s_per_mm = {damping_n_s_per_mm, damping_n_s_per_mm, damping_n_s_per_mm};
-    tip.tick({std::sin(phase), 0.0, 0.0}, outside);
-  }
-  return 2.0 * std::abs(sum) / kCounted;
-}
-
-/// The same by the z-transform. With a = T / m and g = 1 / (1 + a b):
-/// (z - g) V = g a (U - k P), and (z - 1) P = T z V, or T (1 + z) / 2 V where the force is held.
-double discrete_amplitude_mm(const Linear& l, double frequency_hz) {
-  const std::complex<double> z = std::polar(1.0, 2.0 * kPi * frequency_hz * kT);
-  const double a = 1000.0 * kT / l.mass_kg;
-  const double g = 1.0 / (1.0 + a * l.damping_n_s_per_mm);
-  const std::complex<double> mean = l.hold ? 0.5 * (1.0 + z) : z;
-  const std::complex<double> path = kT * mean / (z - 1.0) * g * a / (z - g);
-  std::complex<double> motors = std::pow(z, -l.delay_ticks);
-  if (l.lowpass_hz > 0.0) {
-    const double share = 1.0 - std::exp(-2.0 * kPi * l.lowpass_hz * kT);
-    motors *= share * z / (z - (1.0 - share));
-  }
-  return std::abs(motors * path / (1.0 + l.stiffness_n_per_mm * path));
-}
-
-TEST_CASE("the steady amplitude under a sine is that of the discrete transfer function") {
-  const Linear linear = GENERATE(
-      as<Linear>{}, Linear{0.1, 0.2, 0.008, 0.0, 0, false}, Linear{0.045, 0.4, 0.003, 0.0, 1, true},
-      Linear{0.25, 1.0, 0.02, 80.0, 3, true}, Linear{0.03, 0.1, 0.001, 400.0, 0, false});
-  const double frequency_hz = GENERATE(0.5, 5.0, 10.0, 40.0, 160.0, 320.0, 480.0);
-  const double measured_mm = steady_amplitude_mm(
-      model_of(linear), frequency_hz, linear.stiffness_n_per_mm, 0.5 * linear.damping_n_s_per_mm);
-  CHECK(measured_mm == Approx(discrete_amplitude_mm(linear, frequency_hz)).epsilon(1e-6));
-}
-
-TEST_CASE("well below the servo's rate the steady amplitude is 1 / |k - m w^2 + i w b|") {
-  const bool hold = GENERATE(false, true);
-  const double frequency_hz = GENERATE(1.0, 5.0, 20.0, 30.0);
-  constexpr double kMassKg = 0.1;
-  constexpr double kStiffness = 0.2;  // N/mm
-  constexpr double kDamping = 0.008;  // N s/mm
-  DeviceModel model = model_of(kMassKg);
-  model.zero_order_hold = hold;
-  const double w = 2.0 * kPi * frequency_hz;
-  const double expected_mm =
-      1.0 / std::abs(std::complex<double>(kStiffness - 0.001 * kMassKg * w * w, w * kDamping));
-  CHECK(steady_amplitude_mm(model, frequency_hz, kStiffness, kDamping) ==
-        Approx(expected_mm).epsilon(0.05));
-}
-
 // Structure.
 
 DeviceModel structured(double stiffness_n_per_mm, double tip_share, double damping_ratio) {
   DeviceModel model = model_of(0.045);
   model.structure = {stiffness_n_per_mm, tip_share, damping_ratio};
   return model;
-}
-
-TEST_CASE("a sine at the motors moves a structure's tip by the discrete transfer function") {
-  const double k = GENERATE(1.26, 3.5);
-  const double share = GENERATE(0.5, 0.2);
-  const double frequency_hz = GENERATE(2.0, 20.0, 45.0, 60.0, 200.0, 450.0);
-  DeviceModel model = structured(k, share, 0.1);
-  model.viscous_n_s_per_m = 2.0;
-  constexpr double kHand = 0.003;  // N s/mm
-  // The trapezium rule puts w = (2 / T) (z - 1) / (z + 1) for s; a force that is held over the
-  // tick, and an implicit damper, count where the tick ends.
-  const std::complex<double> z = std::polar(1.0, 2.0 * kPi * frequency_hz * kT);
-  const std::complex<double> w = 2.0 / kT * (z - 1.0) / (z + 1.0);
-  const double tip = 0.001 * 0.045 * share;
-  const double motor = 0.001 * 0.045 - tip;
-  const std::complex<double> joint = k + 2.0 * 0.1 * std::sqrt(k * tip) * w;
-  const std::complex<double> implicit = 2.0 * z / (1.0 + z) * w;
-  const std::complex<double> at_motor = motor * w * w + 0.002 * implicit + joint;
-  const std::complex<double> at_tip = tip * w * w + kHand * implicit + joint;
-  const std::complex<double> moved = 2.0 / (1.0 + z) * joint / (at_motor * at_tip - joint * joint);
-  CHECK(steady_amplitude_mm(model, frequency_hz, 0.0, kHand) ==
-        Approx(std::abs(moved)).epsilon(1e-4));
 }
 
 TEST_CASE("a stiff structure moves like a rigid device") {
@@ -534,42 +258,6 @@ TEST_CASE("encoders at the motors do not see a tip that bends while friction hol
 }
 
 // A wall.
-
-/// Pushes the tip on a wall, kicks it by less than 0.1 mm, and waits.
-/// \return how many times greater the motion is in the last 0.4 s than in the first
-double growth_on_wall(double stiffness_n_per_mm, double damping_n_s_per_m, int delay_ticks) {
-  DeviceModel model = model_of(0.5);
-  model.viscous_n_s_per_m = damping_n_s_per_m;
-  model.delay_ticks = delay_ticks;
-  model.zero_order_hold = true;
-  DeviceDynamics tip(model);
-  constexpr double kPushN = 0.7;
-  const double rest_mm = -kPushN / stiffness_n_per_mm;
-  tip.place({0.0, 0.0, rest_mm});
-  for (int i = 0; i < delay_ticks; ++i) tip.tick({0.0, 0.0, kPushN}, {{0.0, 0.0, -kPushN}});
-  tip.tick({0.0, 0.0, kPushN}, {{0.0, 0.0, -kPushN + 0.5}});
-  double first_mm = 0.0;
-  double last_mm = 0.0;
-  constexpr int kTicks = 40'000;
-  for (int i = 0; i < kTicks; ++i) {
-    const double depth_mm = std::max(0.0, -tip.read_position_mm().z);
-    tip.tick({0.0, 0.0, stiffness_n_per_mm * depth_mm}, {{0.0, 0.0, -kPushN}});
-    const double away_mm = std::abs(tip.true_position_mm().z - rest_mm);
-    if (i < 400) first_mm = std::max(first_mm, away_mm);
-    if (i >= kTicks - 400) last_mm = std::max(last_mm, away_mm);
-  }
-  return last_mm / first_mm;
-}
-
-TEST_CASE("a wall with K (T / 2 + delay) below the damping settles, and above it does not") {
-  const double stiffness_n_per_mm = GENERATE(0.2, 0.4, 1.0);
-  const int delay_ticks = GENERATE(0, 1, 3);
-  const double bound_n_s_per_m =
-      1000.0 * stiffness_n_per_mm * kT * (0.5 + static_cast<double>(delay_ticks));
-  INFO(stiffness_n_per_mm << " N/mm, delay of " << delay_ticks << " ticks");
-  CHECK(growth_on_wall(stiffness_n_per_mm, 1.3 * bound_n_s_per_m, delay_ticks) < 0.5);
-  CHECK(growth_on_wall(stiffness_n_per_mm, 0.7 * bound_n_s_per_m, delay_ticks) > 1.5);
-}
 
 TEST_CASE(
     "quantised readings keep a wall without friction in motion, and half a step's force stops it") {

@@ -1,6 +1,7 @@
 // Files of device models: the schema against the reader, refusals, and what the program ships.
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "device/known_keys.hpp"
 #include "device/model/device_model.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
@@ -105,16 +106,7 @@ std::string refusal_at(const Pointer& pointer, const json& value) {
 }
 
 std::set<std::string> keys_of_reader_at(const Pointer& pointer) {
-  const std::string mark = "known here: ";
-  const std::string message = refusal_at(pointer / "qqqqqqqqqqqqqqqqqqqqqqqqqq", 1);
-  REQUIRE(message.find(mark) != std::string::npos);
-  std::string list = message.substr(message.find(mark) + mark.size()) + ", ";
-  std::set<std::string> keys;
-  for (auto end = list.find(", "); end != std::string::npos; end = list.find(", ")) {
-    keys.insert(list.substr(0, end));
-    list.erase(0, end + 2);
-  }
-  return keys;
+  return known_keys_in(refusal_at(pointer / "qqqqqqqqqqqqqqqqqqqqqqqqqq", 1));
 }
 
 /// A list of three, of which the first is `number`; the others are valid at this place.

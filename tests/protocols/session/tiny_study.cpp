@@ -1,6 +1,7 @@
 #include "protocols/session/tiny_study.hpp"
 
 #include "core/random.hpp"
+#include "engine/image_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -39,10 +40,11 @@ design::Study study_with(const TinyStudyOptions& options) {
                                                          : "classification";
   const std::string section =
       options.protocol.empty() ? "" : ",\"" + options.protocol + "\":" + options.section;
+  const std::string visits = options.visits.empty() ? "" : ",\"visits\":" + options.visits;
   return design::parse_study(R"({"study":"tiny","protocol":")" + protocol + R"(","classes":[)" +
                                  classes + R"(],"methods":)" + methods + R"(,"trials":)" +
                                  options.trials + R"(,"rendering":)" + options.rendering + section +
-                                 R"(,"seed":)" + std::to_string(kTinyStudySeed) + "}",
+                                 visits + R"(,"seed":)" + std::to_string(kTinyStudySeed) + "}",
                              ".", "tiny.json");
 }
 
@@ -85,6 +87,14 @@ engine::Pack write_pack(const std::filesystem::path& folder, const design::Study
   return engine::Pack(folder);
 }
 
+void write_picture(const Plane<double>& texture, const std::filesystem::path& path) {
+  GreyImage picture(texture.height(), texture.width());
+  std::ranges::transform(texture.samples(), picture.samples().begin(), [](double sample) {
+    return static_cast<std::uint8_t>(std::clamp(std::lround(128.0 + sample), 0L, 255L));
+  });
+  engine::write_png(path, picture);
+}
+
 }  // namespace
 
 Plane<double> tiny_texture(const design::StimulusIndex& stimulus, int side_px) {
@@ -111,7 +121,14 @@ Plane<double> tiny_texture(const design::StimulusIndex& stimulus, int side_px) {
 }
 
 TinyStudy::TinyStudy(const TinyStudyOptions& options)
-    : key_(key_with(options)), pack_(write_pack(folder_.path() / "tiny.sim.pack", key_, options)) {}
+    : key_(key_with(options)), pack_(write_pack(folder_.path() / "tiny.sim.pack", key_, options)) {
+  if (!options.pictures) return;
+  key_.study.folder = folder_.path();
+  for (int i = 0; i < static_cast<int>(key_.study.classes.size()); ++i) {
+    write_picture(tiny_texture({.class_index = i}, options.side_px),
+                  folder_.path() / key_.study.classes[static_cast<std::size_t>(i)].images.front());
+  }
+}
 
 std::filesystem::path TinyStudy::next_database() {
   return folder_.path() / (std::to_string(++databases_) + ".db");

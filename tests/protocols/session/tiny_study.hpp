@@ -27,6 +27,8 @@ struct TinyStudyOptions {
   std::string section = "{}";    ///< that protocol's own object
   std::string trials = "{}";     ///< the study file's "trials"
   std::string rendering = "{}";  ///< the study file's "rendering"
+  std::string visits{};          ///< the study file's "visits"; empty: one
+  bool pictures = false;         ///< the classes' pictures are there: the textures, in grey
 };
 
 /// Five square textures (waves of one length and direction each, with random phases), with their

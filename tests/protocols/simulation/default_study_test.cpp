@@ -43,10 +43,24 @@ class DefaultStudy {
   design::StudyKey key_;
 };
 
-TEST_CASE("the default subject's mean accuracy in the default study is like people's") {
-  const double accuracy = DefaultStudy().accuracy_of("default.json", 20);
+TEST_CASE("who feels forces is right in the default study as often as published of people") {
+  const double accuracy = DefaultStudy().accuracy_of("flat.json", 20);
   CHECK(accuracy >= 0.70);
   CHECK(accuracy <= 0.95);
+}
+
+TEST_CASE("who feels by published thresholds is right less often, and far from guessing") {
+  const DefaultStudy study;
+  const double accuracy = study.accuracy_of("default.json", 20);
+  CHECK(accuracy < study.accuracy_of("flat.json", 20));
+  CHECK(accuracy > 0.5);
+}
+
+TEST_CASE("pessimistic people are worse than the default ones, and better than chance") {
+  const DefaultStudy study;
+  const double accuracy = study.accuracy_of("pessimistic.json", 20);
+  CHECK(accuracy < study.accuracy_of("default.json", 20) - 0.05);
+  CHECK(accuracy > 0.25);
 }
 
 TEST_CASE("the surface model's textures are told apart about as well as the paper's") {

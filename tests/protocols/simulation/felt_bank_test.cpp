@@ -18,8 +18,8 @@ simulation::SubjectModel erring_subject() {
   simulation::SubjectModel subject;
   subject.explore_s = 1.5;
   subject.training_passes = 4;
-  subject.weber = 1.2;
-  subject.weber_spread = 0.4;
+  subject.feature_noise = 1.2;
+  subject.feature_noise_spread = 0.4;
   subject.lapse = 0.15;
   subject.lapse_spread = 0.5;
   subject.position_bias = 0.8;
@@ -27,6 +27,8 @@ simulation::SubjectModel erring_subject() {
   subject.class_bias_spread = 0.3;
   subject.class_bias = {{"brick", 0.5}};
   subject.label_swap = {{"bark", "cloth"}};
+  subject.hand = device::HandKind::stylus_grip;
+  subject.hand_spread = 0.3;
   return subject;
 }
 
@@ -109,6 +111,8 @@ TEST_CASE("a bank does not depend on codes, noise or bias") {
   const TinyStudy recoded({.secret = 2});
   simulation::SubjectModel still;
   still.explore_s = erring_subject().explore_s;
+  still.hand = erring_subject().hand;
+  still.hand_spread = erring_subject().hand_spread;
   const simulation::FeltBank one = bank_of(study, {.explorations = 2});
   const simulation::FeltBank other(Fields(recoded).all, recoded.key().study, still,
                                    {.explorations = 2});

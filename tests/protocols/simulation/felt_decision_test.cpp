@@ -14,8 +14,8 @@ const std::vector<std::string> kLabels = {"bark", "cloth", "straw"};
 
 simulation::SubjectModel population() {
   simulation::SubjectModel subject;
-  subject.weber = 0.3;
-  subject.weber_spread = 0.2;
+  subject.feature_noise = 0.3;
+  subject.feature_noise_spread = 0.2;
   subject.lapse = 0.1;
   subject.lapse_spread = 0.8;
   subject.position_bias = 0.5;
@@ -52,8 +52,9 @@ void check_normal(const Spread& found, double mean, double sd) {
 }
 
 TEST_CASE("people of a population differ as its subject file says") {
-  check_normal(spread_of([](const simulation::Individual& one) { return std::log(one.weber()); }),
-               std::log(0.3), 0.2);
+  check_normal(
+      spread_of([](const simulation::Individual& one) { return std::log(one.noise().own); }),
+      std::log(0.3), 0.2);
   check_normal(spread_of([](const simulation::Individual& one) {
                  return std::log(one.lapse() / (1.0 - one.lapse()));
                }),
@@ -69,13 +70,13 @@ TEST_CASE("people of a population differ as its subject file says") {
 
 TEST_CASE("without spreads everybody is as the subject file says, to the last digit") {
   simulation::SubjectModel subject = population();
-  subject.weber_spread = 0.0;
+  subject.feature_noise_spread = 0.0;
   subject.lapse_spread = 0.0;
   subject.position_bias_spread = 0.0;
   subject.class_bias_spread = 0.0;
   for (int i = 1; i <= 20; ++i) {
     const simulation::Individual one(subject, 3, i);
-    CHECK(one.weber() == subject.weber);
+    CHECK(one.noise().own == subject.feature_noise);
     CHECK(one.lapse() == subject.lapse);
     CHECK(one.bias(kLabels) == std::vector<double>{0.5, 1.25, 0.0});
   }
@@ -98,10 +99,10 @@ TEST_CASE("one spread does not change the other differences between people") {
   less.class_bias_spread = 0.0;
   const simulation::Individual one(all, 3, 5);
   const simulation::Individual other(less, 3, 5);
-  CHECK(one.weber() == other.weber());
+  CHECK(one.noise().own == other.noise().own);
   CHECK(one.lapse() != other.lapse());
-  CHECK(one.weber() != simulation::Individual(all, 3, 6).weber());
-  CHECK(one.weber() != simulation::Individual(all, 4, 5).weber());
+  CHECK(one.noise().own != simulation::Individual(all, 3, 6).noise().own);
+  CHECK(one.noise().own != simulation::Individual(all, 4, 5).noise().own);
 }
 
 TEST_CASE("a lapse of 0 or 1 is the same for everybody") {

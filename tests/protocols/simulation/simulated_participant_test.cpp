@@ -69,18 +69,18 @@ TEST_CASE("a subject who always lapses answers every position about equally ofte
 
 TEST_CASE("a strong bias wins over what is felt") {
   simulation::SubjectModel first;
-  first.weber = 0.3;
+  first.feature_noise = 0.3;
   first.position_bias = 1e6;
   CHECK(answers(first, 1).front() == 0);
   simulation::SubjectModel fond;
-  fond.weber = 0.3;
+  fond.feature_noise = 0.3;
   fond.class_bias = {{"brick", 1e6}};
   CHECK(answers(fond, 1).front() == 2);
 }
 
 TEST_CASE("answers and thinking times are functions of the seed and the participant's number") {
   simulation::SubjectModel unsure;
-  unsure.weber = 30.0;
+  unsure.feature_noise = 30.0;
   CHECK(answers(unsure, 40, 5) == answers(unsure, 40, 5));
   CHECK(answers(unsure, 40, 5) != answers(unsure, 40, 6));
 }

@@ -59,7 +59,7 @@ TEST_CASE("on smooth planes every subject is at chance") {
   TinyStudy study({.smooth = true});
   simulation::SubjectModel subject = quick_subject();
   subject.explore_s = 1.2;
-  subject.weber = GENERATE(0.0, 0.4);
+  subject.feature_noise = GENERATE(0.0, 0.4);
   const store::StudyStore store =
       simulated(study, subject, {.participants = 20, .seed = 11, .jobs = 2});
   // 500 trials: 99.9 % of binomial draws with p = 0.2 lie between 71 and 131.
@@ -109,8 +109,8 @@ TEST_CASE("more noise lowers the accuracy") {
   TinyStudy study;
   simulation::SubjectModel subject = quick_subject();
   std::vector<int> correct;
-  for (const double weber : {0.0, 1.0, 8.0}) {
-    subject.weber = weber;
+  for (const double feature_noise : {0.0, 1.0, 8.0}) {
+    subject.feature_noise = feature_noise;
     correct.push_back(correct_of(confusion_of(
         simulated(study, subject, {.participants = 4, .seed = 3, .jobs = 2}), study.key())));
   }
@@ -120,7 +120,7 @@ TEST_CASE("more noise lowers the accuracy") {
 
 TEST_CASE("answers do not depend on codes") {
   simulation::SubjectModel subject = quick_subject();
-  subject.weber = 1.0;
+  subject.feature_noise = 1.0;
   TinyStudy study({.secret = 1, .schedules = 7});
   TinyStudy recoded({.secret = 2, .schedules = 7});
   CHECK(study.key().code_of({0, 0, 0}) != recoded.key().code_of({0, 0, 0}));
@@ -149,7 +149,7 @@ TEST_CASE("the database is the same to the byte whatever the number of jobs") {
 TEST_CASE("another seed gives other participants, and the same schedule") {
   simulation::SubjectModel subject = quick_subject();
   subject.explore_s = 1.0;
-  subject.weber = 2.0;
+  subject.feature_noise = 2.0;
   TinyStudy study;
   const store::StudyStore one = simulated(study, subject, {.participants = 1, .seed = 1});
   const store::StudyStore other = simulated(study, subject, {.participants = 1, .seed = 2});
@@ -220,7 +220,7 @@ TEST_CASE("a force limit that some textures reach does not show in clear which o
 TEST_CASE("participants who are added later are the same as if simulated at once") {
   simulation::SubjectModel subject = quick_subject();
   subject.explore_s = 1.0;
-  subject.weber = 1.0;
+  subject.feature_noise = 1.0;
   TinyStudy study;
   const store::StudyStore at_once = simulated(study, subject, {.participants = 3, .seed = 4});
   store::StudyStore in_two = simulated(study, subject, {.participants = 2, .seed = 4});

@@ -5,6 +5,7 @@
 #include "support/catch.hpp"
 
 #include <set>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -42,8 +43,8 @@ design::Study study_of(const std::vector<std::string>& labels) {
 
 TEST_CASE("a subject file says everything about a subject") {
   const simulation::SubjectModel subject =
-      parsed({{"weber", 0.3},
-              {"weber_spread", 0.1},
+      parsed({{"feature_noise", 0.3},
+              {"feature_noise_spread", 0.1},
               {"lapse", 0.02},
               {"lapse_spread", 0.4},
               {"bias",
@@ -56,9 +57,12 @@ TEST_CASE("a subject file says everything about a subject") {
               {"push_n", 0.6},
               {"slowest_mm_s", 60},
               {"fastest_mm_s", 90},
+              {"hand", {{"model", "stylus_grip"}, {"spread", 0.25}}},
               {"training_passes", 3}});
-  CHECK(subject.weber == 0.3);
-  CHECK(subject.weber_spread == 0.1);
+  CHECK(subject.hand == device::HandKind::stylus_grip);
+  CHECK(subject.hand_spread == 0.25);
+  CHECK(subject.feature_noise == 0.3);
+  CHECK(subject.feature_noise_spread == 0.1);
   CHECK(subject.lapse == 0.02);
   CHECK(subject.lapse_spread == 0.4);
   CHECK(subject.position_bias == 0.5);
@@ -76,18 +80,24 @@ TEST_CASE("a subject file says everything about a subject") {
 
 TEST_CASE("an empty subject file is an ideal subject") {
   const simulation::SubjectModel subject = parsed(json::object());
-  CHECK(subject.weber == 0.0);
+  CHECK(subject.feature_noise == 0.0);
   CHECK(subject.lapse == 0.0);
   CHECK(subject.explore_s == 10.0);
   CHECK(subject.push_n == 0.7);
+  CHECK(subject.hand == device::HandKind::point_mass);
+  CHECK(subject.hand_spread == 0.0);
 }
 
 TEST_CASE("a subject file is refused with the place and a remedy") {
   using Catch::Contains;
-  CHECK_THAT(refusal({{"webber", 0.3}}), Contains("subject.json: /webber") && Contains("weber"));
+  CHECK_THAT(refusal({{"webber", 0.3}}),
+             Contains("subject.json: /webber") && Contains("feature_noise"));
   CHECK_THAT(refusal({{"lapse", 1.5}}), Contains("/lapse"));
   CHECK_THAT(refusal({{"push_n", "hard"}}), Contains("/push_n"));
   CHECK_THAT(refusal({{"bias", {{"positon", 1}}}}), Contains("/bias/positon"));
+  CHECK_THAT(refusal({{"hand", {{"spread", 1.5}}}}), Contains("/hand/spread"));
+  CHECK_THAT(refusal({{"hand", {{"model", "stylus_gripp"}}}}),
+             Contains("/hand/model") && Contains("stylus_grip"));
   CHECK_THAT(refusal({{"label_swap", pairs({{"a", "b"}, {"b", "c"}})}}),
              Contains("/label_swap/1/0"));
   CHECK_THAT(refusal({{"label_swap", pairs({{"a"}})}}), Contains("/label_swap/0"));
@@ -116,7 +126,7 @@ TEST_CASE("the subject files that come with the program are accepted") {
     names.insert(entry.path().filename().string());
   }
   CHECK(names.contains("default.json"));
-  CHECK(simulation::load_subject_model(folder / "ideal.json").weber == 0.0);
+  CHECK(simulation::load_subject_model(folder / "ideal.json").feature_noise == 0.0);
   CHECK(simulation::load_subject_model(folder / "swapped.json").label_swap.size() == 1);
 }
 
@@ -144,7 +154,7 @@ TEST_CASE("the schema of subject files and the reader know the same keys and bou
     CHECK_THAT(with(low - 0.001), Catch::Contains("/" + key));
     CHECK_THAT(with(high + 0.001), Catch::Contains("/" + key));
   }
-  CHECK(bounded == 9);
+  CHECK(bounded == 14);
   for (const json& example : schema.at("examples")) CHECK(refusal(example).empty());
 }
 
@@ -169,10 +179,68 @@ TEST_CASE("the schema and the reader know the same keys and bounds of a bias") {
   CHECK(bounded == 3);
 }
 
+TEST_CASE("the schema and the reader know the same keys, bounds and defaults of changes") {
+  const json schema =
+      json::parse(text_of(read_file(kRoot / "config" / "schema" / "subject.schema.json")));
+  const std::pair<std::string, int> named =
+      GENERATE(std::pair("learning", 4), std::pair("serial", 4), std::pair("fatigue", 3),
+               std::pair("thought", 6));
+  const std::string part = named.first;
+  const json& known = schema.at("properties").at(part);
+  REQUIRE(known.at("additionalProperties") == false);
+  const std::string refused = refusal({{part, {{"no such key at all", 1}}}});
+  const json defaults =
+      json::parse(simulation::subject_model_json(parsed({{part, json::object()}}))).at(part);
+  int bounded = 0;
+  for (const auto& item : known.at("properties").items()) {
+    CHECK_THAT(refused, Catch::Contains(item.key()));
+    ++bounded;
+    // The other times make room, so that each bound is met alone.
+    const auto with = [&](double number) {
+      json changes = {{item.key(), number}};
+      if (part == "thought") {
+        for (const auto& [key, room] : {std::pair("easy_s", 0.01),
+                                        {"hard_s", 60.0},
+                                        {"shift_s", 0.0},
+                                        {"longest_s", 600.0}}) {
+          if (item.key() != key) changes[key] = room;
+        }
+      }
+      return refusal({{part, changes}});
+    };
+    const double low = item.value().at("minimum");
+    const double high = item.value().at("maximum");
+    const std::string place = "/" + part + "/" + item.key();
+    CHECK(with(low).empty());
+    CHECK(with(high).empty());
+    CHECK_THAT(with(low - 0.001), Catch::Contains(place));
+    CHECK_THAT(with(high + 0.001), Catch::Contains(place));
+    CHECK(defaults.at(item.key()) == item.value().at("default"));
+  }
+  CHECK(bounded == named.second);
+  CHECK(defaults.size() == known.at("properties").size());
+}
+
+TEST_CASE("times to think that contradict one another are refused") {
+  CHECK_THAT(refusal({{"thought", {{"easy_s", 3}, {"hard_s", 2}}}}), Catch::Contains("/thought"));
+  CHECK_THAT(refusal({{"thought", {{"shift_s", 3}, {"longest_s", 2}}}}),
+             Catch::Contains("/thought") && Catch::Contains("longest_s"));
+}
+
+TEST_CASE("a training has one of three names, and people think alike without the key") {
+  CHECK(parsed({{"training", "own"}}).training == simulation::Training::own);
+  CHECK(parsed({{"training", "none"}}).training == simulation::Training::none);
+  CHECK(parsed(json::object()).training == simulation::Training::shared);
+  CHECK_THAT(refusal({{"training", "owns"}}), Catch::Contains("/training"));
+  CHECK_FALSE(parsed(json::object()).thought.has_value());
+  CHECK_FALSE(
+      json::parse(simulation::subject_model_json(parsed(json::object()))).contains("thought"));
+}
+
 TEST_CASE("a subject model that is written is read back as the same one, to the last digit") {
   simulation::SubjectModel model;
-  model.weber = 0.1 + 0.2;
-  model.weber_spread = 1.0 / 3.0;
+  model.feature_noise = 0.1 + 0.2;
+  model.feature_noise_spread = 1.0 / 3.0;
   model.lapse = 0.02;
   model.lapse_spread = 0.7;
   model.position_bias = -1.5;
@@ -185,15 +253,31 @@ TEST_CASE("a subject model that is written is read back as the same one, to the 
   model.slowest_mm_s = 20.0;
   model.fastest_mm_s = 70.0;
   model.training_passes = 3;
+  model.training = simulation::Training::own;
+  model.memory_noise = 0.1;
+  model.mapping_noise = 0.3;
+  model.learning = {.factor = 1.7, .trials = 33.0, .forgotten = 0.3, .spread = 0.2};
+  model.period_noise_spread = 0.15;
+  model.serial = {.answer = 0.4, .answer_spread = 0.2, .stimulus = -0.3, .stimulus_spread = 0.05};
+  model.fatigue = {.noise_per_min = 0.02, .lapse_per_min = 0.1, .recovered = 0.6};
+  model.thought = simulation::ThoughtTime{.shift_s = 0.2, .easy_s = 0.7};
   const std::string written = simulation::subject_model_json(model);
   const simulation::SubjectModel read = simulation::parse_subject_model(written, "written");
   CHECK(simulation::subject_model_json(read) == written);
-  CHECK(read.weber == model.weber);
-  CHECK(read.weber_spread == model.weber_spread);
+  CHECK(read.feature_noise == model.feature_noise);
+  CHECK(read.feature_noise_spread == model.feature_noise_spread);
   CHECK(read.class_bias == model.class_bias);
   CHECK(read.label_swap == model.label_swap);
   CHECK(read.position_bias_spread == 0.25);
   CHECK(read.training_passes == 3);
+  CHECK(read.training == simulation::Training::own);
+  CHECK(read.memory_noise == 0.1);
+  CHECK(read.mapping_noise == 0.3);
+  CHECK(read.learning == model.learning);
+  CHECK(read.period_noise_spread == 0.15);
+  CHECK(read.serial == model.serial);
+  CHECK(read.fatigue == model.fatigue);
+  CHECK(read.thought == model.thought);
 }
 
 }  // namespace

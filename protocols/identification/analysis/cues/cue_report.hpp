@@ -49,7 +49,7 @@ struct ObserverFigures {
   /// Mean over presented classes of the Jensen-Shannon divergence between participants' and
   /// observer's answers, bits: 0 if they confuse alike, at most 1. By the jackknife.
   CueFigure divergence;
-  /// Noise of the sense (a Weber fraction) at which the observer is right as often as the
+  /// Noise of each felt log intensity at which the observer is right as often as the
   /// participants; 0 if the observer is not right more often even without noise.
   double matched_noise = 0.0;
   double matched_accuracy = 0.0;   ///< share right with that noise, of trials with a response

@@ -93,7 +93,7 @@ Json by_json() {
        "without a response left out; estimate and interval of the jackknife over participants "
        "(Miller 1974)"},
       {"matched",
-       "the observer with the noise of the sense (a Weber fraction, by bisection) that makes it "
+       "the observer with the noise of each felt log intensity (by bisection) that makes it "
        "right as often as the participants, if there is one"},
       {"difference_bits",
        "second least divergence of matched observers less the least; the same jackknife; "

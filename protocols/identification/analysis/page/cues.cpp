@@ -85,7 +85,8 @@ Table confusing_table(const StudyReport& report, const MethodCues& method, std::
        "participants, because confusions of few answers lie too far from any observer's.",
        {Source::lin, Source::miller_jackknife}},
       {"Matched: an observer that is hardly ever wrong has no confusions to be compared, so its "
-       "sense is given noise (a Weber fraction) until it is right as often as participants; 0 if "
+       "sense is given noise (on each felt log intensity) until it is right as often as "
+       "participants; 0 if "
        "it is not right more often without. The least is emphasised."}};
   const auto lacks = [](const ObserverFigures& one) { return !one.is_as_uncertain(); };
   if (std::ranges::any_of(method.observers, lacks)) {

@@ -131,7 +131,8 @@ TEST_CASE("report_json has the published keys in their order") {
     return keys;
   };
   CHECK(keys_of(json) ==
-        "study protocol simulated stamp state interim question_alone pilot participants trials "
+        "study protocol simulated stamp unverified_device state interim question_alone pilot "
+        "participants trials "
         "classes methods "
         "comparison warnings "
         "pairs "

@@ -9,11 +9,11 @@ namespace touchtrial {
 namespace {
 
 /// Quick explorations: 2 s, with the training that they need.
-simulation::SubjectModel quick_subject(double weber) {
+simulation::SubjectModel quick_subject(double feature_noise) {
   simulation::SubjectModel subject;
   subject.explore_s = 2.0;
   subject.training_passes = 6;
-  subject.weber = weber;
+  subject.feature_noise = feature_noise;
   return subject;
 }
 

@@ -1,0 +1,317 @@
+#include "analysis/planning/level_report.hpp"
+
+#include "core/strict_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::planning {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using simulation::LevelBand;
+using simulation::LevelRange;
+using simulation::PlaneLevels;
+using simulation::StimulusLevel;
+using simulation::StimulusLevels;
+
+constexpr std::size_t kMostCompared = 40;
+constexpr const char* kBlank = "blank plane";
+
+constexpr const char* kWhatItIs =
+    "Decibels above the published threshold for vibrations of a held stylus, or above the blank "
+    "plane "
+    "where that is stronger, from one curve to the other: the conservative one (tan_1994) and the "
+    "sensitive one (israr_2006). The blank plane is above the threshold alone. Vibrations are "
+    "those "
+    "of the tip of a modelled device in a simulated hand.";
+constexpr const char* kWhoseItIs =
+    "The curves are other people's, passive and steady; active movement raises thresholds. Whether "
+    "people feel by them is open until human data that were not fitted are predicted.";
+
+std::string name_of_stimulus(const design::Study& study, const design::StimulusIndex& index) {
+  const design::StudyClass& shown = study.classes[index.class_index];
+  std::string name = shown.label;
+  if (shown.images.size() > 1) name += fmt::format(" {}", index.exemplar + 1);
+  if (study.presented_methods() > 1) name += ", " + study.methods[index.method].label;
+  return name;
+}
+
+std::vector<std::string> devices_of(const StimulusLevels& levels) {
+  std::vector<std::string> devices;
+  for (const StimulusLevel& level : levels.blank) {
+    if (std::ranges::find(devices, level.device) == devices.end()) devices.push_back(level.device);
+  }
+  return devices;
+}
+
+std::string range_cell(double low_db, double high_db) {
+  constexpr double kNothingDb = -60.0;
+  if (high_db < kNothingDb) return "none";
+  const auto whole = [](double db) {
+    return db < kNothingDb ? "none" : fmt::format("{}", static_cast<int>(std::lround(db)));
+  };
+  const std::string low = whole(low_db);
+  const std::string high = whole(high_db);
+  return low == high ? low : low + " to " + high;
+}
+
+std::string range_cell(const PlaneLevels& levels, const std::string& device) {
+  const LevelRange range = simulation::range_on(levels, device);
+  return range_cell(range.low_db, range.high_db);
+}
+
+std::string band_cell(const PlaneLevels& levels, std::size_t band) {
+  double low_db = 1e9;
+  double high_db = -1e9;
+  for (const StimulusLevel& level : levels) {
+    low_db = std::min(low_db, level.bands_db[band]);
+    high_db = std::max(high_db, level.bands_db[band]);
+  }
+  return range_cell(low_db, high_db);
+}
+
+template <typename CellOf>
+void add_rows(analysis::Table& table, const design::Study& study, const StimulusLevels& levels,
+              std::size_t columns, const CellOf& cell_of) {
+  const auto row = [&](const std::string& name, const PlaneLevels& own) {
+    std::vector<analysis::Cell> cells{name};
+    for (std::size_t i = 0; i < columns; ++i) cells.emplace_back(cell_of(own, i));
+    table.rows.push_back(std::move(cells));
+  };
+  for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
+    row(name_of_stimulus(study, levels.stimuli[i]), levels.levels[i]);
+  }
+  row(kBlank, levels.blank);
+}
+
+/// The greatest factor on gains that a stimulus needs by a curve.
+double gain_needed(const StimulusLevels& levels, const std::string& device) {
+  double most = 0.0;
+  for (const PlaneLevels& own : levels.levels) {
+    for (const StimulusLevel& level : own) {
+      if (level.device == device) most = std::max(most, level.gain_for_10_db);
+    }
+  }
+  return most;
+}
+
+analysis::Table table_in_all(const design::Study& study, const StimulusLevels& levels) {
+  analysis::Table table{"levels",
+                        "Levels re published passive thresholds, dB",
+                        {{"stimulus", analysis::Align::left}}};
+  const std::vector<std::string> devices = devices_of(levels);
+  for (const std::string& device : devices) table.columns.push_back({device});
+  add_rows(table, study, levels, devices.size(),
+           [&](const PlaneLevels& own, std::size_t i) { return range_cell(own, devices[i]); });
+  std::vector<analysis::Cell> gains{"gain for 10 dB"};
+  for (const std::string& device : devices) {
+    gains.emplace_back(fmt::format("x {:.2f}", gain_needed(levels, device)));
+  }
+  table.rows.push_back(std::move(gains));
+  table.notes = {
+      {kWhatItIs},
+      {"With the gains times the number in the last row, every stimulus would stand 10 dB up "
+       "by both curves, as far as motors and stability allow."},
+      {kWhoseItIs}};
+  return table;
+}
+
+analysis::Table table_by_bands(const design::Study& study, const StimulusLevels& levels) {
+  analysis::Table table{
+      "levels-by-band", "The same by frequency, dB", {{"stimulus", analysis::Align::left}}};
+  for (const LevelBand& band : simulation::kLevelBands) {
+    table.columns.push_back({fmt::format("{:g} to {:g} Hz", band.from_hz, band.to_hz)});
+  }
+  add_rows(table, study, levels, simulation::kLevelBands.size(), band_cell);
+  return table;
+}
+
+/// Levels of one stimulus less those of another on a device, by curve.
+std::vector<double> differences_db(const PlaneLevels& one, const PlaneLevels& other,
+                                   const std::string& device) {
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    if (one[i].device == device) differences.push_back(one[i].db - other[i].db);
+  }
+  return differences;
+}
+
+/// The two stimuli of different classes whose levels are nearest, by the curve that tells them
+/// apart best.
+std::string nearest_words(const design::Study& study, const StimulusLevels& levels,
+                          const std::string& device) {
+  double nearest_db = 1e9;
+  std::string words;
+  for (std::size_t a = 0; a < levels.stimuli.size(); ++a) {
+    for (std::size_t b = a + 1; b < levels.stimuli.size(); ++b) {
+      if (levels.stimuli[a].class_index == levels.stimuli[b].class_index) continue;
+      const std::vector<double> apart = differences_db(levels.levels[a], levels.levels[b], device);
+      double low_db = 1e9;
+      double high_db = 0.0;
+      for (const double db : apart) {
+        low_db = std::min(low_db, std::abs(db));
+        high_db = std::max(high_db, std::abs(db));
+      }
+      if (high_db >= nearest_db) continue;
+      nearest_db = high_db;
+      words =
+          fmt::format("{} and {}, {:.1f} to {:.1f} dB", name_of_stimulus(study, levels.stimuli[a]),
+                      name_of_stimulus(study, levels.stimuli[b]), low_db, high_db);
+    }
+  }
+  return words;
+}
+
+Json json_of(const PlaneLevels& levels) {
+  Json list = Json::array();
+  for (const StimulusLevel& level : levels) {
+    Json bands = Json::array();
+    for (std::size_t band = 0; band < level.bands_db.size(); ++band) {
+      bands.push_back({{"from_hz", simulation::kLevelBands[band].from_hz},
+                       {"to_hz", simulation::kLevelBands[band].to_hz},
+                       {"db", level.bands_db[band]}});
+    }
+    list.push_back({{"device", level.device},
+                    {"curve", engine::name_of(level.curve)},
+                    {"db", level.db},
+                    {"gain_for_10_db",
+                     level.gain_for_10_db > 0.0 ? Json(level.gain_for_10_db) : Json(nullptr)},
+                    {"bands", std::move(bands)}});
+  }
+  return list;
+}
+
+Json json_of_differences(const design::Study& study, const StimulusLevels& levels) {
+  Json list = Json::array();
+  if (levels.stimuli.size() > kMostCompared) return list;
+  for (std::size_t a = 0; a < levels.stimuli.size(); ++a) {
+    for (std::size_t b = a + 1; b < levels.stimuli.size(); ++b) {
+      for (std::size_t i = 0; i < levels.blank.size(); ++i) {
+        list.push_back({{"one", name_of_stimulus(study, levels.stimuli[a])},
+                        {"other", name_of_stimulus(study, levels.stimuli[b])},
+                        {"device", levels.blank[i].device},
+                        {"curve", engine::name_of(levels.blank[i].curve)},
+                        {"db", levels.levels[a][i].db - levels.levels[b][i].db}});
+      }
+    }
+  }
+  return list;
+}
+
+class LevelledResults final : public analysis::Results {
+ public:
+  LevelledResults(std::unique_ptr<const analysis::Results> results, design::Study study,
+                  StimulusLevels levels)
+      : results_(std::move(results)), study_(std::move(study)), levels_(std::move(levels)) {}
+
+  const analysis::StudyHead& head() const override { return results_->head(); }
+  std::vector<analysis::Figure> figures(const std::string& stamp) const override {
+    return results_->figures(stamp);
+  }
+  std::string json() const override {
+    Json object = Json::parse(results_->json());
+    Json stimuli = Json::array();
+    for (std::size_t i = 0; i < levels_.stimuli.size(); ++i) {
+      const design::StimulusIndex& index = levels_.stimuli[i];
+      stimuli.push_back({{"class", study_.classes[index.class_index].label},
+                         {"exemplar", index.exemplar + 1},
+                         {"method", study_.methods[index.method].label},
+                         {"levels", json_of(levels_.levels[i])}});
+    }
+    object["levels"] = {{"stimuli", std::move(stimuli)},
+                        {"blank", json_of(levels_.blank)},
+                        {"differences", json_of_differences(study_, levels_)}};
+    return json_text(object);
+  }
+  analysis::Document document(const analysis::Provenance& provenance,
+                              const analysis::Pictures& pictures) const override {
+    analysis::Document document = results_->document(provenance, pictures);
+    document.sections.push_back(levels_section(study_, levels_));
+    return document;
+  }
+
+ private:
+  std::unique_ptr<const analysis::Results> results_;
+  design::Study study_;
+  StimulusLevels levels_;
+};
+
+}  // namespace
+
+analysis::Section levels_section(const design::Study& study, const StimulusLevels& levels) {
+  analysis::Section section{"levels", "Strength of the stimuli", {}};
+  const std::vector<std::string> warnings = level_warnings(study, levels);
+  if (!warnings.empty()) section.blocks.emplace_back(analysis::Warnings{warnings});
+  section.blocks.emplace_back(table_in_all(study, levels));
+  const std::vector<std::string> devices = devices_of(levels);
+  if (devices.size() == 1) section.blocks.emplace_back(table_by_bands(study, levels));
+  std::string nearest;
+  for (const std::string& device : devices) {
+    const std::string words = nearest_words(study, levels, device);
+    if (!words.empty()) nearest += (nearest.empty() ? "" : "; ") + device + ": " + words;
+  }
+  if (!nearest.empty()) {
+    section.blocks.emplace_back(
+        analysis::Cited{"Least difference of level between two classes: " + nearest + "."});
+  }
+  return section;
+}
+
+std::string levels_json(const PlaneLevels& levels) {
+  return json_of(levels).dump();
+}
+
+std::string differences_json(const design::Study& study, const StimulusLevels& levels) {
+  return json_of_differences(study, levels).dump();
+}
+
+std::vector<std::string> level_warnings(const design::Study& study, const StimulusLevels& levels) {
+  std::string weak_on;
+  LevelRange weakest{1e9, 1e9};
+  std::string words;
+  for (const std::string& device : devices_of(levels)) {
+    int weak = 0;
+    for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
+      const LevelRange range = simulation::range_on(levels.levels[i], device);
+      if (range.low_db >= simulation::kLeastLevelDb) continue;
+      ++weak;
+      if (range.low_db >= weakest.low_db) continue;
+      weakest = range;
+      words = fmt::format("{} on {}, {} dB", name_of_stimulus(study, levels.stimuli[i]), device,
+                          range_cell(range.low_db, range.high_db));
+    }
+    if (weak == 0) continue;
+    weak_on += fmt::format("{}{} ({} of {})", weak_on.empty() ? "" : ", ", device, weak,
+                           levels.stimuli.size());
+  }
+  if (weak_on.empty()) return {};
+  return {fmt::format(
+      "stimuli may stand less than {:g} dB above threshold or blank plane on {}; the weakest, {}: "
+      "people may not feel them; raise the gains or take another device{}",
+      simulation::kLeastLevelDb, weak_on, words,
+      study.device.empty() ? "; name yours by /rendering/device" : "")};
+}
+
+std::string range_words(const PlaneLevels& levels) {
+  double low_db = 1e9;
+  double high_db = -1e9;
+  for (const StimulusLevel& level : levels) {
+    low_db = std::min(low_db, level.db);
+    high_db = std::max(high_db, level.db);
+  }
+  return range_cell(low_db, high_db);
+}
+
+std::unique_ptr<const analysis::Results> with_levels(
+    std::unique_ptr<const analysis::Results> results, const design::Study& study,
+    StimulusLevels levels) {
+  return std::make_unique<LevelledResults>(std::move(results), study, std::move(levels));
+}
+
+}  // namespace touchtrial::planning

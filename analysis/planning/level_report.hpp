@@ -1,0 +1,38 @@
+/// \file The levels of a study's stimuli in words, tables and JSON. What they are: docs/perception.md.
+#pragma once
+
+#include "analysis/page/document.hpp"
+#include "analysis/results.hpp"
+#include "protocols/design/study.hpp"
+#include "protocols/simulation/stimulus_levels.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace touchtrial::planning {
+
+/// One table of stimuli by device, with the ranges over the curves; for one device a second one by
+/// bands; and how far the stimuli are apart.
+[[nodiscard]] analysis::Section levels_section(const design::Study& study,
+                                               const simulation::StimulusLevels& levels);
+
+/// A list as `prepare --json` has it, as JSON: docs/data-dictionary.md, "levels".
+[[nodiscard]] std::string levels_json(const simulation::PlaneLevels& levels);
+/// How far each two stimuli are apart; empty for more than 40 stimuli.
+[[nodiscard]] std::string differences_json(const design::Study& study,
+                                           const simulation::StimulusLevels& levels);
+
+/// One line if stimuli may be too weak on a device.
+[[nodiscard]] std::vector<std::string> level_warnings(const design::Study& study,
+                                                      const simulation::StimulusLevels& levels);
+
+/// \return the range over all devices and curves, dB: "12 to 31"
+[[nodiscard]] std::string range_words(const simulation::PlaneLevels& levels);
+
+/// Results with a section on levels and a member "levels".
+[[nodiscard]] std::unique_ptr<const analysis::Results> with_levels(
+    std::unique_ptr<const analysis::Results> results, const design::Study& study,
+    simulation::StimulusLevels levels);
+
+}  // namespace touchtrial::planning

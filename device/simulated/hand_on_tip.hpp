@@ -1,0 +1,139 @@
+/// \file What a hand does to the tip that it holds and pushes: as a point mass, or by the published
+/// stylus grip. Source of the equations: docs/devices/hands.md.
+#pragma once
+
+#include "core/vec.hpp"
+#include "device/model/device_model.hpp"
+
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <string_view>
+
+namespace touchtrial::device {
+
+/// How a hand is modelled.
+enum class HandKind {
+  point_mass,   ///< a mass on a spring and a damper: a light pen grip, near critical damping
+  stylus_grip,  ///< Fu and Cavusoglu 2012: fingers on a second mass, which an arm holds
+};
+
+/// \return as files have it: "point_mass" or "stylus_grip"
+[[nodiscard]] std::string_view name_of(HandKind model) noexcept;
+
+/// By how much one person's hand differs from the model's, on all axes.
+struct HandFactors {
+  double stiffness = 1.0;  ///< >= 0
+  double damping = 1.0;    ///< >= 0
+  double mass = 1.0;       ///< > 0
+};
+
+/// Place and speed of the path at one time.
+struct PathPoint {
+  Vec2 position_mm;
+  Vec2 velocity_mm_s;
+};
+
+/// A hand on a stylus. The point mass alone has a mass, arm and damping of its own; the grip's are
+/// the published ones.
+struct HandOptions {
+  double mass_kg = 0.1;                    ///< of hand and stylus as felt at the tip, > 0
+  double arm_stiffness_n_per_mm = 0.2;     ///< spring towards the path, along the plane, >= 0
+  double arm_damping_n_s_per_mm = 0.008;   ///< of motion against the path's, >= 0
+  double push_n = 0.7;                     ///< steady push on the plane, >= 0
+  double push_damping_n_s_per_mm = 0.008;  ///< of motion across the plane, >= 0
+  double start_height_mm = 15.0;           ///< above the plane, >= 0
+  double explore_s = 10.0;                 ///< after which the hand stops, > 0
+  double max_force_n = 3.3;                ///< of the device that it holds, > 0; a model's too
+  HandKind model = HandKind::point_mass;
+  HandFactors factors{};
+};
+
+/// The hand between an arm's intention, which moves along a path and pushes, and the tip of a
+/// device: one tick after the other. A tick costs no heap, lock or exception. Not thread-safe.
+class HandOnTip {
+ public:
+  /// At rest in the origin.
+  /// \param device  that it holds. The grip has no mass at the tip, so a device of less than
+  ///   DeviceDynamics::kLeastMassKg is given the rest of that.
+  /// \param tick_s  as of DeviceDynamics
+  /// \throws std::invalid_argument if an option is out of range
+  HandOnTip(const HandOptions& options, const DeviceModel& device, double tick_s);
+
+  /// Puts the hand on a tip that rests there.
+  void place(Vec3 tip_mm) noexcept;
+
+  /// What the hand does to the tip in the tick that begins.
+  /// \param tip_mm, tip_mm_s  of the tip, true, in the plane frame
+  /// \param intention  where the arm wants to be, along the plane
+  /// \param push_n  towards the plane
+  [[nodiscard]] DeviceDynamics::Outside hold(Vec3 tip_mm, Vec3 tip_mm_s, const PathPoint& intention,
+                                             double push_n) noexcept;
+  /// Ends the tick.
+  /// \param tip_mm_s  of the tip after it
+  void follow(Vec3 tip_mm_s) noexcept;
+
+  /// \return of the hand's own mass behind the grip; the point mass has none
+  [[nodiscard]] Vec3 position_mm() const noexcept;
+  [[nodiscard]] Vec3 velocity_mm_s() const noexcept;
+
+  /// \param axis  0 .. 2: x, y, z of the plane frame
+  /// \param s  complex frequency, 1/s
+  /// \return force on the tip per way of the tip while the intention rests, N/mm, with the mass
+  ///   that the hand has at the tip
+  [[nodiscard]] std::complex<double> dynamic_stiffness(std::size_t axis,
+                                                       std::complex<double> s) const noexcept;
+
+ private:
+  /// One axis of the grip: tip, fingers (spring and damper), mass, arm (spring and damper).
+  struct Axis {
+    double mass_kg, finger_n_per_mm, finger_n_s_per_mm, arm_n_per_mm, arm_n_s_per_mm;
+    /// N s/mm: spring and damper by the velocities before a tick and after it.
+    double finger_before, finger_after, arm_before, arm_after;
+    double inertia;  ///< N s/mm: mass over a tick
+    double share;    ///< of the tip's velocity that the mass takes within a tick
+    double carried_mm_s = 0.0;
+    double position_mm = 0.0;
+    double velocity_mm_s = 0.0;
+  };
+  struct Pull {
+    double force_n, damping_n_s_per_mm;
+  };
+  [[nodiscard]] Axis grip_axis(std::size_t axis) const noexcept;
+  [[nodiscard]] static Pull pull(Axis& axis, double tip_mm, double tip_mm_s, double place_mm,
+                                 double drive_n) noexcept;
+
+  HandOptions options_;  ///< with the factors in the point mass's parameters
+  double tick_s_;
+  bool is_grip_;
+  bool is_held_;                ///< the device holds a force over the tick
+  double tip_kg_;               ///< that the hand has at the tip
+  std::array<Axis, 3> axes_{};  ///< of the grip
+};
+
+/// A device in a hand: one tick after the other.
+struct HeldDevice {
+  DeviceDynamics device;
+  HandOnTip hand;
+
+  /// \throws std::invalid_argument as DeviceDynamics and HandOnTip
+  HeldDevice(const HandOptions& options, const DeviceModel& model, double tick_s = 0.001)
+      : device(model, tick_s), hand(options, model, tick_s) {}
+
+  /// Puts tip and hand there, at rest.
+  void place(Vec3 tip_mm) noexcept {
+    device.place(tip_mm);
+    hand.place(tip_mm);
+  }
+  /// \return what the hand did to the tip
+  DeviceDynamics::Outside tick(Vec3 commanded_n, const PathPoint& intention,
+                               double push_n) noexcept {
+    const DeviceDynamics::Outside outside =
+        hand.hold(device.true_position_mm(), device.true_velocity_mm_s(), intention, push_n);
+    device.tick(commanded_n, outside);
+    hand.follow(device.true_velocity_mm_s());
+    return outside;
+  }
+};
+
+}  // namespace touchtrial::device

@@ -1,0 +1,47 @@
+#include "protocols/procedures/kinds.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+namespace touchtrial::procedures {
+namespace {
+
+/// A list that is made before the first trial, and does not depend on answers.
+class ConstantStimuli final : public Procedure {
+ public:
+  explicit ConstantStimuli(std::vector<std::size_t> order) : order_(std::move(order)) {}
+  [[nodiscard]] std::size_t next() const override { return order_[at_]; }
+  void answer(bool /*correct*/) override { at_ = std::min(at_ + 1, order_.size() - 1); }
+
+ private:
+  std::vector<std::size_t> order_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Procedure> make_constant_stimuli(const TrackSettings& settings,
+                                                 RandomStream& stream) {
+  const std::size_t levels = settings.levels.size();
+  const auto trials = static_cast<std::size_t>(settings.trials);
+  if (trials % levels != 0) {
+    throw std::invalid_argument("constant stimuli need each level equally often");
+  }
+  std::vector<std::size_t> round(levels);
+  std::iota(round.begin(), round.end(), std::size_t{0});
+  std::vector<std::size_t> order;
+  if (settings.blocked) {
+    shuffle(std::span(round), stream);
+    for (const std::size_t level : round) order.insert(order.end(), trials / levels, level);
+  } else {
+    // Every level once before any comes again: the order is balanced over the track.
+    while (order.size() < trials) {
+      shuffle(std::span(round), stream);
+      order.insert(order.end(), round.begin(), round.end());
+    }
+  }
+  return std::make_unique<ConstantStimuli>(std::move(order));
+}
+
+}  // namespace touchtrial::procedures

@@ -1,0 +1,270 @@
+#include "protocols/procedures/estimates.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <new>
+#include <numeric>
+#include <stdexcept>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <nlopt.h>
+
+namespace touchtrial::procedures {
+namespace {
+
+constexpr std::size_t kNumbers = 3;  ///< threshold, logarithm of the width, lapse
+using Numbers = std::array<double, kNumbers>;
+
+constexpr double kImpossible = -1e300;  ///< NLopt takes no infinity
+
+struct SearchState {
+  std::function<double(const double*)> value;
+};
+
+double value_of_state(unsigned /*count*/, const double* at, double* /*slopes*/, void* state) {
+  return static_cast<SearchState*>(state)->value(at);
+}
+
+/// NLopt's Subplex (Rowan 1990), which needs no derivatives. The state keeps the best point seen,
+/// so it does not matter why the search ends.
+void search_subplex(SearchState& state, std::vector<double> from, const std::vector<double>& low,
+                    const std::vector<double>& high, const std::vector<double>& step) {
+  const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> solver(
+      nlopt_create(NLOPT_LN_SBPLX, static_cast<unsigned>(from.size())), &nlopt_destroy);
+  if (!solver) throw std::bad_alloc();
+  nlopt_set_max_objective(solver.get(), &value_of_state, &state);
+  nlopt_set_lower_bounds(solver.get(), low.data());
+  nlopt_set_upper_bounds(solver.get(), high.data());
+  nlopt_set_initial_step(solver.get(), step.data());
+  nlopt_set_ftol_abs(solver.get(), 1e-11);
+  nlopt_set_xtol_rel(solver.get(), 1e-8);
+  nlopt_set_maxeval(solver.get(), 3000);
+  double last = 0.0;
+  nlopt_optimize(solver.get(), from.data(), &last);
+}
+
+/// The likelihood of counts as a function of what may change, within its bounds.
+class FitSearch {
+ public:
+  FitSearch(std::span<const LevelCounts> counts, const FitOptions& options);
+
+  /// \param start  nothing: the best of a coarse grid
+  [[nodiscard]] Fit best(std::optional<Observer> start) const;
+  /// With the threshold held, from two starts.
+  [[nodiscard]] Fit best_at(double threshold, const Observer& start) const;
+
+  [[nodiscard]] double lowest() const noexcept { return lower_[0]; }
+  [[nodiscard]] double highest() const noexcept { return upper_[0]; }
+
+ private:
+  [[nodiscard]] Observer observer_of(const Numbers& at) const;
+  [[nodiscard]] Numbers numbers_of(const Observer& observer) const;
+  [[nodiscard]] Numbers coarse_start(const Numbers& lower, const Numbers& upper) const;
+  [[nodiscard]] Fit search(Numbers start, Numbers lower, Numbers upper) const;
+
+  std::span<const LevelCounts> counts_;
+  FitOptions options_;
+  double width_at_one_;
+  double range_ = 0.0;
+  Numbers lower_{};
+  Numbers upper_{};
+};
+
+void require_fit(std::span<const LevelCounts> counts, const FitOptions& options) {
+  double before = -std::numeric_limits<double>::infinity();
+  for (const LevelCounts& at : counts) {
+    if (!std::isfinite(at.level) || at.level <= before || at.n < 1 || at.correct < 0 ||
+        at.correct > at.n) {
+      throw std::invalid_argument("a fit needs ascending levels, each with 0 <= correct <= n");
+    }
+    before = at.level;
+  }
+  if (counts.size() < 2) throw std::invalid_argument("a fit needs answers at two levels or more");
+  const double most_lapse = options.lapse.value_or(options.most_lapse);
+  require_possible({options.shape, 0.0, options.slope.value_or(1.0), options.guess, most_lapse});
+}
+
+FitSearch::FitSearch(std::span<const LevelCounts> counts, const FitOptions& options)
+    : counts_(counts), options_(options), width_at_one_(width_at_slope_one(options.shape)) {
+  require_fit(counts, options);
+  range_ = counts.back().level - counts.front().level;
+  double least = range_;
+  for (std::size_t i = 1; i < counts.size(); ++i) {
+    least = std::min(least, counts[i].level - counts[i - 1].level);
+  }
+  lower_ = {counts.front().level - range_, std::log(least / 4.0), 0.0};
+  upper_ = {counts.back().level + range_, std::log(range_ * 5.0), options.most_lapse};
+  if (options.slope) lower_[1] = upper_[1] = std::log(width_at_one_ / *options.slope);
+  if (options.lapse) lower_[2] = upper_[2] = *options.lapse;
+}
+
+Observer FitSearch::observer_of(const Numbers& at) const {
+  return {options_.shape, at[0], width_at_one_ / std::exp(at[1]), options_.guess, at[2]};
+}
+
+Numbers FitSearch::numbers_of(const Observer& observer) const {
+  return {observer.threshold, std::log(width_at_one_ / observer.slope), observer.lapse};
+}
+
+Numbers FitSearch::coarse_start(const Numbers& lower, const Numbers& upper) const {
+  constexpr int kWidths = 7;
+  const int thresholds = lower[0] < upper[0] ? 17 : 1;
+  Numbers best{};
+  double most = -std::numeric_limits<double>::infinity();
+  for (int t = 0; t < thresholds; ++t) {
+    for (int w = 0; w < kWidths; ++w) {
+      const double at = counts_.front().level + range_ * t / std::max(1, thresholds - 1);
+      const Numbers numbers{at, std::log(range_ * std::pow(0.5, w)), 0.2 * options_.most_lapse};
+      Numbers inside;
+      for (std::size_t i = 0; i < kNumbers; ++i) {
+        inside[i] = std::clamp(numbers[i], lower[i], upper[i]);
+      }
+      const double found = log_likelihood(observer_of(inside), counts_);
+      if (found > most || (t == 0 && w == 0)) {
+        most = found;
+        best = inside;
+      }
+    }
+  }
+  return best;
+}
+
+/// Over the numbers whose bounds differ.
+Fit FitSearch::search(Numbers start, Numbers lower, Numbers upper) const {
+  std::vector<std::size_t> free;
+  for (std::size_t i = 0; i < kNumbers; ++i) {
+    start[i] = std::clamp(start[i], lower[i], upper[i]);
+    if (lower[i] < upper[i]) free.push_back(i);
+  }
+  Numbers best = start;
+  double most = log_likelihood(observer_of(best), counts_);
+  SearchState state{[&](const double* at) {
+    Numbers numbers = start;
+    for (std::size_t i = 0; i < free.size(); ++i) numbers[free[i]] = at[i];
+    const double found = log_likelihood(observer_of(numbers), counts_);
+    if (found > most) {
+      most = found;
+      best = numbers;
+    }
+    return std::max(found, kImpossible);
+  }};
+  if (!free.empty()) {
+    std::vector<double> from;
+    std::vector<double> low;
+    std::vector<double> high;
+    std::vector<double> step;
+    for (const std::size_t i : free) {
+      from.push_back(start[i]);
+      low.push_back(lower[i]);
+      high.push_back(upper[i]);
+      step.push_back(i == 0 ? 0.1 * range_ : i == 1 ? 0.3 : 0.1 * (upper[i] - lower[i]));
+    }
+    search_subplex(state, std::move(from), low, high, step);
+  }
+  const Observer observer = observer_of(best);
+  return {observer, most, procedures::deviance(observer, counts_)};
+}
+
+Fit FitSearch::best(std::optional<Observer> start) const {
+  return search(start ? numbers_of(*start) : coarse_start(lower_, upper_), lower_, upper_);
+}
+
+Fit FitSearch::best_at(double threshold, const Observer& start) const {
+  Numbers lower = lower_;
+  Numbers upper = upper_;
+  lower[0] = upper[0] = threshold;
+  // The likelihood of few answers has several maxima, which one start would not all find.
+  const Fit near = search(numbers_of(start), lower, upper);
+  const Fit coarse = search(coarse_start(lower, upper), lower, upper);
+  return near.log_likelihood >= coarse.log_likelihood ? near : coarse;
+}
+
+/// Where twice the loss of log-likelihood first exceeds `most_loss` on the way from the fit to
+/// `end`.
+std::optional<double> profile_end(const FitSearch& search, const Fit& fit, double end,
+                                  double most_loss) {
+  Observer near = fit.observer;
+  const auto excess = [&](double threshold) {
+    const Fit held = search.best_at(threshold, near);
+    near = held.observer;
+    return 2.0 * (fit.log_likelihood - held.log_likelihood) - most_loss;
+  };
+  constexpr int kSteps = 12;
+  double inside = fit.observer.threshold;
+  double below = -most_loss;
+  for (int i = 1; i <= kSteps; ++i) {
+    const double share = static_cast<double>(i) / kSteps;
+    const double at = std::lerp(fit.observer.threshold, end, share * share);
+    const double here = excess(at);
+    if (here > 0.0) {
+      std::uintmax_t steps = 60;
+      const bool up = at > inside;
+      const std::pair<double, double> found = boost::math::tools::toms748_solve(
+          excess, up ? inside : at, up ? at : inside, up ? below : here, up ? here : below,
+          boost::math::tools::eps_tolerance<double>(24), steps);
+      return std::midpoint(found.first, found.second);
+    }
+    inside = at;
+    below = here;
+  }
+  return std::nullopt;
+}
+
+std::vector<LevelCounts> simulated_counts(const Observer& observer,
+                                          std::span<const LevelCounts> like, RandomStream& random) {
+  std::vector<LevelCounts> counts(like.begin(), like.end());
+  for (LevelCounts& at : counts) {
+    const double share = shares_at(observer, at.level).correct;
+    at.correct = 0;
+    for (std::int64_t i = 0; i < at.n; ++i) at.correct += random.uniform() < share ? 1 : 0;
+  }
+  return counts;
+}
+
+}  // namespace
+
+Fit fit_observer(std::span<const LevelCounts> counts, const FitOptions& options) {
+  return FitSearch(counts, options).best(std::nullopt);
+}
+
+Threshold likelihood_threshold(std::span<const LevelCounts> counts, const FitOptions& options,
+                               double level) {
+  if (!(level > 0.0 && level < 1.0)) {
+    throw std::invalid_argument("a confidence level lies between 0 and 1");
+  }
+  const FitSearch search(counts, options);
+  const Fit fit = search.best(std::nullopt);
+  Threshold found;
+  if (fit.observer.threshold < counts.front().level) found.censored = Censored::below;
+  if (fit.observer.threshold > counts.back().level) found.censored = Censored::above;
+  if (found.censored != Censored::no) return found;
+  const double most_loss = boost::math::quantile(boost::math::chi_squared(1.0), level);
+  found.level = fit.observer.threshold;
+  found.low = profile_end(search, fit, search.lowest(), most_loss);
+  found.high = profile_end(search, fit, search.highest(), most_loss);
+  return found;
+}
+
+GoodnessOfFit goodness_of_fit(std::span<const LevelCounts> counts, const FitOptions& options,
+                              int draws, RandomStream& random) {
+  if (draws < 1) throw std::invalid_argument("goodness of fit needs at least one draw");
+  const Fit fit = fit_observer(counts, options);
+  GoodnessOfFit result{fit.deviance};
+  int as_extreme = 0;
+  for (int i = 0; i < draws; ++i) {
+    const std::vector<LevelCounts> drawn = simulated_counts(fit.observer, counts, random);
+    const Fit again = FitSearch(drawn, options).best(fit.observer);
+    if (again.deviance >= fit.deviance) ++as_extreme;
+    result.thresholds.push_back(again.observer.threshold);
+  }
+  std::sort(result.thresholds.begin(), result.thresholds.end());
+  result.p = (as_extreme + 1.0) / (draws + 1.0);
+  return result;
+}
+
+}  // namespace touchtrial::procedures

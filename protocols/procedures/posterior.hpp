@@ -1,0 +1,99 @@
+/// \file What answers tell of an observer: a posterior on a grid of threshold, slope and lapse, and
+/// the expected entropy after one more trial at each level. Sources: Kontsevich, Tyler 1999;
+/// Prins 2013; Watson 2017; docs/procedures.md, "QUEST+, psi and psi-marginal".
+#pragma once
+
+#include "protocols/procedures/psychometric_function.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace touchtrial::procedures {
+
+/// The observers that are thought possible, and how much each is believed before the first trial. A
+/// parameter with one value is fixed, and costs nothing.
+struct ParameterGrid {
+  Shape shape = Shape::weibull;
+  std::vector<double> thresholds;         ///< ascending
+  std::vector<double> slopes;             ///< ascending, > 0
+  double guess = 0.5;                     ///< set by the task
+  std::vector<double> lapses;             ///< ascending
+  std::vector<double> threshold_prior{};  ///< weights >= 0, one for each value; empty: flat
+  std::vector<double> slope_prior{};
+  std::vector<double> lapse_prior{};
+};
+
+/// The parameters that are summed out before an entropy is taken (psi-marginal).
+enum class Nuisance { none, lapse, slope_and_lapse };
+
+/// Values of one parameter and their probabilities, which add up to 1.
+struct Marginal {
+  std::vector<double> values;
+  std::vector<double> weights;
+};
+
+[[nodiscard]] double mean_of(const Marginal& marginal) noexcept;
+[[nodiscard]] double sd_of(const Marginal& marginal) noexcept;
+
+struct CredibleInterval {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Equal tails. The probability of each value is spread evenly over its cell, which reaches
+/// half-way to its neighbours.
+/// \param level  in (0, 1)
+/// \throws std::invalid_argument if the level is not, or the marginal is empty
+[[nodiscard]] CredibleInterval credible_interval(const Marginal& marginal, double level = 0.95);
+
+/// Not thread-safe. All sums run in a fixed order: the same grid and answers give the same bits on
+/// one machine.
+class Posterior {
+ public:
+  /// Tabulates the likelihood: 16 bytes for each level and grid point.
+  /// \param levels  finite, at least one
+  /// \throws std::invalid_argument if a list is empty or not ascending, an observer is impossible, a
+  ///   prior has another length or no weight, or the tables would exceed 20 million numbers
+  Posterior(std::span<const double> levels, ParameterGrid grid);
+
+  /// Bayes' rule. An answer that every believed observer excludes leaves the posterior as it was.
+  /// \param level  index into the levels, less than their number
+  void observe(std::size_t level, bool correct) noexcept;
+
+  /// The expected entropy, in nats, of the parameters that are no nuisance, after one more trial at
+  /// each level. O(levels x grid points), without a logarithm of a grid point.
+  [[nodiscard]] std::vector<double> expected_entropies(Nuisance nuisance) const;
+
+  /// The first level whose expected entropy is within 1e-9 of the least.
+  [[nodiscard]] std::size_t best_level(Nuisance nuisance) const;
+
+  /// Threshold by slope by lapse, the last fastest.
+  [[nodiscard]] const std::vector<double>& weights() const noexcept { return weights_; }
+  [[nodiscard]] const ParameterGrid& grid() const noexcept { return grid_; }
+
+  [[nodiscard]] Marginal threshold() const;
+  [[nodiscard]] Marginal slope() const;
+  [[nodiscard]] Marginal lapse() const;
+  /// The most probable grid point; of equal ones the first.
+  [[nodiscard]] Observer mode() const;
+
+ private:
+  [[nodiscard]] std::span<const double> row(const std::vector<double>& table,
+                                            std::size_t level) const noexcept;
+  [[nodiscard]] double joint_entropy_at(std::size_t level, double entropy_now) const noexcept;
+  [[nodiscard]] double marginal_entropy_at(std::size_t level, std::size_t summed) const noexcept;
+
+  ParameterGrid grid_;
+  std::size_t level_count_;
+  std::vector<double> weights_;
+  std::vector<double> correct_;  ///< level by grid point: probability of a right answer
+  std::vector<double> doubt_;    ///< level by grid point: entropy of the answer
+};
+
+/// The first position within 1e-9 of the least of `entropies`; sums in another order, and the last
+/// digits of exp and log, must not decide.
+/// \pre not empty
+[[nodiscard]] std::size_t first_least(std::span<const double> entropies) noexcept;
+
+}  // namespace touchtrial::procedures

@@ -1,0 +1,73 @@
+/// \file How often an observer is right at a level: psychometric functions. Formulas and sources:
+/// docs/procedures.md, "Psychometric functions". Pure functions, safe in any thread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace touchtrial::procedures {
+
+/// F, which rises from 0 to 1 with the level. z = slope (level - threshold).
+enum class Shape {
+  logistic,  ///< 1 / (1 + exp(-z)); F(threshold) = 1/2
+  weibull,   ///< 1 - exp(-10^(z / 20)), levels in dB (Watson 2017); F(threshold) = 1 - 1/e
+  normal,    ///< Phi(z), so the slope is 1 / SD; F(threshold) = 1/2
+};
+
+/// An observer is right with probability guess + (1 - guess - lapse) F(level).
+struct Observer {
+  Shape shape = Shape::weibull;
+  double threshold = 0.0;  ///< in units of the level; finite
+  double slope = 1.0;      ///< > 0; weibull: beta of 20 dB, otherwise per unit of the level
+  double guess = 0.5;      ///< in [0, 1): right without feeling anything
+  double lapse = 0.0;      ///< in [0, 1 - guess): wrong at any level
+};
+
+/// \throws std::invalid_argument if a parameter is outside its range
+void require_possible(const Observer& observer);
+
+/// Two numbers of an answer at one level. Both are computed without subtracting from 1, so neither
+/// loses digits where it is small.
+struct AnswerShares {
+  double correct = 0.0;
+  double wrong = 0.0;
+};
+
+/// The probabilities of both answers.
+/// \param level  any number, also infinite
+[[nodiscard]] AnswerShares shares_at(const Observer& observer, double level) noexcept;
+
+/// Their natural logarithms, finite also where the probability itself underflows.
+[[nodiscard]] AnswerShares log_shares_at(const Observer& observer, double level) noexcept;
+
+/// F at the threshold: 1/2, or 1 - 1/e for weibull.
+[[nodiscard]] double share_at_threshold(Shape shape) noexcept;
+
+/// The level at which the observer is right with this probability: how a threshold is stated at any
+/// criterion.
+/// \param proportion  between guess and 1 - lapse, exclusive
+/// \throws std::invalid_argument if it is not, or the observer is impossible
+[[nodiscard]] double level_at(const Observer& observer, double proportion);
+
+/// The distance of the levels with F = .05 and F = .95, for slope 1. The width of an observer's
+/// function is this over its slope.
+[[nodiscard]] double width_at_slope_one(Shape shape);
+
+/// The answers of all trials at one level.
+struct LevelCounts {
+  double level = 0.0;
+  std::int64_t correct = 0;  ///< 0 .. n
+  std::int64_t n = 0;
+};
+
+/// The log-likelihood of independent answers, without binomial coefficients; 0 log 0 = 0.
+/// \return at most 0; -infinity if the answers are impossible
+[[nodiscard]] double log_likelihood(const Observer& observer, std::span<const LevelCounts> counts);
+
+/// Twice the distance to the log-likelihood of each level's own proportion; at least 0.
+[[nodiscard]] double deviance(const Observer& observer, std::span<const LevelCounts> counts);
+
+/// The Weber fraction dA / A of a level of discrimination, which is 20 log10(dA / A).
+[[nodiscard]] double weber_fraction(double level_db) noexcept;
+
+}  // namespace touchtrial::procedures

@@ -1,0 +1,118 @@
+#include "protocols/procedures/tracks.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace touchtrial::procedures {
+namespace {
+
+using Order = std::vector<std::optional<std::size_t>>;
+
+Order order_of_tracks(const std::vector<TrackSettings>& tracks, RandomStream& random) {
+  Order order;
+  for (int done = 0;; ++done) {
+    std::vector<std::size_t> round;
+    for (std::size_t track = 0; track < tracks.size(); ++track) {
+      if (tracks[track].trials > done) round.push_back(track);
+    }
+    if (round.empty()) return order;
+    shuffle(std::span(round), random);
+    order.insert(order.end(), round.begin(), round.end());
+  }
+}
+
+/// Before which trials of tracks a catch trial comes.
+Order with_catch_trials(const Order& order, int catch_trials, RandomStream& random) {
+  const auto wanted = static_cast<std::size_t>(catch_trials);
+  if (catch_trials < 0 || 2 * wanted > order.size()) {
+    throw std::invalid_argument("catch trials are at most one for two trials of tracks");
+  }
+  std::vector<bool> before(order.size(), false);
+  for (std::size_t i = 0; i < wanted; ++i) {
+    const std::size_t begin = std::max<std::size_t>(1, i * order.size() / wanted);
+    const std::size_t end = (i + 1) * order.size() / wanted;
+    before[begin + static_cast<std::size_t>(random.below(end - begin))] = true;
+  }
+  Order all;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (before[i]) all.emplace_back(std::nullopt);
+    all.push_back(order[i]);
+  }
+  return all;
+}
+
+}  // namespace
+
+Block::Block(BlockSettings settings, const Digest& secret) : settings_(std::move(settings)) {
+  if (settings_.tracks.empty() || settings_.tracks.size() > kMostTracks) {
+    throw std::invalid_argument("a block has 1 to 8 tracks");
+  }
+  for (const TrackSettings& track : settings_.tracks) {
+    RandomStream own(secret, "procedures/track", tracks_.size());
+    tracks_.push_back({make_procedure(track, own), {}});
+  }
+  RandomStream orders(secret, "procedures/order");
+  RandomStream catches(secret, "procedures/catch");
+  order_ =
+      with_catch_trials(order_of_tracks(settings_.tracks, orders), settings_.catch_trials, catches);
+}
+
+std::optional<Presentation> Block::next() const {
+  if (done_ == order_.size()) return std::nullopt;
+  const std::optional<std::size_t> track = order_[done_];
+  if (!track) return Presentation{};
+  return Presentation{track, tracks_[*track].procedure->next()};
+}
+
+void Block::answer(bool correct) {
+  const std::optional<Presentation> now = next();
+  if (!now) return;
+  ++done_;
+  if (!now->track) return;
+  Track& track = tracks_[*now->track];
+  track.trials.push_back({now->level, correct});
+  track.procedure->answer(correct);
+}
+
+std::span<const TrackTrial> Block::trials(std::size_t track) const {
+  return tracks_.at(track).trials;
+}
+
+Block replay(const BlockSettings& settings, const Digest& secret,
+             const std::vector<bool>& answers) {
+  Block block(settings, secret);
+  for (const bool correct : answers) {
+    if (!block.next()) throw std::invalid_argument("there are more answers than trials");
+    block.answer(correct);
+  }
+  return block;
+}
+
+std::optional<std::size_t> first_not_chosen(const BlockSettings& settings, const Digest& secret,
+                                            std::span<const RecordedTrial> record) {
+  Block block(settings, secret);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const std::optional<Presentation> now = block.next();
+    if (!now || now->track != record[i].presentation.track ||
+        now->level != record[i].presentation.level) {
+      return i;
+    }
+    block.answer(record[i].correct);
+  }
+  return std::nullopt;
+}
+
+std::vector<LevelCounts> counts_of(std::span<const double> levels,
+                                   std::span<const TrackTrial> trials) {
+  std::vector<LevelCounts> all(levels.size());
+  for (std::size_t i = 0; i < levels.size(); ++i) all[i].level = levels[i];
+  for (const TrackTrial& trial : trials) {
+    ++all[trial.level].n;
+    if (trial.correct) ++all[trial.level].correct;
+  }
+  std::erase_if(all, [](const LevelCounts& at) { return at.n == 0; });
+  return all;
+}
+
+}  // namespace touchtrial::procedures

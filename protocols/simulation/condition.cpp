@@ -1,0 +1,94 @@
+#include "protocols/simulation/condition.hpp"
+
+#include "core/random.hpp"
+
+#include <cmath>
+#include <string_view>
+
+namespace touchtrial::simulation {
+namespace {
+
+/// A participant's own value: the population's, plus spread times a standard normal number. Each
+/// purpose has its own stream, so that no spread shifts another draw.
+double varied(double value, double spread, std::string_view purpose, std::uint64_t seed,
+              std::uint64_t number) {
+  if (spread == 0.0) return value;
+  return value + spread * RandomStream(seed, purpose, number).normal();
+}
+
+/// Presentations felt at the visits before and not forgotten since.
+double felt_before(const Learning& learning, int visit, int presentations) {
+  double felt = 0.0;
+  for (int earlier = 1; earlier < visit; ++earlier) {
+    felt = (felt + presentations) * (1.0 - learning.forgotten);
+  }
+  return felt;
+}
+
+}  // namespace
+
+Condition::Condition(const SubjectModel& subject, std::uint64_t seed, int number, int visit,
+                     int presentations)
+    : subject_(&subject),
+      seed_(seed),
+      number_(static_cast<std::uint64_t>(number)),
+      visit_(visit),
+      first_log_(
+          std::log(subject.learning.factor) *
+          std::exp(varied(0.0, subject.learning.spread, "subject: learning", seed, number_))),
+      felt_before_(felt_before(subject.learning, visit, presentations)),
+      to_answer_(varied(subject.serial.answer, subject.serial.answer_spread,
+                        "subject: leaning to the last answer", seed, number_)),
+      to_stimulus_(varied(subject.serial.stimulus, subject.serial.stimulus_spread,
+                          "subject: leaning to the last stimulus", seed, number_)) {}
+
+Moment Condition::before(int nth, int block) {
+  tire(nth - 1);
+  const double felt = felt_before_ + (nth - 1);
+  const double learning_log = first_log_ * std::exp(-felt / subject_->learning.trials);
+  const double tired_log = subject_->fatigue.noise_per_min * tired_min_;
+  Moment moment;
+  moment.noise_factor = std::exp(learning_log + tired_log + period_log(block));
+  moment.lapse_log_odds = subject_->fatigue.lapse_per_min * tired_min_;
+  if (answered_ && to_answer_ != 0.0) moment.to_answer = {*answered_, to_answer_};
+  if (presented_ && to_stimulus_ != 0.0) moment.to_stimulus = {*presented_, to_stimulus_};
+  if (subject_->thought) moment.thought = &*subject_->thought;
+  return moment;
+}
+
+void Condition::rest(int begun) {
+  tire(begun);
+  tired_min_ *= 1.0 - subject_->fatigue.recovered;
+}
+
+void Condition::after(std::size_t answered, std::optional<std::size_t> presented) {
+  answered_ = answered;
+  presented_ = presented;
+}
+
+void Condition::forget() noexcept {
+  answered_.reset();
+  presented_.reset();
+}
+
+void Condition::tire(int done) {
+  constexpr double kSecondsAMinute = 60.0;
+  tired_min_ += (done - tired_by_) * subject_->explore_s / kSecondsAMinute;
+  tired_by_ = done;
+}
+
+double Condition::period_log(int block) {
+  if (subject_->period_noise_spread == 0.0) return 0.0;
+  const auto [found, is_new] = period_logs_.try_emplace(block, 0.0);
+  if (is_new) {
+    constexpr unsigned kPeriodBits = 16;
+    constexpr unsigned kBlockBits = 8;
+    const std::uint64_t period =
+        (static_cast<std::uint64_t>(visit_) << kBlockBits) + static_cast<std::uint64_t>(block);
+    found->second = varied(0.0, subject_->period_noise_spread, "subject: period", seed_,
+                           (number_ << kPeriodBits) + period);
+  }
+  return found->second;
+}
+
+}  // namespace touchtrial::simulation

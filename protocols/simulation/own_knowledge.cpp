@@ -1,0 +1,109 @@
+#include "protocols/simulation/own_knowledge.hpp"
+
+#include "core/random.hpp"
+#include "protocols/simulation/pictured_knowledge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
+#include <numeric>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace touchtrial::simulation {
+namespace {
+
+/// Two people share a quarter of their passes on average.
+constexpr int kPassesToDrawFrom = 4;
+
+/// Draws passes for every stimulus alike, because a pass has the same path on all of them.
+FeltKnowledge own_passes(const FeltKnowledge& learnt, int remembered, RandomStream random) {
+  const std::size_t prototypes = learnt.label_of_prototype.size();
+  const std::size_t passes = learnt.examples.size() / prototypes;
+  std::vector<std::size_t> drawn(passes);
+  std::iota(drawn.begin(), drawn.end(), std::size_t{0});
+  shuffle(std::span(drawn), random);
+  drawn.resize(std::min(passes, static_cast<std::size_t>(remembered)));
+  FeltKnowledge own;
+  own.label_of_prototype = learnt.label_of_prototype;
+  for (std::size_t prototype = 0; prototype < prototypes; ++prototype) {
+    for (const std::size_t pass : drawn) {
+      own.examples.push_back(learnt.examples[prototype * passes + pass]);
+    }
+  }
+  return own;
+}
+
+using Errors = std::array<double, engine::kFeltFeatures>;
+
+Errors drawn_errors(double noise, RandomStream& random) {
+  Errors errors{};
+  for (double& error : errors) error = noise * random.normal();
+  return errors;
+}
+
+void shift(engine::FeltExample& example, const Errors& errors) {
+  for (std::size_t f = 0; f < errors.size(); ++f) example.features[f] += errors[f];
+}
+
+/// Each prototype has errors of its own.
+void misremember(FeltKnowledge& known, double noise, RandomStream random) {
+  std::vector<Errors> errors;
+  for (std::size_t i = 0; i < known.label_of_prototype.size(); ++i) {
+    errors.push_back(drawn_errors(noise, random));
+  }
+  for (engine::FeltExample& example : known.examples) {
+    shift(example, errors[static_cast<std::size_t>(example.label)]);
+  }
+}
+
+/// Each class has errors of its own, because it has one picture.
+void mismatch(FeltKnowledge& known, double noise, RandomStream random) {
+  std::map<std::string, Errors> errors;
+  for (const std::string& label : known.label_of_prototype) {
+    if (!errors.contains(label)) errors[label] = drawn_errors(noise, random);
+  }
+  for (engine::FeltExample& example : known.examples) {
+    shift(example, errors.at(known.label_of_prototype[static_cast<std::size_t>(example.label)]));
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const FeltKnowledge> learn(const LabelledFields& fields, const design::Study& study,
+                                           const SubjectModel& subject, std::uint64_t seed,
+                                           int jobs) {
+  SubjectModel felt = subject;
+  if (subject.training == Training::own) felt.training_passes *= kPassesToDrawFrom;
+  return std::make_shared<const FeltKnowledge>(typical_knowledge(fields, study, felt, seed, jobs));
+}
+
+std::shared_ptr<const FeltKnowledge> remembered(const std::shared_ptr<const FeltKnowledge>& learnt,
+                                                const SubjectModel& subject, std::uint64_t seed,
+                                                int number) {
+  const bool has_own = subject.training == Training::own;
+  const bool is_untrained = subject.training == Training::none;
+  const double noise = is_untrained ? subject.mapping_noise : subject.memory_noise;
+  if (!has_own && noise == 0.0) return learnt;
+  const auto index = static_cast<std::uint64_t>(number);
+  FeltKnowledge known = has_own ? own_passes(*learnt, subject.training_passes,
+                                             RandomStream(seed, "subject: own training", index))
+                                : *learnt;
+  if (is_untrained) {
+    mismatch(known, noise, RandomStream(seed, "subject: mapping", index));
+  } else if (noise > 0.0) {
+    misremember(known, noise, RandomStream(seed, "subject: memory", index));
+  }
+  return std::make_shared<const FeltKnowledge>(std::move(known));
+}
+
+FeltKnowledge typical_knowledge(const LabelledFields& fields, const design::Study& study,
+                                const SubjectModel& subject, std::uint64_t seed, int jobs) {
+  FeltKnowledge felt = learn_by_feeling(fields, subject, study.rendering.max_force_n, seed, jobs);
+  return subject.training == Training::none ? expected_from_pictures(felt, look_at_pictures(study))
+                                            : felt;
+}
+
+}  // namespace touchtrial::simulation

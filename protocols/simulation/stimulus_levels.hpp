@@ -1,0 +1,82 @@
+/// \file How strong a study's stimuli are on a device, by published thresholds for vibrations of a
+/// held stylus. Source: docs/perception.md.
+#pragma once
+
+#include "device/model/device_model.hpp"
+#include "engine/perception/vibration_threshold.hpp"
+#include "protocols/design/study_key.hpp"
+#include "protocols/session/stimulus_source.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace touchtrial::simulation {
+
+/// Octaves of frequency in time, with what lies below them and above them.
+struct LevelBand {
+  double from_hz;
+  double to_hz;
+};
+inline constexpr std::array<LevelBand, 7> kLevelBands{{{0.0, 10.0},
+                                                       {10.0, 20.0},
+                                                       {20.0, 40.0},
+                                                       {40.0, 80.0},
+                                                       {80.0, 160.0},
+                                                       {160.0, 320.0},
+                                                       {320.0, 500.0}}};
+
+/// What a hand feels of one plane on one device by one curve. Powers are multiples of that of a
+/// vibration at the threshold.
+struct StimulusLevel {
+  std::string device;  ///< name of the model
+  engine::ThresholdCurve curve{};
+  /// Above the greater of threshold and blank plane; of the blank plane above the threshold, dB.
+  double db = 0.0;
+  std::array<double, kLevelBands.size()> bands_db{};  ///< the same, each band by itself
+  /// By how much the stimulus's gain would have to be multiplied for 10 dB; 0 for the blank plane
+  /// and where no gain helps.
+  double gain_for_10_db = 0.0;
+};
+
+/// By device, and for each device by curve in the order of engine::kThresholdCurves.
+using PlaneLevels = std::vector<StimulusLevel>;
+
+struct StimulusLevels {
+  std::vector<design::StimulusIndex> stimuli;  ///< by class, exemplar and method
+  std::vector<PlaneLevels> levels;             ///< of each stimulus
+  PlaneLevels blank;                           ///< of the same wall without a texture
+};
+
+/// Below this a stimulus is warned of.
+inline constexpr double kLeastLevelDb = 10.0;
+
+/// The model that a study names: the program's own, or a file's, relative to the study's folder.
+/// \pre the study names one
+/// \throws StudyError with its place in the study and the remedy if there is no such model
+[[nodiscard]] device::DeviceModel device_of(const design::Study& study);
+
+/// The models that a study's levels are computed for: the device that the study names, else all
+/// that the program ships.
+/// \throws as device_of
+[[nodiscard]] std::vector<device::DeviceModel> level_devices(const design::Study& study);
+
+/// A hand of the default subject model strokes every stimulus and the blank plane on each device:
+/// the same paths on all. A function of its arguments, but for `jobs`. Cost: some 5 ms of one
+/// thread for each plane and device.
+/// \param jobs  threads, >= 1
+/// \throws FileError if the pack lacks a stimulus
+[[nodiscard]] StimulusLevels levels_of(const design::StudyCodes& key,
+                                       const session::StimulusSource& source,
+                                       const std::vector<device::DeviceModel>& devices, int jobs,
+                                       std::uint64_t seed = 1);
+
+/// The least and the greatest level of a plane on a device, over the curves.
+struct LevelRange {
+  double low_db = 0.0;
+  double high_db = 0.0;
+};
+[[nodiscard]] LevelRange range_on(const PlaneLevels& levels, const std::string& device);
+
+}  // namespace touchtrial::simulation

@@ -1,0 +1,65 @@
+/// \file How participants change from trial to trial, how they come to know the classes, and how
+/// long they think: parts of a subject model. Source: docs/subject-file.md.
+#pragma once
+
+#include <string_view>
+
+namespace touchtrial::simulation {
+
+/// How participants come to know which picture belongs to which feeling.
+enum class Training {
+  shared,  ///< everybody remembers the same explorations of each stimulus
+  own,     ///< everybody remembers explorations of their own
+  none,    ///< nobody has felt a stimulus with its picture: they go by what the pictures show
+};
+[[nodiscard]] std::string_view name_of(Training training) noexcept;
+
+/// Noise is larger at first, and its logarithm falls exponentially with the presentations felt.
+struct Learning {
+  double factor = 1.0;   ///< on the noise of the first presentation, >= 1
+  double trials = 50.0;  ///< presentations after which ln(factor) has fallen to 1/e, > 0
+  double forgotten =
+      0.0;  ///< share of the presentations felt that a visit's end takes away, 0 .. 1
+  /// Differences between participants: ln(factor) times exp(spread * z), z standard normal.
+  double spread = 0.0;
+
+  friend bool operator==(const Learning&, const Learning&) = default;
+};
+
+/// What the trial before adds to the support of pictures, log odds: > 0 attracts, < 0 repels.
+struct SerialDependence {
+  double answer = 0.0;  ///< to the picture that was answered
+  double answer_spread = 0.0;
+  double stimulus = 0.0;  ///< to the picture of the class that was presented
+  double stimulus_spread = 0.0;
+
+  [[nodiscard]] bool is_on() const noexcept {
+    return answer != 0.0 || answer_spread != 0.0 || stimulus != 0.0 || stimulus_spread != 0.0;
+  }
+
+  friend bool operator==(const SerialDependence&, const SerialDependence&) = default;
+};
+
+/// What each minute of exploring since the visit began adds. A break takes minutes away.
+struct Fatigue {
+  double noise_per_min = 0.0;  ///< to the natural logarithm of the noise, >= 0
+  double lapse_per_min = 0.0;  ///< to the log odds of a lapse, >= 0
+  double recovered = 1.0;      ///< share of the minutes that a break takes away, 0 .. 1
+
+  friend bool operator==(const Fatigue&, const Fatigue&) = default;
+};
+
+/// Time from the end of the exploration to the answer: a shifted lognormal, whose median above the
+/// shift falls exponentially with the difference between the two strongest supports.
+struct ThoughtTime {
+  double shift_s = 0.4;     ///< nobody is quicker, >= 0
+  double easy_s = 0.8;      ///< median above the shift if nothing else comes near, > 0
+  double hard_s = 2.4;      ///< median above the shift if two pictures are equal, >= easy_s
+  double margin = 3.0;      ///< log odds at which the surplus of hard_s has fallen to 1/e, > 0
+  double spread = 0.4;      ///< standard deviation of the logarithm, >= 0
+  double longest_s = 30.0;  ///< nobody is slower, > shift_s
+
+  friend bool operator==(const ThoughtTime&, const ThoughtTime&) = default;
+};
+
+}  // namespace touchtrial::simulation

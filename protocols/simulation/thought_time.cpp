@@ -1,0 +1,26 @@
+#include "protocols/simulation/thought_time.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace touchtrial::simulation {
+
+double margin_of(std::span<const double> support) {
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
+  double most = kNone;
+  double next = kNone;
+  for (const double one : support) {
+    next = std::max(next, std::min(one, most));
+    most = std::max(most, one);
+  }
+  return next == kNone ? std::numeric_limits<double>::infinity() : most - next;
+}
+
+double thought_time_s(const ThoughtTime& thought, double margin, RandomStream& random) {
+  const double surplus_s = (thought.hard_s - thought.easy_s) * std::exp(-margin / thought.margin);
+  const double above_s = (thought.easy_s + surplus_s) * std::exp(thought.spread * random.normal());
+  return std::min(thought.shift_s + above_s, thought.longest_s);
+}
+
+}  // namespace touchtrial::simulation

@@ -1,0 +1,21 @@
+/// \file How long a decision takes. Source: docs/subject-file.md, "Time to think".
+#pragma once
+
+#include "core/random.hpp"
+#include "protocols/simulation/subject_changes.hpp"
+
+#include <span>
+
+namespace touchtrial::simulation {
+
+/// The difference between the two largest supports; infinite if there is one alone.
+/// \param support  log odds by picture
+[[nodiscard]] double margin_of(std::span<const double> support);
+
+/// Draws one standard normal number.
+/// \param margin  log odds, >= 0
+/// \return seconds from shift_s to longest_s
+[[nodiscard]] double thought_time_s(const ThoughtTime& thought, double margin,
+                                    RandomStream& random);
+
+}  // namespace touchtrial::simulation

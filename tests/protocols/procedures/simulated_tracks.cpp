@@ -1,0 +1,60 @@
+#include "protocols/procedures/simulated_tracks.hpp"
+
+#include <cmath>
+
+namespace touchtrial::tracked {
+
+using namespace procedures;
+
+std::vector<double> decibels(int low, int high, int step) {
+  std::vector<double> levels;
+  for (int level = low; level <= high; level += step) levels.push_back(level);
+  return levels;
+}
+
+TrackSettings usual_track(const std::string& procedure, int trials) {
+  TrackSettings settings;
+  settings.procedure = procedure;
+  settings.trials = trials;
+  settings.levels = decibels(-40, 0);
+  if (procedure == "constant-stimuli") settings.levels = decibels(-30, -5, 5);
+  settings.up_down.first_level = 30;  // -10 dB: easy
+  if (procedure == "weighted-up-down") {
+    settings.up_down.correct_for_down = 1;
+    settings.up_down.up_for_one_down = 3;
+    settings.up_down.steps_down = {2, 1};
+  }
+  settings.grid = {Shape::weibull,
+                   decibels(-40, 0),
+                   {1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 8},
+                   0.5,
+                   {0.0, 0.01, 0.02, 0.03, 0.04, 0.05}};
+  return settings;
+}
+
+std::vector<TrackTrial> answered_track(const TrackSettings& settings, const Observer& observer,
+                                       std::uint64_t seed) {
+  RandomStream orders(seed, "tracked/order");
+  RandomStream answers(seed, "tracked/answers");
+  const std::unique_ptr<Procedure> procedure = make_procedure(settings, orders);
+  std::vector<TrackTrial> trials;
+  for (int i = 0; i < settings.trials; ++i) {
+    const std::size_t level = procedure->next();
+    const double share = shares_at(observer, settings.levels[level]).correct;
+    trials.push_back({level, answers.uniform() < share});
+    procedure->answer(trials.back().correct);
+  }
+  return trials;
+}
+
+Observer some_observer(std::uint64_t seed) {
+  RandomStream random(seed, "tracked/observer");
+  Observer observer;
+  observer.shape = Shape::weibull;
+  observer.threshold = random.uniform(-24.0, -14.0);
+  observer.slope = std::exp(random.uniform(std::log(2.0), std::log(6.0)));
+  observer.lapse = random.uniform(0.0, 0.05);
+  return observer;
+}
+
+}  // namespace touchtrial::tracked
