@@ -3,6 +3,7 @@
 #include "analysis/planning/power_progress.hpp"
 #include "analysis/planning/power_report.hpp"
 #include "analysis/planning/rehearsed_study.hpp"
+#include "analysis/planning/stated_people.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
@@ -185,6 +186,9 @@ struct PowerArguments {
   std::optional<double> margin;
   std::string shard;
   bool has_shard = false;
+  std::optional<double> mean;
+  double sd_between = 0.0;
+  std::optional<double> accuracy;
   planning::PowerPlan plan;
   int jobs = 1;
   bool no_early_stop = false;
@@ -210,8 +214,11 @@ struct PowerPreparation {
   PowerPreparation(const PowerArguments& arguments, design::Study loaded)
       : study(std::move(loaded)),
         test(test_for(study, arguments)),
-        subject(subject_for(arguments.subject, study, arguments.on)),
+        stated(stated_by(arguments, test)),
+        subject(stated ? simulation::SubjectModel{}
+                       : subject_for(arguments.subject, study, arguments.on)),
         key(simulated_key(study, arguments.study)) {
+    if (stated) return;
     // Shards begin at the same time and share the pack.
     prepare_simulated_pack(key, true);
     pack.emplace(key.pack_folder);
@@ -221,6 +228,14 @@ struct PowerPreparation {
                                         const PowerArguments& arguments) {
     const planning::PrimaryTest test = planning::primary_test_of(study, labels(arguments));
     return arguments.margin ? planning::with_margin(test, *arguments.margin) : test;
+  }
+
+  static std::optional<planning::StatedPeople> stated_by(const PowerArguments& arguments,
+                                                         const planning::PrimaryTest& test) {
+    if (!arguments.mean) return std::nullopt;
+    const planning::StatedPeople people{*arguments.mean, arguments.sd_between, arguments.accuracy};
+    planning::require_possible(people, test);
+    return people;
   }
 
   static std::optional<planning::MethodLabels> labels(const PowerArguments& arguments) {
@@ -236,14 +251,15 @@ struct PowerPreparation {
             planning::words_of(test, study),
             planning::estimate_words(test),
             to_hex(key.seal),
-            fields_digest(key, *pack),
-            planning::words_of(subject),
+            pack ? fields_digest(key, *pack) : std::string(planning::kNoFields),
+            stated ? planning::words_of(*stated) : planning::words_of(subject),
             std::string(program_version()),
             study.trials.order != design::TrialOrder::uniform};
   }
 
   design::Study study;
   planning::PrimaryTest test;
+  std::optional<planning::StatedPeople> stated;  ///< then nobody feels, and there is no pack
   simulation::SubjectModel subject;
   design::StudyKey key;
   std::optional<engine::Pack> pack;
@@ -274,14 +290,19 @@ void make_missing_runs(const PowerPreparation& prepared, const PowerArguments& a
     keeper->keep(progress);
   }
   if (planning::is_complete(progress)) return;
+  planning::PowerWork work{.jobs = arguments.jobs, .progress = progress_bar("simulating")};
+  if (keeper) work.keep = [&](const planning::PowerProgress& so_far) { keeper->keep(so_far); };
+  const int most = progress.plan.participants.back();
+  if (prepared.stated) {
+    const planning::StatedRehearsal study(prepared.study, *prepared.stated, prepared.test, most);
+    planning::make_runs(study, prepared.test, work, progress);
+    return;
+  }
   const session::StimulusSource source(*prepared.pack, prepared.key.study.rendering);
   const simulation::LabelledFields fields(prepared.key, source);
   const auto feelings = feelings_for(prepared, progress.plan, arguments.jobs, fields);
   const planning::RehearsedStudy study(prepared.study, prepared.subject, prepared.test, *feelings,
-                                       progress.plan.participants.back(),
-                                       progress.plan.first_half_loss);
-  planning::PowerWork work{.jobs = arguments.jobs, .progress = progress_bar("simulating")};
-  if (keeper) work.keep = [&](const planning::PowerProgress& so_far) { keeper->keep(so_far); };
+                                       most, progress.plan.first_half_loss);
   planning::make_runs(study, prepared.test, work, progress);
 }
 
@@ -332,6 +353,26 @@ int power(PowerArguments arguments) {
   return 0;
 }
 
+void add_stated_options(CLI::App& command, PowerArguments& arguments) {
+  CLI::Option* mean =
+      command
+          .add_option("--mean", arguments.mean,
+                      "In place of a simulated hand: people's mean accuracy, or of two methods "
+                      "their mean difference of accuracies")
+          ->type_name("SHARE");
+  CLI::Option* spread = command
+                            .add_option("--sd-between", arguments.sd_between,
+                                        "With --mean: the standard deviation between people")
+                            ->type_name("SHARE")
+                            ->needs(mean);
+  mean->needs(spread);
+  command
+      .add_option("--accuracy", arguments.accuracy,
+                  "With --mean of two methods: everybody's accuracy, the mean of both")
+      ->type_name("SHARE")
+      ->needs(mean);
+}
+
 void add_plan_options(CLI::App& command, PowerArguments& arguments) {
   planning::PowerPlan& plan = arguments.plan;
   command
@@ -346,6 +387,7 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
   add_seed_option(command, plan.seed, "Seed of everything random");
   add_subject_option(command, arguments.subject);
   add_on_option(command, arguments.on);
+  add_stated_options(command, arguments);
   command
       .add_option("--methods", arguments.methods,
                   "The two methods to test, as A,B, if a comparison has more than two")
@@ -372,6 +414,11 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
   command.add_flag(
       "--servo", plan.servo,
       "Run every exploration through the servo, for comparison; some hundred times slower");
+  // They describe people who feel.
+  for (const char* option :
+       {"--subject", "--on", "--explorations", "--trainings", "--first-half-loss", "--servo"}) {
+    command.get_option("--mean")->excludes(command.get_option(option));
+  }
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ namespace {
 /// plan's end.
 constexpr int kBlock = 50;
 
-void make_block(const RehearsedStudy& study, const PrimaryTest& test, int jobs,
+void make_block(const Rehearsal& study, const PrimaryTest& test, int jobs,
                 const PowerProgress& progress, PowerCell& cell) {
   const std::size_t first = cell.runs.size();
   const int own = progress.shard.own_runs(progress.plan.runs);
@@ -144,7 +144,7 @@ void tell(const PowerProgress& progress, const PowerWork& work) {
 
 }  // namespace
 
-void make_runs(const RehearsedStudy& study, const PrimaryTest& test, const PowerWork& work,
+void make_runs(const Rehearsal& study, const PrimaryTest& test, const PowerWork& work,
                PowerProgress& progress) {
   for (PowerCell& cell : progress.cells) {
     while (!runs_when_done(progress, cell)) {

@@ -11,10 +11,14 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace touchtrial::planning {
+
+/// In place of the hash of fields: nobody feels anything.
+inline constexpr std::string_view kNoFields = "none";
 
 /// What a power run simulates. Two runs with equal settings and plans simulate the same studies.
 struct PowerSetting {
@@ -23,13 +27,16 @@ struct PowerSetting {
   std::string test;      ///< words_of the primary test
   std::string estimate;  ///< estimate_words
   std::string seal;      ///< study_seal of the simulated key, hexadecimal: the whole study file
-  std::string fields;    ///< SHA-256 of the force fields that are felt, hexadecimal
-  std::string subject;   ///< words_of the subject model
+  std::string fields;    ///< SHA-256 of the force fields that are felt, hexadecimal; or kNoFields
+  std::string subject;   ///< words_of the subject model, or of the stated people
   std::string program;   ///< version
   /// Whether every participant's order presents every class equally often. Otherwise the right
   /// answers that a bias gives, and so all numbers, depend on the orders that the study's seed
   /// draws.
   bool has_fixed_counts = true;
+
+  /// Whether people feel the study's textures; otherwise only how often they are right is stated.
+  [[nodiscard]] bool feels() const { return fields != kNoFields; }
 
   friend bool operator==(const PowerSetting&, const PowerSetting&) = default;
 };
@@ -81,7 +88,7 @@ struct PowerWork {
 /// what was there before or on the number of threads.
 /// \param study  made for at least the plan's largest size
 /// \throws what `keep` throws; `progress` is then as it was kept
-void make_runs(const RehearsedStudy& study, const PrimaryTest& test, const PowerWork& work,
+void make_runs(const Rehearsal& study, const PrimaryTest& test, const PowerWork& work,
                PowerProgress& progress);
 
 /// \return one JSON object with its own SHA-256

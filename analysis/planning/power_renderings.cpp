@@ -36,7 +36,20 @@ std::string looks_sentence(const PowerPlan& plan) {
       fmt::join(looks_of(plan), ", "), 100.0 * power_level(plan));
 }
 
+std::string stated_null_sentence(const PowerReport& report) {
+  if (report.setting.estimate != kDifferenceWords) {
+    return "Type-I error: for people who guess, everybody.";
+  }
+  return report.plan.margin > 0.0
+             ? fmt::format(
+                   "Type-I error: for the same spread around {:.4g} points, by which the "
+                   "first method is then worse.",
+                   100.0 * report.plan.margin)
+             : std::string("Type-I error: for the same spread around no difference.");
+}
+
 std::string null_sentence(const PowerReport& report) {
+  if (!report.setting.feels()) return stated_null_sentence(report);
   if (report.plan.margin > 0.0) {
     return fmt::format(
         "Power: for methods that feel alike; each presentation is felt as one of the two at "
@@ -87,11 +100,14 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
       "Up to {} simulated studies of each size and hypothesis, seed {}; no participant is in two "
       "of them; {}",
       plan.runs, plan.seed,
-      plan.servo ? std::string("every exploration through the servo.")
-                 : fmt::format("feelings drawn from {} explorations of each stimulus and {} "
-                               "trainings through the servo.",
-                               plan.explorations, plan.trainings)));
-  if (!plan.servo) sentences.push_back(kBankSentence);
+      !report.setting.feels()
+          ? std::string("answers are drawn from the stated mean and spread. Nobody feels anything: "
+                        "neither device nor hand nor texture has part in the numbers.")
+      : plan.servo ? std::string("every exploration through the servo.")
+                   : fmt::format("feelings drawn from {} explorations of each stimulus and {} "
+                                 "trainings through the servo.",
+                                 plan.explorations, plan.trainings)));
+  if (report.setting.feels() && !plan.servo) sentences.push_back(kBankSentence);
   sentences.push_back(looks_sentence(plan));
   sentences.push_back(null_sentence(report));
   if (plan.first_half_loss > 0.0) {

@@ -1,5 +1,6 @@
 #include "analysis/planning/rehearsed_study.hpp"
 
+#include "analysis/planning/rehearsal.hpp"
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "protocols/simulation/condition.hpp"
@@ -20,24 +21,6 @@ std::uint64_t training_seed(std::uint64_t seed, int training) {
   return RandomStream(seed, "power: training", static_cast<std::uint64_t>(training)).bits();
 }
 
-std::string participant_name(int number) {
-  return fmt::format("P{:03}", number);
-}
-
-/// The outcomes of a study without participants.
-analysis::Outcomes nobody_yet(const design::Study& study) {
-  analysis::Outcomes outcomes;
-  outcomes.study = study.name;
-  outcomes.simulated = true;
-  outcomes.design = study;
-  for (const design::StudyClass& one : study.classes) outcomes.classes.push_back(one.label);
-  outcomes.choices = outcomes.classes;
-  for (int i = 0; i < study.presented_methods(); ++i) {
-    outcomes.methods.push_back(study.methods[i].label);
-  }
-  return outcomes;
-}
-
 std::vector<design::StimulusIndex> stimuli_of_method(const design::Study& study, int method) {
   std::vector<design::StimulusIndex> stimuli;
   for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
@@ -56,46 +39,6 @@ void require_answers(const design::Study& study, const simulation::SubjectModel&
       "{}: /explore_s: {} s is not less than the study's explore_limit_s ({} s), after which "
       "it takes no answer (on_timeout \"no-response\"); nobody would ever answer: explore for less",
       subject.source, subject.explore_s, study.trials.explore_limit_s)));
-}
-
-analysis::SessionOutcome completed_session(int number, int session_number, int visit,
-                                           int order_block) {
-  analysis::SessionOutcome session;
-  session.row.session = session_number;
-  session.row.visit = visit;
-  session.row.participant = participant_name(number);
-  session.row.enrolment = number;
-  session.row.state = store::SessionState::completed;
-  session.row.simulated = true;
-  session.counted = true;
-  session.order_block = order_block;
-  return session;
-}
-
-analysis::TrialOutcome answered_trial(int number, int session, int visit,
-                                      const design::Presentation& presentation,
-                                      const design::Schedule& schedule, int position) {
-  analysis::TrialOutcome trial;
-  trial.participant = participant_name(number);
-  trial.visit = visit;
-  trial.row.session = session;
-  trial.row.trial = presentation.trial;
-  trial.row.block = presentation.block;
-  trial.row.state = store::TrialState::answered;
-  trial.row.position = position;
-  trial.stimulus = presentation.stimulus;
-  trial.kind = presentation.kind;
-  trial.scored = true;
-  trial.counted = true;
-  trial.response = schedule.layout[position];
-  trial.right = trial.stimulus.class_index;
-  return trial;
-}
-
-/// Another picture than that at a position, each equally likely.
-int another_position(int position, std::size_t pictures, RandomStream& random) {
-  const auto further = 1 + random.below(pictures - 1);
-  return static_cast<int>((static_cast<std::uint64_t>(position) + further) % pictures);
 }
 
 }  // namespace
@@ -143,10 +86,6 @@ struct RehearsedStudy::Answering {
   Hypothesis hypothesis;
   std::uint64_t study_seed;
 };
-
-std::string_view name_of(Hypothesis hypothesis) {
-  return hypothesis == Hypothesis::null ? "null" : "population";
-}
 
 RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::SubjectModel& subject,
                                const PrimaryTest& test, const Feelings& feelings,

@@ -5,6 +5,7 @@
 
 #include "analysis/outcomes.hpp"
 #include "analysis/planning/primary_test.hpp"
+#include "analysis/planning/rehearsal.hpp"
 #include "engine/perception/felt_features.hpp"
 #include "protocols/simulation/felt_bank.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
@@ -89,21 +90,9 @@ class ServoFeelings final : public Feelings {
   const simulation::SubjectModel& subject_;
 };
 
-/// The population that a study is simulated with. If the test has a margin, methods are alike in
-/// the population too (as under `null` without one), and under `null` the first is worse by the
-/// margin: people miss some of their right answers with it.
-enum class Hypothesis {
-  population,  ///< people as in the subject file
-  /// The same people, with no effect to find. For a test against chance, they feel a random
-  /// stimulus of the method, whatever is presented. For a test between two methods, they feel the
-  /// presented stimulus with one of the two methods at random.
-  null,
-};
-[[nodiscard]] std::string_view name_of(Hypothesis hypothesis);
-
 /// Makes outcomes of one study again and again. Refers to study, subject and feelings, which must
 /// outlive it. Thread-safe once constructed.
-class RehearsedStudy {
+class RehearsedStudy final : public Rehearsal {
  public:
   /// \param most_participants  of any simulated study, >= 1: the number of schedules that are made
   /// \param first_half_loss  share of right answers that people miss in the first half of their
@@ -118,7 +107,7 @@ class RehearsedStudy {
   /// `population` and ServoFeelings, without margin and loss, the scored trials are exactly those
   /// of `simulate --seed study_seed`; times, evidence and unscored trials are left out.
   [[nodiscard]] analysis::Outcomes outcomes(int participants, Hypothesis hypothesis,
-                                            std::uint64_t study_seed) const;
+                                            std::uint64_t study_seed) const override;
 
  private:
   /// What does not change from study to study.
