@@ -4,6 +4,8 @@
 #include "analysis/planning/power_report.hpp"
 #include "analysis/planning/rehearsed_study.hpp"
 #include "analysis/planning/stated_people.hpp"
+#include "analysis/planning/uncertain_subject.hpp"
+#include "analysis/planning/what_if.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
@@ -178,6 +180,8 @@ void write_power_results(const fs::path& folder, const planning::PowerReport& re
 struct PowerArguments {
   fs::path study;
   fs::path subject;
+  fs::path fit;
+  fs::path other;  ///< subject of --what-if
   std::string on;
   fs::path folder;
   std::vector<fs::path> combine;
@@ -186,6 +190,7 @@ struct PowerArguments {
   std::optional<double> margin;
   std::string shard;
   bool has_shard = false;
+  std::optional<double> effect;
   std::optional<double> mean;
   double sd_between = 0.0;
   std::optional<double> accuracy;
@@ -215,8 +220,10 @@ struct PowerPreparation {
       : study(std::move(loaded)),
         test(test_for(study, arguments)),
         stated(stated_by(arguments, test)),
-        subject(stated ? simulation::SubjectModel{}
-                       : subject_for(arguments.subject, study, arguments.on)),
+        fitted(fitted_by(arguments, study)),
+        subject(stated   ? simulation::SubjectModel{}
+                : fitted ? fitted->subject
+                         : subject_for(arguments.subject, study, arguments.on)),
         key(simulated_key(study, arguments.study)) {
     if (stated) return;
     // Shards begin at the same time and share the pack.
@@ -238,6 +245,20 @@ struct PowerPreparation {
     return people;
   }
 
+  static std::optional<planning::UncertainSubject> fitted_by(const PowerArguments& arguments,
+                                                             const design::Study& study) {
+    if (arguments.fit.empty()) return std::nullopt;
+    planning::UncertainSubject fitted = planning::load_uncertain_subject(arguments.fit);
+    fitted.subject.check_labels(study);
+    for (const simulation::SubjectModel& draw : fitted.draws) draw.check_labels(study);
+    return fitted;
+  }
+
+  [[nodiscard]] std::string assumed_words() const {
+    if (stated) return planning::words_of(*stated);
+    return fitted ? planning::words_of(*fitted) : planning::words_of(subject);
+  }
+
   static std::optional<planning::MethodLabels> labels(const PowerArguments& arguments) {
     if (arguments.methods.empty()) return std::nullopt;
     if (arguments.methods.size() == 2)
@@ -252,28 +273,32 @@ struct PowerPreparation {
             planning::estimate_words(test),
             to_hex(key.seal),
             pack ? fields_digest(key, *pack) : std::string(planning::kNoFields),
-            stated ? planning::words_of(*stated) : planning::words_of(subject),
+            assumed_words(),
             std::string(program_version()),
+            fitted ? static_cast<int>(fitted->draws.size()) : 0,
             study.trials.order != design::TrialOrder::uniform};
   }
 
   design::Study study;
   planning::PrimaryTest test;
   std::optional<planning::StatedPeople> stated;  ///< then nobody feels, and there is no pack
+  std::optional<planning::UncertainSubject> fitted;
   simulation::SubjectModel subject;
   design::StudyKey key;
   std::optional<engine::Pack> pack;
 };
 
 std::unique_ptr<const planning::Feelings> feelings_for(const PowerPreparation& prepared,
+                                                       const simulation::SubjectModel& subject,
                                                        const planning::PowerPlan& plan, int jobs,
-                                                       const simulation::LabelledFields& fields) {
+                                                       const simulation::LabelledFields& fields,
+                                                       const design::Progress& progress = {}) {
   if (plan.servo) {
-    return std::make_unique<planning::ServoFeelings>(fields, prepared.study, prepared.subject);
+    return std::make_unique<planning::ServoFeelings>(fields, prepared.study, subject);
   }
   const planning::BankedFeelingsOptions options{plan.explorations, plan.trainings, plan.seed, jobs};
-  return std::make_unique<planning::BankedFeelings>(fields, prepared.study, prepared.subject,
-                                                    options, progress_bar("feeling"));
+  return std::make_unique<planning::BankedFeelings>(fields, prepared.study, subject, options,
+                                                    progress);
 }
 
 fs::path file_of(const PowerArguments& arguments, const planning::Shard& shard) {
@@ -300,9 +325,13 @@ void make_missing_runs(const PowerPreparation& prepared, const PowerArguments& a
   }
   const session::StimulusSource source(*prepared.pack, prepared.key.study.rendering);
   const simulation::LabelledFields fields(prepared.key, source);
-  const auto feelings = feelings_for(prepared, progress.plan, arguments.jobs, fields);
+  const auto feelings = feelings_for(prepared, prepared.subject, progress.plan, arguments.jobs,
+                                     fields, progress_bar("feeling"));
+  planning::RehearsalOptions options{.first_half_loss = progress.plan.first_half_loss};
+  if (progress.plan.effect > 0.0) options.effect = progress.plan.effect;
+  if (prepared.fitted) options.draws = prepared.fitted->draws;
   const planning::RehearsedStudy study(prepared.study, prepared.subject, prepared.test, *feelings,
-                                       most, progress.plan.first_half_loss);
+                                       most, std::move(options));
   planning::make_runs(study, prepared.test, work, progress);
 }
 
@@ -328,6 +357,32 @@ int combine(const PowerArguments& arguments) {
   return print_report(arguments, all.progress);
 }
 
+/// \throws UsageError if there would be no effect
+double require_effect(double effect) {
+  if (effect > 0.0) return effect;
+  throw UsageError(fmt::format("--effect: {:.4g} is no effect; give a share above 0", effect));
+}
+
+int what_if(const PowerArguments& arguments, const PowerPreparation& prepared,
+            const planning::PowerPlan& plan) {
+  if (plan.participants.size() != 1) {
+    throw UsageError("--what-if: is for one size; give it with --participants, for instance 20");
+  }
+  simulation::SubjectModel other = simulation::load_subject_model(arguments.other);
+  other.check_labels(prepared.study);
+  const session::StimulusSource source(*prepared.pack, prepared.key.study.rendering);
+  const simulation::LabelledFields fields(prepared.key, source);
+  const planning::WhatIf result = planning::what_if(
+      prepared.study, prepared.test, prepared.subject,
+      planning::assumptions_about(prepared.subject, other), plan, prepared.setting(),
+      [&](const simulation::SubjectModel& subject) {
+        return feelings_for(prepared, subject, plan, arguments.jobs, fields);
+      },
+      arguments.jobs, progress_bar("assuming"));
+  print(arguments.json ? planning::what_if_json(result) : planning::what_if_text(result));
+  return 0;
+}
+
 int power(PowerArguments arguments) {
   if (!arguments.combine.empty()) return combine(arguments);
   if (arguments.study.empty()) {
@@ -335,6 +390,7 @@ int power(PowerArguments arguments) {
   }
   planning::PowerPlan plan = arguments.plan;
   plan.participants = sizes_named(arguments.sizes);
+  if (arguments.effect) plan.effect = require_effect(*arguments.effect);
   plan.stop_early = !arguments.no_early_stop;
   planning::settle(plan);
   const planning::Shard shard =
@@ -342,6 +398,7 @@ int power(PowerArguments arguments) {
   const PowerPreparation prepared(arguments, design::load_study(arguments.study));
   plan.level = prepared.test.alpha;
   plan.margin = prepared.test.margin.value_or(0.0);
+  if (!arguments.other.empty()) return what_if(arguments, prepared, plan);
   planning::PowerProgress progress = planning::new_progress(prepared.setting(), plan, shard);
   if (!arguments.folder.empty()) {
     make_folder(arguments.folder);
@@ -387,6 +444,21 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
   add_seed_option(command, plan.seed, "Seed of everything random");
   add_subject_option(command, arguments.subject);
   add_on_option(command, arguments.on);
+  CLI::Option* fit =
+      command
+          .add_option("--fit", arguments.fit,
+                      "In place of a subject model: a fit as `fit DB --json` prints it, for the "
+                      "assurance over what it leaves open")
+          ->type_name("FILE")
+          ->excludes(command.get_option("--subject"))
+          ->excludes(command.get_option("--on"));
+  CLI::Option* other =
+      command
+          .add_option("--what-if", arguments.other,
+                      "Change each assumption alone: other senses, hands and devices, and what "
+                      "this other subject file says; with one size of --participants")
+          ->type_name("FILE")
+          ->excludes(fit);
   add_stated_options(command, arguments);
   command
       .add_option("--methods", arguments.methods,
@@ -406,6 +478,12 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
   command.add_option("--trainings", plan.trainings, "Trainings from which studies draw")
       ->capture_default_str();
   command
+      .add_option("--effect", arguments.effect,
+                  "The smallest effect of interest in place of the assumed people's: a mean "
+                  "accuracy, or of two methods a difference of accuracies, as a share")
+      ->type_name("SHARE")
+      ->excludes(command.get_option("--margin"));
+  command
       .add_option("--first-half-loss", plan.first_half_loss,
                   "Share of right answers that people miss in the first half of their trials, as "
                   "they learn; 0 to 1")
@@ -414,9 +492,11 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
   command.add_flag(
       "--servo", plan.servo,
       "Run every exploration through the servo, for comparison; some hundred times slower");
+  command.get_option("--mean")->excludes(fit)->excludes(other);
+  other->excludes(command.get_option("--effect"))->excludes(command.get_option("--servo"));
   // They describe people who feel.
-  for (const char* option :
-       {"--subject", "--on", "--explorations", "--trainings", "--first-half-loss", "--servo"}) {
+  for (const char* option : {"--subject", "--on", "--explorations", "--trainings",
+                             "--first-half-loss", "--effect", "--servo"}) {
     command.get_option("--mean")->excludes(command.get_option(option));
   }
 }
@@ -452,6 +532,8 @@ void add_power_command(CLI::App& program, Action& action) {
                        "Combine all shards of a run, given as folders or files, instead of a study")
           ->excludes(shard)
           ->excludes(resume);
+  CLI::Option* other = command->get_option("--what-if");
+  for (CLI::Option* option : {folder, resume, shard}) other->excludes(option);
   // Shards contain their plan.
   for (CLI::Option* option : of_a_run) combine->excludes(option);
   add_json_flag(*command, arguments->json);

@@ -194,6 +194,23 @@ Json people_json(const SubjectFit& fit) {
           {"taken", fit.spread_taken}};
 }
 
+/// Null: the ideal device that nobody named.
+Json device_json(const device::DeviceModel& model) {
+  return model.name.empty() ? Json() : Json::parse(device::device_model_json(model));
+}
+
+/// Each simulated study's subject by the keys that are its own.
+Json draws_json(const SubjectFit& fit) {
+  Json all = Json::array();
+  for (const simulation::SubjectModel& subject : fit.draws) {
+    const Json whole = Json::parse(simulation::subject_model_json(subject));
+    Json own;
+    for (const std::string_view key : kDrawnKeys) own[std::string(key)] = whole.at(key);
+    all.push_back(std::move(own));
+  }
+  return all;
+}
+
 Json swaps_json(const SubjectFit& fit) {
   Json tried = Json::array();
   for (const SwapCandidate& one : fit.swaps) {
@@ -222,6 +239,8 @@ std::string fit_json(const SubjectFit& fit, const FitOrigin& origin) {
   object["no_response"] = fit.no_response;
   object["classes"] = fit.classes;
   object["fitted"] = Json::parse(simulation::subject_model_json(fit.subject));
+  object["device"] = device_json(fit.subject.device);
+  object["draws"] = draws_json(fit);
   object["estimates"] = estimates_json(fit);
   object["noise_lapse_correlation"] = number(fit.noise_lapse_correlation);
   object["differences_between_people"] = people_json(fit);

@@ -3,10 +3,15 @@
 
 #include "analysis/planning/subject_fit.hpp"
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace touchtrial::planning {
+
+/// The keys of a subject file that differ from draw to draw of a fit; its JSON has them by draw.
+inline constexpr std::array<std::string_view, 3> kDrawnKeys{"feature_noise", "lapse", "bias"};
 
 /// What a fit was made from.
 struct FitOrigin {

@@ -112,8 +112,8 @@ analysis::Figure power_figure(const PowerReport& report) {
       "%); dashed: 80 and 90 %. Middle: the same under the null (Wilson, 95 %); dashed: the "
       "test's level. Right: width of the 95 % interval of the {}, mean over studies, and the "
       "range of the middle 80 % of studies.",
-      kPowerStamp, report.setting.study, report.setting.test, power_interval_name(report.plan),
-      100.0 * power_level(report.plan), report.setting.estimate);
+      power_stamp(report.setting), report.setting.study, report.setting.test,
+      power_interval_name(report.plan), 100.0 * power_level(report.plan), report.setting.estimate);
   figure.width_cm = panels.sheet().width_cm;
   figure.height_cm = panels.sheet().height_cm;
   figure.script = analysis::sheet_head(panels.sheet()) + "set multiplot\n";

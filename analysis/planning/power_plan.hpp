@@ -33,7 +33,8 @@ struct PowerPlan {
   int trainings = 16;            ///< BankedFeelingsOptions
   double level = 0.05;           ///< of the primary test
   double margin = 0.0;           ///< of the primary test; 0: none
-  double first_half_loss = 0.0;  ///< RehearsedStudy
+  double first_half_loss = 0.0;  ///< RehearsalOptions
+  double effect = 0.0;           ///< RehearsalOptions; 0: the subject's own
 
   friend bool operator==(const PowerPlan&, const PowerPlan&) = default;
 };

@@ -99,7 +99,8 @@ std::string first_difference(const PowerProgress& a, const PowerProgress& b) {
       {"--servo", a.plan.servo == b.plan.servo},
       {"--explorations", a.plan.explorations == b.plan.explorations},
       {"--trainings", a.plan.trainings == b.plan.trainings},
-      {"--first-half-loss", a.plan.first_half_loss == b.plan.first_half_loss}};
+      {"--first-half-loss", a.plan.first_half_loss == b.plan.first_half_loss},
+      {"--effect", a.plan.effect == b.plan.effect}};
   const auto differs = std::ranges::find(equal, false, &std::pair<const char*, bool>::second);
   return differs == std::end(equal) ? "" : differs->first;
 }

@@ -13,19 +13,15 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "touchtrial power progress";
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 29U;
 
 ordered_json setting_object(const PowerSetting& setting) {
-  return {{"study", setting.study},
-          {"protocol", setting.protocol},
-          {"test", setting.test},
-          {"estimate", setting.estimate},
-          {"seal", setting.seal},
-          {"fields", setting.fields},
-          {"subject", setting.subject},
-          {"program", setting.program},
-          {"has_fixed_counts", setting.has_fixed_counts}};
+  return {{"study", setting.study},     {"protocol", setting.protocol},
+          {"test", setting.test},       {"estimate", setting.estimate},
+          {"seal", setting.seal},       {"fields", setting.fields},
+          {"subject", setting.subject}, {"program", setting.program},
+          {"draws", setting.draws},     {"has_fixed_counts", setting.has_fixed_counts}};
 }
 
 ordered_json stored_plan(const PowerPlan& plan) {
@@ -38,7 +34,8 @@ ordered_json stored_plan(const PowerPlan& plan) {
           {"trainings", plan.trainings},
           {"level", plan.level},
           {"margin", plan.margin},
-          {"first_half_loss", plan.first_half_loss}};
+          {"first_half_loss", plan.first_half_loss},
+          {"effect", plan.effect}};
 }
 
 ordered_json cell_object(const PowerCell& cell) {
@@ -77,9 +74,10 @@ void require(bool holds, const char* what) {
 }
 
 PowerSetting setting_of(const ordered_json& object) {
-  return {object.at("study"),    object.at("protocol"), object.at("test"),
-          object.at("estimate"), object.at("seal"),     object.at("fields"),
-          object.at("subject"),  object.at("program"),  object.at("has_fixed_counts")};
+  return {object.at("study"),           object.at("protocol"), object.at("test"),
+          object.at("estimate"),        object.at("seal"),     object.at("fields"),
+          object.at("subject"),         object.at("program"),  object.at("draws"),
+          object.at("has_fixed_counts")};
 }
 
 PowerPlan plan_of(const ordered_json& object) {
@@ -94,6 +92,7 @@ PowerPlan plan_of(const ordered_json& object) {
   plan.level = object.at("level");
   plan.margin = object.at("margin");
   plan.first_half_loss = object.at("first_half_loss");
+  plan.effect = object.at("effect");
   require(plan.margin >= 0.0 && plan.margin <= 1.0, "its margin is out of range");
   require(plan.level > 0.0 && plan.level < 1.0, "its level is out of range");
   const PowerPlan as_written = plan;

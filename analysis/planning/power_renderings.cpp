@@ -25,6 +25,13 @@ std::string power_range(const analysis::Interval& interval) {
 
 namespace {
 
+/// What the power is given.
+std::string given_words(const PowerSetting& setting) {
+  if (!setting.feels()) return "given the stated accuracies";
+  return setting.draws > 0 ? "over the uncertainty of a fit (assurance)"
+                           : "given the assumed sensitivity";
+}
+
 std::string looks_sentence(const PowerPlan& plan) {
   if (!plan.stop_early) {
     return "Every size has all its runs; intervals of power are Wilson's at 95 %.";
@@ -108,8 +115,20 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
                                  "trainings through the servo.",
                                  plan.explorations, plan.trainings)));
   if (report.setting.feels() && !plan.servo) sentences.push_back(kBankSentence);
+  if (report.setting.draws > 0) {
+    sentences.push_back(fmt::format(
+        "Assurance: each study has one of {} draws of the fit, so that the numbers are averages "
+        "over what the fit leaves open, given its device and sense.",
+        report.setting.draws));
+  }
   sentences.push_back(looks_sentence(plan));
   sentences.push_back(null_sentence(report));
+  if (plan.effect > 0.0) {
+    sentences.push_back(fmt::format(
+        "The effect is not the assumed people's but the one asked for, {:.4g}: a share of "
+        "presentations, the same for everybody, is felt as under the null.",
+        plan.effect));
+  }
   if (plan.first_half_loss > 0.0) {
     sentences.push_back(fmt::format(
         "In the first half of their trials, people miss {:.4g} % of their right answers.",
@@ -158,8 +177,13 @@ std::string width_table(const PowerReport& report) {
 
 }  // namespace
 
+std::string power_stamp(const PowerSetting& setting) {
+  return "SIMULATED: power " + given_words(setting);
+}
+
 std::string power_text(const PowerReport& report) {
-  std::string text = std::string(kPowerStamp) + "\n";
+  const std::string stamp = power_stamp(report.setting) + "\n";
+  std::string text = stamp;
   text += analysis::wrapped("study    ", report.setting.study + ", " + report.setting.protocol);
   text += analysis::wrapped("test     ", report.setting.test);
   text += analysis::wrapped("assumed  ", report.setting.subject);
@@ -175,7 +199,7 @@ std::string power_text(const PowerReport& report) {
   text += "\n";
   for (const std::string& sentence : method_sentences(report))
     text += analysis::wrapped("", sentence);
-  return text + kPowerStamp + "\n";
+  return text + stamp;
 }
 
 namespace {
@@ -217,8 +241,9 @@ std::vector<analysis::Cell> table_row(const PowerRow& row) {
 
 analysis::Table table_of(const PowerReport& report) {
   analysis::Table table{"power",
-                        "Power given the assumed sensitivity, type-I error and interval width: " +
-                            report.setting.study + ", " + report.setting.test,
+                        "Power " + given_words(report.setting) +
+                            ", type-I error and interval width: " + report.setting.study + ", " +
+                            report.setting.test,
                         {{"participants"},
                          {"runs"},
                          {"power (%)"},
@@ -300,7 +325,8 @@ ordered_json plan_object(const PowerPlan& plan) {
           {"explorations", plan.explorations},
           {"trainings", plan.trainings},
           {"margin", plan.margin},
-          {"first_half_loss", plan.first_half_loss}};
+          {"first_half_loss", plan.first_half_loss},
+          {"effect", plan.effect}};
 }
 
 ordered_json methods_object(const PowerReport& report) {
@@ -319,12 +345,13 @@ std::string power_json(const PowerReport& report) {
   ordered_json object;
   object["simulated"] = true;
   object["stamp"] = "SIMULATED";
-  object["claim"] = kPowerStamp;
+  object["claim"] = power_stamp(setting);
   object["study"] = setting.study;
   object["protocol"] = setting.protocol;
   object["test"] = {
       {"words", setting.test}, {"level", report.plan.level}, {"estimate", setting.estimate}};
   object["assumed"] = setting.subject;
+  object["draws"] = setting.draws;
   object["plan"] = plan_object(report.plan);
   object["sizes"] = ordered_json::array();
   for (const PowerRow& row : report.rows) object["sizes"].push_back(size_object(row));

@@ -69,8 +69,8 @@ struct PowerReport {
 /// \throws std::invalid_argument otherwise
 [[nodiscard]] PowerReport make_power_report(const PowerProgress& progress);
 
-/// Stamp of everything that comes from a power run.
-inline constexpr const char* kPowerStamp = "SIMULATED: power given the assumed sensitivity";
+/// Stamp of everything that comes from a power run: what its power is given.
+[[nodiscard]] std::string power_stamp(const PowerSetting& setting);
 
 /// \return a share in per cent: "84.3"
 [[nodiscard]] std::string power_per_cent(double share);

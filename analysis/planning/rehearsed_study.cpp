@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -82,6 +83,7 @@ engine::FeltFeatures ServoFeelings::felt(const design::StimulusIndex& stimulus,
 
 /// What the participants of one simulated study share.
 struct RehearsedStudy::Answering {
+  const simulation::SubjectModel& subject;
   const std::shared_ptr<const simulation::FeltKnowledge>& learnt;
   Hypothesis hypothesis;
   std::uint64_t study_seed;
@@ -89,11 +91,11 @@ struct RehearsedStudy::Answering {
 
 RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::SubjectModel& subject,
                                const PrimaryTest& test, const Feelings& feelings,
-                               int most_participants, double first_half_loss)
+                               int most_participants, RehearsalOptions options)
     : subject_(subject),
+      options_(std::move(options)),
       test_(test),
       feelings_(feelings),
-      first_half_loss_(first_half_loss),
       visits_(study.visits.count),
       of_method_(stimuli_of_method(study, test.first)),
       empty_(nobody_yet(study)) {
@@ -102,8 +104,13 @@ RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::Sub
   for (int i = 0; i < most_participants * visits_; ++i) {
     schedules_.push_back(planned_visit(study, key, 1 + i / visits_, 1 + i % visits_));
   }
-  if (!test_.margin) return;
-  const double accuracy = accuracy_if_alike();
+  if (test_.margin) set_margin();
+  if (options_.effect) set_effect();
+}
+
+void RehearsedStudy::set_margin() {
+  constexpr int kPeople = 400;
+  const double accuracy = accuracy_of(kPeople, test_.first, Hypothesis::population);
   if (accuracy <= *test_.margin) {
     throw UsageError(fmt::format(
         "a margin of {:.4g} points is not less than the accuracy of methods that are alike "
@@ -111,6 +118,19 @@ RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::Sub
         100.0 * *test_.margin, 100.0 * accuracy));
   }
   margin_loss_ = *test_.margin / accuracy;
+}
+
+void RehearsedStudy::set_effect() {
+  const double none = estimand_of(Hypothesis::null);
+  const double whole = estimand_of(Hypothesis::population);
+  const double share = (*options_.effect - none) / (whole - none);
+  if (!(share > 0.0 && share <= 1.0)) {
+    throw UsageError(fmt::format(
+        "--effect: {:.4g} does not lie between what people who feel no difference reach ({:.3f}) "
+        "and the assumed people ({:.3f}); give a value between, or state people with --mean",
+        *options_.effect, none, whole));
+  }
+  dulled_share_ = 1.0 - share;
 }
 
 RehearsedStudy::PlannedSchedule RehearsedStudy::planned_visit(const design::Study& study,
@@ -135,15 +155,13 @@ RehearsedStudy::PlannedSchedule RehearsedStudy::planned_visit(const design::Stud
   return planned;
 }
 
-double RehearsedStudy::accuracy_if_alike() const {
-  constexpr int kParticipants = 400;
-  const auto size = std::min(static_cast<int>(schedules_.size()) / visits_, kParticipants);
+double RehearsedStudy::accuracy_of(int people, int method, Hypothesis hypothesis) const {
+  const auto size = std::min(static_cast<int>(schedules_.size()) / visits_, people);
   analysis::Proportion right;
-  for (int made = 0; made < kParticipants; made += size) {
+  for (int made = 0; made < people; made += size) {
     RandomStream seeds(0, "power: methods alike", static_cast<std::uint64_t>(made));
-    for (const analysis::TrialOutcome& trial :
-         outcomes(size, Hypothesis::population, seeds.bits()).trials) {
-      if (trial.stimulus.method != test_.first) continue;
+    for (const analysis::TrialOutcome& trial : outcomes(size, hypothesis, seeds.bits()).trials) {
+      if (trial.stimulus.method != method) continue;
       ++right.n;
       if (trial.correct()) ++right.correct;
     }
@@ -151,9 +169,16 @@ double RehearsedStudy::accuracy_if_alike() const {
   return right.share().value_or(0.0);
 }
 
+double RehearsedStudy::estimand_of(Hypothesis hypothesis) const {
+  constexpr int kPeople = 4000;
+  const double first = accuracy_of(kPeople, test_.first, hypothesis);
+  if (test_.estimand == design::Estimand::mean_accuracy) return first;
+  return first - accuracy_of(kPeople, test_.second, hypothesis);
+}
+
 double RehearsedStudy::loss_of(const PlannedSchedule& planned, int place, int method,
                                Hypothesis hypothesis) const {
-  const double early = 2 * place < planned.scored ? first_half_loss_ : 0.0;
+  const double early = 2 * place < planned.scored ? options_.first_half_loss : 0.0;
   const bool is_worse = hypothesis == Hypothesis::null && method == test_.first;
   return 1.0 - (1.0 - early) * (1.0 - (is_worse ? margin_loss_ : 0.0));
 }
@@ -161,7 +186,11 @@ double RehearsedStudy::loss_of(const PlannedSchedule& planned, int place, int me
 design::StimulusIndex RehearsedStudy::felt_stimulus(const design::StimulusIndex& presented,
                                                     Hypothesis hypothesis,
                                                     std::uint64_t draw) const {
-  if (hypothesis == Hypothesis::population && !test_.margin) return presented;
+  if (hypothesis == Hypothesis::population && !test_.margin) {
+    // The high bits decide whether, the low bits below decide what is felt instead.
+    const double share = static_cast<double>(draw >> 11U) * 0x1p-53;
+    if (share >= dulled_share_) return presented;
+  }
   if (test_.estimand == design::Estimand::mean_accuracy)
     return of_method_[draw % of_method_.size()];
   design::StimulusIndex felt = presented;
@@ -173,10 +202,11 @@ design::StimulusIndex RehearsedStudy::felt_stimulus(const design::StimulusIndex&
 
 /// One participant of a simulated study, with the random numbers that planning alone needs.
 struct RehearsedStudy::Person {
-  Person(const simulation::SubjectModel& subject, const Answering& answering, int participant)
+  Person(const Answering& answering, int participant)
       : number(participant),
-        knowledge(simulation::remembered(answering.learnt, subject, answering.study_seed, number)),
-        individual(subject, answering.study_seed, number),
+        knowledge(simulation::remembered(answering.learnt, answering.subject, answering.study_seed,
+                                         number)),
+        individual(answering.subject, answering.study_seed, number),
         decision(individual, *knowledge),
         draws(answering.study_seed, "power: feelings", static_cast<std::uint64_t>(number)) {}
 
@@ -198,8 +228,8 @@ int RehearsedStudy::lost(int position, double loss, Person& person, int right,
 
 void RehearsedStudy::add_participant(int number, const Answering& answering,
                                      analysis::Outcomes& outcomes) const {
-  Person person(subject_, answering, number);
-  if (first_half_loss_ + margin_loss_ > 0.0) {
+  Person person(answering, number);
+  if (options_.first_half_loss + margin_loss_ > 0.0) {
     person.losses.emplace(answering.study_seed, "power: losses",
                           static_cast<std::uint64_t>(number));
   }
@@ -211,8 +241,8 @@ void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answe
   const int session = (person.number - 1) * visits_ + visit;
   const PlannedSchedule& planned = schedules_[static_cast<std::size_t>(session) - 1];
   const simulation::SeenPictures seen =
-      simulation::see(planned.pictures, subject_, person.individual, *person.knowledge);
-  simulation::Condition condition(subject_, answering.study_seed, person.number, visit,
+      simulation::see(planned.pictures, answering.subject, person.individual, *person.knowledge);
+  simulation::Condition condition(answering.subject, answering.study_seed, person.number, visit,
                                   static_cast<int>(planned.course.size()));
   outcomes.sessions.push_back(
       completed_session(person.number, session, visit, planned.order_block));
@@ -230,7 +260,7 @@ void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answe
     const std::uint64_t instead = person.draws.bits();
     if (!place.carries_over) condition.forget();
     // What is not scored is answered only if the next answer leans on it.
-    if (!is_scored && !(subject_.serial.is_on() && place.carries_over)) continue;
+    if (!is_scored && !(answering.subject.serial.is_on() && place.carries_over)) continue;
     const design::StimulusIndex felt =
         felt_stimulus(presentation.stimulus, answering.hypothesis, instead);
     RandomStream random = simulation::stream_of_trial(trial.study_seed, simulation::kAnswerPurpose,
@@ -246,17 +276,22 @@ void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answe
       outcomes.trials.push_back(
           answered_trial(person.number, session, visit, presentation, planned.schedule, position));
     }
-    if (!subject_.serial.is_on()) continue;
+    if (!answering.subject.serial.is_on()) continue;
     place.label = empty_.classes[felt.class_index];
     simulation::end_trial(condition, place, position, seen, *person.knowledge);
   }
+}
+
+const simulation::SubjectModel& RehearsedStudy::subject_of(std::uint64_t study_seed) const {
+  if (options_.draws.empty()) return subject_;
+  return options_.draws[RandomStream(study_seed, "power: which draw").below(options_.draws.size())];
 }
 
 analysis::Outcomes RehearsedStudy::outcomes(int participants, Hypothesis hypothesis,
                                             std::uint64_t study_seed) const {
   analysis::Outcomes outcomes = empty_;
   const std::shared_ptr<const simulation::FeltKnowledge> learnt = feelings_.knowledge(study_seed);
-  const Answering answering{learnt, hypothesis, study_seed};
+  const Answering answering{subject_of(study_seed), learnt, hypothesis, study_seed};
   for (int number = 1; number <= participants; ++number) {
     add_participant(number, answering, outcomes);
   }

@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -90,18 +91,30 @@ class ServoFeelings final : public Feelings {
   const simulation::SubjectModel& subject_;
 };
 
+struct RehearsalOptions {
+  /// Share of right answers that people miss in the first half of their scored trials, as an effect
+  /// of learning: 0 .. 1.
+  double first_half_loss = 0.0;
+  /// The size of the test's estimand (primary_test.hpp) in the population, smaller than that of the
+  /// subject: a share of presentations, the same for everybody, is then felt as under the null.
+  /// Nothing: the subject's own. Not with a margin.
+  std::optional<double> effect{};
+  /// What is uncertain of the subject: each study takes one of them, for all of its people; they
+  /// feel and learn as the subject does. Empty: nothing is uncertain.
+  std::vector<simulation::SubjectModel> draws{};
+};
+
 /// Makes outcomes of one study again and again. Refers to study, subject and feelings, which must
 /// outlive it. Thread-safe once constructed.
 class RehearsedStudy final : public Rehearsal {
  public:
   /// \param most_participants  of any simulated study, >= 1: the number of schedules that are made
-  /// \param first_half_loss  share of right answers that people miss in the first half of their
-  ///   scored trials, as an effect of learning: 0 .. 1
   /// \throws StudyError if the study's orders are impossible, or if participants explore so long
-  ///   that they would never answer; UsageError if the margin is more than the methods' accuracy
+  ///   that they would never answer; UsageError if the margin is more than the methods' accuracy,
+  ///   or the subject does not reach the effect
   RehearsedStudy(const design::Study& study, const simulation::SubjectModel& subject,
                  const PrimaryTest& test, const Feelings& feelings, int most_participants,
-                 double first_half_loss = 0.0);
+                 RehearsalOptions options = {});
 
   /// Outcomes of participants with the numbers and enrolment numbers 1 .. `participants`. With
   /// `population` and ServoFeelings, without margin and loss, the scored trials are exactly those
@@ -141,15 +154,22 @@ class RehearsedStudy final : public Rehearsal {
   /// \param place  among the participant's scored presentations, from 0
   [[nodiscard]] double loss_of(const PlannedSchedule& planned, int place, int method,
                                Hypothesis hypothesis) const;
-  /// Accuracy with the test's first method if both are alike.
-  [[nodiscard]] double accuracy_if_alike() const;
+  /// The accuracy of people with a method.
+  [[nodiscard]] double accuracy_of(int people, int method, Hypothesis hypothesis) const;
+  /// The test's estimand, among many people.
+  [[nodiscard]] double estimand_of(Hypothesis hypothesis) const;
+  void set_margin();
+  void set_effect();
+  /// The people of one study.
+  [[nodiscard]] const simulation::SubjectModel& subject_of(std::uint64_t study_seed) const;
 
   const simulation::SubjectModel& subject_;
+  RehearsalOptions options_;
   PrimaryTest test_;
   const Feelings& feelings_;
-  double first_half_loss_;
-  int visits_;                ///< of each participant
-  double margin_loss_ = 0.0;  ///< share of right answers missed with the first method, if worse
+  int visits_;                 ///< of each participant
+  double margin_loss_ = 0.0;   ///< share of right answers missed with the first method, if worse
+  double dulled_share_ = 0.0;  ///< of presentations that are felt as under the null
   std::vector<PlannedSchedule> schedules_;        ///< of each participant in turn, by visit
   std::vector<design::StimulusIndex> of_method_;  ///< every stimulus of the test's first method
   analysis::Outcomes empty_;

@@ -103,6 +103,9 @@ void add_bootstrap(const Fitted& fitted, const FitBootstrap& bootstrap, SubjectF
   const auto at_least = std::ranges::count_if(bootstrap.g_squared,
                                               [&](double value) { return value >= fit.g_squared; });
   fit.p = (1.0 + static_cast<double>(at_least)) / (1.0 + fit.bootstraps);
+  for (const std::vector<double>& numbers : bootstrap.numbers) {
+    fit.draws.push_back(fitted.problem.subject_at(numbers));
+  }
   for (ParameterEstimate& estimate : fit.estimates) {
     std::vector<double> values;
     for (const std::vector<double>& numbers : bootstrap.numbers) {

@@ -44,6 +44,8 @@ struct SwapCandidate {
 
 struct SubjectFit {
   simulation::SubjectModel subject;  ///< fitted; fixed parameters are the given subject's
+  /// Refitted to each of the simulated studies: what the answers leave open.
+  std::vector<simulation::SubjectModel> draws;
   std::vector<ParameterEstimate> estimates;
   std::vector<SwapCandidate> swaps;  ///< the most likely ones, best first
   double swap_threshold = 0.0;       ///< gain that a swap needs

@@ -48,7 +48,7 @@ struct RehearsedTinyStudy {
   }
   [[nodiscard]] planning::RehearsedStudy planned(const planning::Feelings& feelings, int most = 12,
                                                  double first_half_loss = 0.0) const {
-    return {tiny.key().study, subject, test, feelings, most, first_half_loss};
+    return {tiny.key().study, subject, test, feelings, most, {.first_half_loss = first_half_loss}};
   }
 
   TinyStudy tiny;
