@@ -174,7 +174,8 @@ ordered_json stiffness_json(const StudyFit& fit) {
 }
 
 /// The format is documented in docs/devices/README.md.
-std::string fit_json(const StudyFit& fit) {
+std::string fit_json(const design::Study& study, const StudyFit& fit,
+                     const std::optional<simulation::StimulusLevels>& levels) {
   ordered_json object = {{"study", fit.study},
                          {"driver", fit.driver},
                          {"fits", fit.fit.fits},
@@ -190,6 +191,8 @@ std::string fit_json(const StudyFit& fit) {
     object["origin_mm"] = vec_json(fit.fit.placement->origin_mm);
   }
   if (!fit.fit.fits && fit.fit.largest.width_px > 0) object["crop"] = plane_json(fit.fit.largest);
+  object["levels"] = nullptr;
+  if (levels) object["levels"] = ordered_json::parse(planning::all_levels_json(study, *levels));
   return json_text(object);
 }
 
@@ -221,17 +224,26 @@ void check_with_certificate(const fs::path& file, const design::Study& study, co
 }
 
 /// How strong the stimuli are, if the study is prepared here with a key that anybody may read.
-void print_levels(const design::Study& study, const fs::path& file) {
+std::optional<simulation::StimulusLevels> levels_here(const design::Study& study,
+                                                      const fs::path& file) {
   const design::PackPlace place = pack_place_for(file, {});
   if (!is_there(place.key) || design::is_protected(place.key) ||
       !is_there(place.pack / "pack.json")) {
-    print("levels of the stimuli: run touchtrial prepare, whose key and pack they need\n");
-    return;
+    return std::nullopt;
   }
   design::StudyKey key = design::rekeyed(design::load_study_key(place.key), study);
   key.pack_folder = place.pack;
+  return levels_of_pack(key);
+}
+
+void print_levels(const design::Study& study,
+                  const std::optional<simulation::StimulusLevels>& levels) {
+  if (!levels) {
+    print("levels of the stimuli: run touchtrial prepare, whose key and pack they need\n");
+    return;
+  }
   analysis::Document document;
-  document.sections.push_back(planning::levels_section(study, levels_of_pack(key)));
+  document.sections.push_back(planning::levels_section(study, *levels));
   print(analysis::document_text(document, columns_of_output()));
 }
 
@@ -239,7 +251,8 @@ int fit(const DeviceFitArguments& arguments) {
   const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   const design::Study study = design::load_study(arguments.study);
   const StudyFit fit = fit_of(study, arguments.driver, settings, arguments.orientation);
-  print(arguments.json ? fit_json(fit) : fit_text(fit));
+  const auto levels = levels_here(study, arguments.study);
+  print(arguments.json ? fit_json(study, fit, levels) : fit_text(fit));
   if (!fit.fit.fits) {
     throw DeviceError(device::misfit_text(arguments.driver, fit.plane, *fit.workspace, fit.fit));
   }
@@ -248,7 +261,7 @@ int fit(const DeviceFitArguments& arguments) {
     check_with_certificate(arguments.certificate.empty() ? usual : arguments.certificate, study,
                            fit);
   }
-  if (!arguments.json) print_levels(study, arguments.study);
+  if (!arguments.json) print_levels(study, levels);
   const std::string warning = device::check_stiffness(fit.rendered, fit.limits);
   if (!warning.empty()) spdlog::warn("{}", warning);
   return 0;

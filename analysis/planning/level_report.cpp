@@ -204,6 +204,20 @@ Json json_of_differences(const design::Study& study, const StimulusLevels& level
   return list;
 }
 
+Json json_of_all(const design::Study& study, const StimulusLevels& levels) {
+  Json stimuli = Json::array();
+  for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
+    const design::StimulusIndex& index = levels.stimuli[i];
+    stimuli.push_back({{"class", study.classes[index.class_index].label},
+                       {"exemplar", index.exemplar + 1},
+                       {"method", study.methods[index.method].label},
+                       {"levels", json_of(levels.levels[i])}});
+  }
+  return {{"stimuli", std::move(stimuli)},
+          {"blank", json_of(levels.blank)},
+          {"differences", json_of_differences(study, levels)}};
+}
+
 class LevelledResults final : public analysis::Results {
  public:
   LevelledResults(std::unique_ptr<const analysis::Results> results, design::Study study,
@@ -216,17 +230,7 @@ class LevelledResults final : public analysis::Results {
   }
   std::string json() const override {
     Json object = Json::parse(results_->json());
-    Json stimuli = Json::array();
-    for (std::size_t i = 0; i < levels_.stimuli.size(); ++i) {
-      const design::StimulusIndex& index = levels_.stimuli[i];
-      stimuli.push_back({{"class", study_.classes[index.class_index].label},
-                         {"exemplar", index.exemplar + 1},
-                         {"method", study_.methods[index.method].label},
-                         {"levels", json_of(levels_.levels[i])}});
-    }
-    object["levels"] = {{"stimuli", std::move(stimuli)},
-                        {"blank", json_of(levels_.blank)},
-                        {"differences", json_of_differences(study_, levels_)}};
+    object["levels"] = json_of_all(study_, levels_);
     return json_text(object);
   }
   analysis::Document document(const analysis::Provenance& provenance,
@@ -269,6 +273,10 @@ std::string levels_json(const PlaneLevels& levels) {
 
 std::string differences_json(const design::Study& study, const StimulusLevels& levels) {
   return json_of_differences(study, levels).dump();
+}
+
+std::string all_levels_json(const design::Study& study, const StimulusLevels& levels) {
+  return json_of_all(study, levels).dump();
 }
 
 std::vector<std::string> level_warnings(const design::Study& study, const StimulusLevels& levels) {

@@ -23,6 +23,10 @@ namespace touchtrial::planning {
 [[nodiscard]] std::string differences_json(const design::Study& study,
                                            const simulation::StimulusLevels& levels);
 
+/// Both of every stimulus and of the blank plane: the member "levels" of `report --json`.
+[[nodiscard]] std::string all_levels_json(const design::Study& study,
+                                          const simulation::StimulusLevels& levels);
+
 /// One line if stimuli may be too weak on a device.
 [[nodiscard]] std::vector<std::string> level_warnings(const design::Study& study,
                                                       const simulation::StimulusLevels& levels);

@@ -140,3 +140,22 @@ TEST_CASE("device fit refuses a device or an orientation that does not exist") {
   CHECK_THAT(device.errors, holds_text("falcon"));
   CHECK(folder.fit({"--device", "falcon", "--orientation", "diagonal"}).exit_code == 2);
 }
+
+TEST_CASE("device fit says how strong the stimuli are once the study is prepared") {
+  const FitFolder folder(200, 200);
+  const auto levels = [&] {
+    const ProgramResult result = folder.fit({"--device", "falcon", "--json"});
+    INFO(result.errors);
+    REQUIRE(result.exit_code == 0);
+    return json::parse(result.output).at("levels");
+  };
+  CHECK(levels().is_null());
+  const ProgramResult prepared =
+      run_touchtrial(folder.path(), {"prepare", (folder.path() / "study.json").string(), "--json"});
+  REQUIRE(prepared.exit_code == 0);
+  const json there = json::parse(prepared.output);
+  CHECK(levels().at("blank") == there.at("blank").at("levels"));
+  REQUIRE(levels().at("stimuli").size() == 2);
+  // Both are the same grey: prepare lists them in the order of their codes.
+  CHECK(levels().at("stimuli")[0].at("levels") == there.at("stimuli")[0].at("levels"));
+}
