@@ -4,6 +4,8 @@
 #include "app/console.hpp"
 #include "app/device_accept_page.hpp"
 #include "app/device_words.hpp"
+#include "app/sound/sound_accelerometer.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/text.hpp"
@@ -12,6 +14,8 @@
 #include "device/acceptance/acceptance.hpp"
 #include "device/acceptance/rehearsal.hpp"
 #include "device/registry.hpp"
+#include "engine/pack/pack.hpp"
+#include "protocols/session/stimulus_source.hpp"
 
 #include <algorithm>
 #include <array>
@@ -52,6 +56,9 @@ struct AcceptArguments {
   std::string emulated;  ///< name or file of a device model
   std::vector<std::string> skip;
   std::vector<std::string> records;  ///< LABEL=FILE of an accelerometer
+  fs::path planes;                   ///< study file
+  std::string sound_input;
+  std::vector<double> full_scale_m_s2;
   bool thermal = false;
   bool silence = false;
   bool json = false;
@@ -88,8 +95,10 @@ class Suspension {
 /// output holds the result only.
 class TerminalAcceptance final : public device::AcceptanceBench, public device::AcceptancePerson {
  public:
-  explicit TerminalAcceptance(const AcceptArguments& arguments)
-      : settings_(device::device_settings_for(arguments.settings)),
+  /// \param accelerometer  null: none
+  TerminalAcceptance(const AcceptArguments& arguments, device::Accelerometer* accelerometer)
+      : accelerometer_(accelerometer),
+        settings_(device::device_settings_for(arguments.settings)),
         opened_(arguments.driver, settings_, {100.0, 100.0}),
         limits_(
             device::limits_on(opened_.device().info(),
@@ -115,6 +124,8 @@ class TerminalAcceptance final : public device::AcceptanceBench, public device::
     require_going_on();
     return *report;
   }
+
+  [[nodiscard]] device::Accelerometer* accelerometer() override { return accelerometer_; }
 
   [[nodiscard]] std::optional<device::ServoReport> run_suspended(
       device::Measurement& measurement) override {
@@ -212,6 +223,7 @@ class TerminalAcceptance final : public device::AcceptanceBench, public device::
     return *answer;
   }
 
+  device::Accelerometer* accelerometer_;
   device::DeviceSettings settings_;
   OpenedDevice opened_;
   device::SafetyLimits limits_;
@@ -252,6 +264,9 @@ std::string acceptance_summary(const device::Certificate& certificate) {
             ? fmt::format(", swings at {:.2f} N/mm", certificate.wall->oscillates_n_per_mm)
             : "",
         certificate.wall->ended);
+  }
+  for (const device::SpectrumResult& spectrum : certificate.spectra) {
+    text += fmt::format("{}: {:.4f} m/s2 at the stylus\n", spectrum.felt, spectrum.all_m_s2());
   }
   for (const device::Observation& one : certificate.observed) {
     text += one.what + ": " + one.saw + "\n";
@@ -329,6 +344,7 @@ AcceptanceFiles files_to_write(const AcceptArguments& arguments, const std::stri
   }
   AcceptanceFiles files{path, file_beside(path, ".html"), file_beside(path, "-model.json")};
   std::vector<fs::path> inputs = {arguments.emulated, arguments.settings};
+  inputs.push_back(arguments.planes);
   for (const std::string& record : arguments.records) {
     inputs.emplace_back(record_words(record).second);
   }
@@ -412,32 +428,99 @@ int write_results(const AcceptArguments& arguments, const AcceptanceFiles& files
   return certificate.passed() ? 0 : kRefused;
 }
 
-device::AcceptanceOptions options_of(const AcceptArguments& arguments) {
+/// The planes of a prepared study, which the acceptance presents one by one.
+class StudyPlanes {
+ public:
+  /// \throws FileError if the study is not prepared here, or its key is under a passphrase
+  explicit StudyPlanes(const fs::path& file)
+      : key_(key_of(file)), pack_(key_.pack_folder), source_(pack_, key_.study.rendering) {}
+
+  /// Refers to this. The blank plane comes first.
+  [[nodiscard]] std::vector<device::FeltPlane> planes() const {
+    std::vector<device::FeltPlane> planes = {
+        plane(std::string(device::kBlankPlane), source_.flat())};
+    for (const design::KeyedStimulus& keyed : sorted()) {
+      const design::StudyClass& own = key_.study.classes[keyed.stimulus.class_index];
+      std::string felt = own.label + " " + key_.study.methods[keyed.stimulus.method].label;
+      if (own.images.size() > 1) felt += fmt::format(" {}", keyed.stimulus.exemplar + 1);
+      planes.push_back(plane(std::move(felt), source_.model(keyed.code)));
+    }
+    return planes;
+  }
+
+ private:
+  static design::StudyKey key_of(const fs::path& file) {
+    std::optional<design::StudyKey> key = open_key_of(design::load_study(file), file);
+    if (key) return std::move(*key);
+    throw FileError(one_line(file.string()) +
+                    ": --planes: is not prepared here, or its key is under a passphrase; run "
+                    "touchtrial prepare with a copy of the study in another folder");
+  }
+  /// Codes are random, and so is the key's order.
+  [[nodiscard]] std::vector<design::KeyedStimulus> sorted() const {
+    std::vector<design::KeyedStimulus> stimuli = key_.stimuli;
+    std::ranges::sort(stimuli, {}, &design::KeyedStimulus::stimulus);
+    return stimuli;
+  }
+  [[nodiscard]] device::FeltPlane plane(std::string felt,
+                                        const engine::RenderingModel& model) const {
+    return {std::move(felt), key_.study.rendering.stiffness_n_per_mm, source_.plane(),
+            [&model, touch = engine::Bristle()](Vec3 position_mm, Vec3 velocity_mm_s) mutable {
+              return model.force_n(position_mm, velocity_mm_s, touch);
+            }};
+  }
+
+  design::StudyKey key_;
+  engine::Pack pack_;
+  session::StimulusSource source_;
+};
+
+device::AcceptanceOptions options_of(const AcceptArguments& arguments,
+                                     const std::optional<StudyPlanes>& study) {
   device::AcceptanceOptions options;
   options.skip.insert(arguments.skip.begin(), arguments.skip.end());
   options.thermal = arguments.thermal;
   options.silence = arguments.silence;
+  if (study) options.planes = study->planes();
   return options;
 }
 
+std::optional<StudyPlanes> planes_of(const AcceptArguments& arguments) {
+  std::optional<StudyPlanes> study;
+  if (!arguments.planes.empty()) study.emplace(arguments.planes);
+  return study;
+}
+
+void add_spectra(const std::vector<device::SpectrumResult>& spectra,
+                 device::Certificate& certificate) {
+  certificate.spectra.insert(certificate.spectra.end(), spectra.begin(), spectra.end());
+}
+
 int rehearse_on_model(const AcceptArguments& arguments,
-                      std::vector<device::SpectrumResult> spectra) {
+                      const std::vector<device::SpectrumResult>& spectra) {
+  if (!arguments.sound_input.empty()) {
+    throw UsageError("--sound-input: a rehearsal has an accelerometer of its own; leave it out");
+  }
   const device::DeviceModel model = device::device_model(arguments.emulated);
   const AcceptanceFiles files = files_to_write(arguments, emulated_word(model.name));
-  device::Acceptance acceptance = device::rehearse_acceptance(model, options_of(arguments));
-  acceptance.certificate.spectra = std::move(spectra);
+  const std::optional<StudyPlanes> study = planes_of(arguments);
+  device::Acceptance acceptance = device::rehearse_acceptance(model, options_of(arguments, study));
+  add_spectra(spectra, acceptance.certificate);
   return write_results(arguments, files, std::move(acceptance),
                        device::ModelledDevice(model).info());
 }
 
 int accept_on_cable(const AcceptArguments& arguments, const AcceptanceFiles& files,
-                    std::vector<device::SpectrumResult> spectra) {
+                    const std::vector<device::SpectrumResult>& spectra) {
   std::optional<device::Acceptance> acceptance;
   device::DeviceInfo info;
   try {
-    TerminalAcceptance terminal(arguments);
+    const std::optional<StudyPlanes> study = planes_of(arguments);
+    std::optional<SoundAccelerometer> accelerometer;
+    if (study) accelerometer.emplace(arguments.sound_input, arguments.full_scale_m_s2);
+    TerminalAcceptance terminal(arguments, accelerometer ? &*accelerometer : nullptr);
     info = terminal.info();
-    acceptance = device::accept_device(terminal, terminal, options_of(arguments));
+    acceptance = device::accept_device(terminal, terminal, options_of(arguments, study));
   } catch (const AcceptanceStopped&) {
     if (device::StopOnSignals::asked()) {
       std::cerr << "touchtrial: " << device::StopOnSignals::message() << "; nothing was written\n";
@@ -445,7 +528,7 @@ int accept_on_cable(const AcceptArguments& arguments, const AcceptanceFiles& fil
     }
     throw DeviceError("the acceptance was stopped; nothing was written");
   }
-  acceptance->certificate.spectra = std::move(spectra);
+  add_spectra(spectra, acceptance->certificate);
   return write_results(arguments, files, std::move(*acceptance), info);
 }
 
@@ -483,12 +566,16 @@ int accept_one(const AcceptArguments& arguments) {
     throw UsageError(
         "device accept: name a driver, as touchtrial device list does, or a model with --emulate");
   }
-  std::vector<device::SpectrumResult> spectra = spectra_of(arguments);
-  if (!arguments.emulated.empty()) return rehearse_on_model(arguments, std::move(spectra));
+  const std::vector<device::SpectrumResult> spectra = spectra_of(arguments);
+  if (arguments.emulated.empty() && !arguments.planes.empty() && arguments.sound_input.empty()) {
+    throw UsageError(
+        "--planes: needs an accelerometer at the stylus; name its sound input with --sound-input");
+  }
+  if (!arguments.emulated.empty()) return rehearse_on_model(arguments, spectra);
   const AcceptanceFiles files =
       files_to_write(arguments, device::device_driver(arguments.driver).name);
-  if (!arguments.silence) return accept_on_cable(arguments, files, std::move(spectra));
-  return in_own_process([&] { return accept_on_cable(arguments, files, std::move(spectra)); });
+  if (!arguments.silence) return accept_on_cable(arguments, files, spectra);
+  return in_own_process([&] { return accept_on_cable(arguments, files, spectra); });
 }
 
 }  // namespace
@@ -516,6 +603,26 @@ void add_device_accept_command(CLI::App& device, Action& action) {
                    "felt WHAT; may be repeated")
       ->type_name("WHAT=FILE")
       ->allow_extra_args(false);
+  CLI::Option* planes =
+      command
+          ->add_option("--planes", arguments->planes,
+                       "Also stroke the blank plane and every texture of this prepared study, "
+                       "under an accelerometer at the stylus")
+          ->type_name("STUDY");
+  CLI::Option* input =
+      command
+          ->add_option("--sound-input", arguments->sound_input,
+                       "With --planes: the sound card's input that the accelerometer is plugged "
+                       "into, by its name or a part of it")
+          ->type_name("NAME")
+          ->needs(planes);
+  command
+      ->add_option("--full-scale", arguments->full_scale_m_s2,
+                   "With --sound-input: the acceleration in m/s2 at the end of the input's range; "
+                   "one number for one axis, or X,Y,Z")
+      ->type_name("A")
+      ->delimiter(',')
+      ->needs(input);
   command->add_flag("--thermal", arguments->thermal, "Also hold a weight for twenty minutes");
   command->add_flag(
       "--silence", arguments->silence,

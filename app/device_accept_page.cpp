@@ -5,6 +5,9 @@
 #include "core/errors.hpp"
 #include "core/utc.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -95,10 +98,25 @@ struct PlotWords {
   std::string y;
 };
 
-/// Lines of one kind, one for each axis.
-analysis::Picture lines_picture(const PlotWords& words,
-                                const std::vector<device::AxisCurves>& curves,
-                                std::vector<std::pair<double, double>> device::AxisCurves::*part) {
+/// A line of a plot.
+struct PlotLine {
+  std::string name;
+  std::vector<std::pair<double, double>> points;
+};
+
+std::vector<PlotLine> lines_of(const std::vector<device::AxisCurves>& curves,
+                               std::vector<std::pair<double, double>> device::AxisCurves::*part) {
+  std::vector<PlotLine> lines;
+  for (const device::AxisCurves& one : curves) {
+    lines.push_back({"axis " + std::string(device::name_of(one.axis)), one.*part});
+  }
+  return lines;
+}
+
+/// Lines of one kind; without any, a picture without an id.
+/// \param more  of the plot's script, before the lines
+analysis::Picture lines_picture(const PlotWords& words, const std::vector<PlotLine>& lines,
+                                const std::string& more = "") {
   const analysis::Sheet sheet{16.0, 8.0, false};
   analysis::Margins margins;
   margins.left_cm = 1.7;
@@ -108,26 +126,28 @@ analysis::Picture lines_picture(const PlotWords& words,
   std::string plot;
   std::vector<analysis::LegendEntry> entries;
   std::size_t series = 0;
-  for (const device::AxisCurves& one : curves) {
-    if ((one.*part).empty()) continue;
+  for (const PlotLine& line : lines) {
+    if (line.points.empty()) continue;
     std::vector<std::vector<double>> rows;
-    for (const auto& [x, y] : one.*part) rows.push_back({x, y});
-    const std::string name(device::name_of(one.axis));
-    data += analysis::data_block("axis_" + name, rows);
-    plot += fmt::format("{}$axis_{} using 1:2 with lines lw 1.5 lc rgb '{}' notitle",
-                        series == 0 ? "plot " : ", ", name, analysis::series_colour(series));
+    for (const auto& [x, y] : line.points) rows.push_back({x, y});
+    const std::string block = fmt::format("line_{}", series);
+    data += analysis::data_block(block, rows);
+    plot += fmt::format("{}${} using 1:2 with lines lw 1.5 lc rgb '{}' notitle",
+                        series == 0 ? "plot " : ", ", block, analysis::series_colour(series));
     entries.push_back({analysis::LegendEntry::Kind::line,
-                       std::string(analysis::series_colour(series)), 7, "axis " + name});
+                       std::string(analysis::series_colour(series)), 7, line.name});
     ++series;
   }
   if (series == 0) return {};
+  constexpr double kLegendRowCm = 0.45;
+  margins.top_cm += kLegendRowCm * static_cast<double>((series - 1) / 3);
   const analysis::Legend legend(sheet, margins.left_cm, entries);
   analysis::Figure figure = analysis::figure_on(sheet, words.id, words.alt);
   figure.caption = words.caption;
   figure.script =
       data + analysis::sheet_head(sheet) + analysis::panel_at(sheet, margins) +
       fmt::format("set xlabel '{}' offset 0, 0.4\nset ylabel '{}'\n", words.x, words.y) +
-      legend.script() + plot + "\n";
+      legend.script() + more + plot + "\n";
   analysis::Picture picture{words.id, words.caption, words.alt, ""};
   try {
     picture.svg = analysis::drawn(figure, analysis::FigureFormat::svg);
@@ -141,14 +161,70 @@ void add_lines(analysis::Section& section, analysis::Picture picture) {
   if (!picture.id.empty()) section.blocks.emplace_back(std::move(picture));
 }
 
-analysis::Table spectrum_table(const device::SpectrumResult& spectrum, std::size_t number) {
-  analysis::Table table{
-      "spectrum-" + std::to_string(number),
-      "Acceleration at the stylus: " + spectrum.felt,
-      {{"band, Hz", analysis::Align::left}, {"root mean square, m/s²", analysis::Align::right}}};
-  for (const device::BandResult& band : spectrum.bands) {
-    table.rows.push_back({Cell(fmt::format("{:.0f} to {:.0f}", band.from_hz, band.to_hz)),
-                          Cell(fmt::format("{:.4f}", band.acceleration_m_s2))});
+/// The bands of several spectra side by side.
+analysis::Table bands_table(std::span<const device::SpectrumResult> spectra, std::size_t number) {
+  analysis::Table table{"bands-" + std::to_string(number),
+                        "Acceleration at the stylus by band, root mean square in m/s²",
+                        {{"band, Hz", analysis::Align::left}}};
+  std::size_t bands = 0;
+  for (const device::SpectrumResult& spectrum : spectra) {
+    table.columns.push_back({spectrum.felt, analysis::Align::right});
+    bands = std::max(bands, spectrum.bands.size());
+  }
+  for (std::size_t i = 0; i < bands; ++i) {
+    std::vector<Cell> row = {Cell("")};
+    for (const device::SpectrumResult& spectrum : spectra) {
+      const bool has_band = i < spectrum.bands.size();
+      if (has_band) {
+        const device::BandResult& band = spectrum.bands[i];
+        row.front() = Cell(fmt::format("{:.0f} to {:.0f}", band.from_hz, band.to_hz));
+      }
+      row.push_back(Cell(has_band ? fmt::format("{:.4f}", spectrum.bands[i].acceleration_m_s2)
+                                  : std::string("-")));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+/// The planes together: where the lines of textures lie above the blank plane's, they are felt.
+analysis::Picture spectra_picture(const std::vector<device::SpectrumResult>& spectra) {
+  constexpr std::size_t kMostLines = 6;  // as many as there are colours
+  std::vector<PlotLine> lines;
+  for (const device::SpectrumResult& spectrum : spectra) {
+    PlotLine line{spectrum.felt, {}};
+    for (const device::BandResult& band : spectrum.bands) {
+      // A logarithmic axis has no zero.
+      constexpr double kLeast = 1e-5;
+      line.points.emplace_back(std::sqrt(band.from_hz * band.to_hz),
+                               std::max(band.acceleration_m_s2, kLeast));
+    }
+    const bool is_silent = !(spectrum.all_m_s2() > 0.0);
+    if (lines.size() < kMostLines && !is_silent) lines.push_back(std::move(line));
+  }
+  return lines_picture({"spectra",
+                        "What the stylus gets: acceleration in thirds of an octave, all axes "
+                        "together. What a plane adds to the blank one is its texture.",
+                        "Acceleration over frequency, a line for each plane.", "frequency, Hz",
+                        "acceleration, m/s2"},
+                       lines, "set logscale xy\nset format y '10^{%T}'\n");
+}
+
+analysis::Table spectra_table(const std::vector<device::SpectrumResult>& spectra) {
+  analysis::Table table{"accelerations",
+                        "Acceleration at the stylus in all bands",
+                        {{"felt", analysis::Align::left},
+                         {"m/s²", analysis::Align::right},
+                         {"re the blank plane, dB", analysis::Align::right}}};
+  const auto blank = std::ranges::find(spectra, device::kBlankPlane, &device::SpectrumResult::felt);
+  for (const device::SpectrumResult& spectrum : spectra) {
+    const bool has_both =
+        blank != spectra.end() && blank->all_m_s2() > 0.0 && spectrum.all_m_s2() > 0.0;
+    table.rows.push_back(
+        {Cell(spectrum.felt), Cell(fmt::format("{:.4f}", spectrum.all_m_s2())),
+         Cell(has_both ? fmt::format("{:+.1f}",
+                                     20.0 * std::log10(spectrum.all_m_s2() / blank->all_m_s2()))
+                       : std::string("-"))});
   }
   return table;
 }
@@ -162,17 +238,22 @@ analysis::Section results_of(const device::Acceptance& acceptance) {
                                     "handle's place. Half the height of a loop is friction.",
                                     "Commanded force over place, a loop for each axis.",
                                     "place, mm", "force, N"},
-                                   acceptance.curves, &device::AxisCurves::loop));
+                                   lines_of(acceptance.curves, &device::AxisCurves::loop)));
   add_lines(section,
             lines_picture({"delay",
                            "How sharply the path bends at a time after the push turns "
                            "round. The highest point is the delay, where soft arms "
                            "keep the fit of mass and damping from telling it.",
                            "Bend over delay, a line for each axis.", "delay, ms", "bend, mm"},
-                          acceptance.curves, &device::AxisCurves::by_delay));
-  std::size_t number = 0;
-  for (const device::SpectrumResult& spectrum : acceptance.certificate.spectra) {
-    section.blocks.emplace_back(spectrum_table(spectrum, ++number));
+                          lines_of(acceptance.curves, &device::AxisCurves::by_delay)));
+  const std::vector<device::SpectrumResult>& spectra = acceptance.certificate.spectra;
+  if (!spectra.empty()) section.blocks.emplace_back(spectra_table(spectra));
+  add_lines(section, spectra_picture(spectra));
+  constexpr std::size_t kSideBySide = 7;
+  for (std::size_t at = 0; at < spectra.size(); at += kSideBySide) {
+    const std::span some =
+        std::span(spectra).subspan(at).first(std::min(kSideBySide, spectra.size() - at));
+    section.blocks.emplace_back(bands_table(some, 1 + at / kSideBySide));
   }
   return section;
 }

@@ -11,7 +11,6 @@
 #include "device/registry.hpp"
 #include "device/workspace_fit.hpp"
 #include "engine/image_file.hpp"
-#include "protocols/design/key_protection.hpp"
 #include "protocols/design/study.hpp"
 
 #include <algorithm>
@@ -226,14 +225,9 @@ void check_with_certificate(const fs::path& file, const design::Study& study, co
 /// How strong the stimuli are, if the study is prepared here with a key that anybody may read.
 std::optional<simulation::StimulusLevels> levels_here(const design::Study& study,
                                                       const fs::path& file) {
-  const design::PackPlace place = pack_place_for(file, {});
-  if (!is_there(place.key) || design::is_protected(place.key) ||
-      !is_there(place.pack / "pack.json")) {
-    return std::nullopt;
-  }
-  design::StudyKey key = design::rekeyed(design::load_study_key(place.key), study);
-  key.pack_folder = place.pack;
-  return levels_of_pack(key);
+  const std::optional<design::StudyKey> key = open_key_of(study, file);
+  if (!key) return std::nullopt;
+  return levels_of_pack(*key);
 }
 
 void print_levels(const design::Study& study,

@@ -1,23 +1,20 @@
 #include "app/sound/session_sound.hpp"
 
+#include "app/sound/port_audio.hpp"
 #include "core/errors.hpp"
 #include "core/random.hpp"
-#include "device/platform/dynamic_library.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <numbers>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <portaudio.h>
-#include <unistd.h>
 
 namespace touchtrial::app {
 namespace {
@@ -142,80 +139,6 @@ void SoundMixer::render(std::span<float> samples) noexcept {
 }
 
 namespace {
-
-/// Discards standard error while it lives: in search of outputs, ALSA and JACK write a line there
-/// for everything that a machine lacks.
-class QuietErrors {
- public:
-  QuietErrors() : kept_(::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0)) {
-    if (kept_ < 0) return;
-    std::fflush(stderr);
-    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (nowhere < 0) return;
-    ::dup2(nowhere, STDERR_FILENO);
-    ::close(nowhere);
-  }
-  ~QuietErrors() {
-    if (kept_ < 0) return;
-    ::dup2(kept_, STDERR_FILENO);
-    ::close(kept_);
-  }
-  QuietErrors(const QuietErrors&) = delete;
-  QuietErrors& operator=(const QuietErrors&) = delete;
-
- private:
-  int kept_;
-};
-
-/// PortAudio, which is loaded for the first sound, because no other command needs it (decision 47).
-class PortAudio {
- public:
-  PortAudio() { insist(initialize_(), "cannot be initialised"); }
-  ~PortAudio() {
-    const QuietErrors quiet;
-    terminate_();
-  }
-  PortAudio(const PortAudio&) = delete;
-  PortAudio& operator=(const PortAudio&) = delete;
-
-  [[nodiscard]] PaStream* opened(PaStreamCallback* callback, void* data, double rate_hz) const {
-    PaStream* stream = nullptr;
-    // One channel: the system sends it to both ears.
-    insist(open_(&stream, 0, 1, paFloat32, rate_hz, paFramesPerBufferUnspecified, callback, data),
-           "the output cannot be opened");
-    return stream;
-  }
-  void start(PaStream* stream) const {
-    const PaError started = start_(stream);
-    if (started != paNoError) close_(stream);
-    insist(started, "the output cannot be started");
-  }
-  void close(PaStream* stream) const noexcept { close_(stream); }
-  [[nodiscard]] bool is_active(PaStream* stream) const noexcept { return is_active_(stream) == 1; }
-
- private:
-  void insist(PaError error, const char* what) const {
-    if (error == paNoError) return;
-    throw DeviceError(
-        std::string("sound: ") + what + ": " + error_text_(error) +
-        "; connect headphones, and check whether another program uses the sound card");
-  }
-  template <typename Function>
-  [[nodiscard]] Function* named(const char* name) const {
-    return library_.function<Function>(name);
-  }
-
-  device::DynamicLibrary library_{"libportaudio.so.2", device::Unload::never,
-                                  "for sound install PortAudio (libportaudio2)"};
-  decltype(&Pa_Initialize) initialize_ = named<decltype(Pa_Initialize)>("Pa_Initialize");
-  decltype(&Pa_Terminate) terminate_ = named<decltype(Pa_Terminate)>("Pa_Terminate");
-  decltype(&Pa_GetErrorText) error_text_ = named<decltype(Pa_GetErrorText)>("Pa_GetErrorText");
-  decltype(&Pa_OpenDefaultStream) open_ =
-      named<decltype(Pa_OpenDefaultStream)>("Pa_OpenDefaultStream");
-  decltype(&Pa_StartStream) start_ = named<decltype(Pa_StartStream)>("Pa_StartStream");
-  decltype(&Pa_CloseStream) close_ = named<decltype(Pa_CloseStream)>("Pa_CloseStream");
-  decltype(&Pa_IsStreamActive) is_active_ = named<decltype(Pa_IsStreamActive)>("Pa_IsStreamActive");
-};
 
 int give_samples(const void* /*input*/, void* output, unsigned long frames,
                  const PaStreamCallbackTimeInfo* /*times*/, PaStreamCallbackFlags /*flags*/,

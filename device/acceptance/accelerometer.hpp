@@ -15,6 +15,23 @@ namespace touchtrial::device {
 struct AccelerometerRecord {
   double rate_hz = 0.0;
   std::vector<Vec3> acceleration_m_s2;
+  bool overdriven = false;  ///< samples lie at the end of the input's range
+};
+
+/// An accelerometer at the stylus that records while the device runs. Not thread-safe.
+class Accelerometer {
+ public:
+  virtual ~Accelerometer() = default;
+  Accelerometer() = default;
+  Accelerometer(const Accelerometer&) = delete;
+  Accelerometer& operator=(const Accelerometer&) = delete;
+
+  /// Forgets what was recorded, and begins anew.
+  /// \throws DeviceError with the remedy if it cannot record
+  virtual void start() = 0;
+  /// \return what was recorded since `start`
+  /// \throws DeviceError if it went away meanwhile
+  [[nodiscard]] virtual AccelerometerRecord stop() = 0;
 };
 
 /// Reads a CSV file with the header time_s,x_m_s2,y_m_s2,z_m_s2 and even times.

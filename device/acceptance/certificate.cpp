@@ -427,6 +427,12 @@ double Certificate::largest_scale() const {
   return largest > 0.0 ? largest : 1.0;
 }
 
+double SpectrumResult::all_m_s2() const {
+  double squares = 0.0;
+  for (const BandResult& band : bands) squares += band.acceleration_m_s2 * band.acceleration_m_s2;
+  return std::sqrt(squares);
+}
+
 std::optional<Measured> Certificate::mean_of(std::optional<Measured> AxisResult::*part) const {
   Measured sum;
   int n = 0;

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchtrial::device {
@@ -103,9 +104,14 @@ struct BandResult {
   double to_hz = 0.0;
   double acceleration_m_s2 = 0.0;  ///< root mean square
 };
+/// What SpectrumResult::felt calls the plane without a texture.
+inline constexpr std::string_view kBlankPlane = "the blank plane";
 struct SpectrumResult {
-  std::string felt;  ///< "wall", or a texture's label
+  std::string felt;  ///< kBlankPlane, "held still", or what a person names, as a texture's label
   std::vector<BandResult> bands;
+
+  /// \return the root mean square in all bands
+  [[nodiscard]] double all_m_s2() const;
 };
 
 /// What was not measured, and why.

@@ -20,6 +20,9 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
   [[nodiscard]] SafetyLimits limits() const override { return {}; }
   [[nodiscard]] ServoReport run(const std::string& name, Measurement& measurement) override;
 
+  /// Of the model's tip, each tick.
+  [[nodiscard]] Accelerometer* accelerometer() override { return &tip_; }
+
   [[nodiscard]] Consent ready(const Prompt& prompt) override;
   [[nodiscard]] std::optional<double> weight_n(DeviceAxis axis, double least_n,
                                                double most_n) override;
@@ -31,12 +34,26 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
   [[nodiscard]] const std::vector<std::string>& told() const noexcept { return told_; }
 
  private:
+  /// Differences of the tip's true velocity.
+  class TipAccelerometer final : public Accelerometer {
+   public:
+    void start() override;
+    [[nodiscard]] AccelerometerRecord stop() override;
+    void moved(Vec3 velocity_mm_s);
+
+   private:
+    AccelerometerRecord record_;
+    bool records_ = false;
+    Vec3 last_mm_s_;
+  };
+
   [[nodiscard]] DeviceDynamics::Outside hand(double time_s, Vec3 position_mm) const;
 
   /// A hand that lets go, from the run's beginning on.
   [[nodiscard]] DeviceDynamics::Outside letting_go(double time_s, Vec3 off_mm) const;
 
   ModelledDevice device_;
+  TipAccelerometer tip_;
   Vec3 middle_mm_;
   Stance stance_ = Stance::lying;
   DeviceAxis axis_ = DeviceAxis::y;
