@@ -328,7 +328,7 @@ void make_missing_runs(const PowerPreparation& prepared, const PowerArguments& a
   const auto feelings = feelings_for(prepared, prepared.subject, progress.plan, arguments.jobs,
                                      fields, progress_bar("feeling"));
   planning::RehearsalOptions options{.first_half_loss = progress.plan.first_half_loss};
-  if (progress.plan.effect > 0.0) options.effect = progress.plan.effect;
+  if (progress.plan.effect != 0.0) options.effect = progress.plan.effect;
   if (prepared.fitted) options.draws = prepared.fitted->draws;
   const planning::RehearsedStudy study(prepared.study, prepared.subject, prepared.test, *feelings,
                                        most, std::move(options));
@@ -359,8 +359,8 @@ int combine(const PowerArguments& arguments) {
 
 /// \throws UsageError if there would be no effect
 double require_effect(double effect) {
-  if (effect > 0.0) return effect;
-  throw UsageError(fmt::format("--effect: {:.4g} is no effect; give a share above 0", effect));
+  if (effect != 0.0) return effect;
+  throw UsageError("--effect: 0 is no effect; give another share");
 }
 
 int what_if(const PowerArguments& arguments, const PowerPreparation& prepared,
@@ -396,6 +396,11 @@ int power(PowerArguments arguments) {
   const planning::Shard shard =
       arguments.has_shard ? shard_named(arguments.shard) : planning::Shard{};
   const PowerPreparation prepared(arguments, design::load_study(arguments.study));
+  if (plan.effect != 0.0 && prepared.test.margin) {
+    throw UsageError(
+        "--effect: the study registers a margin, and then power is that for methods that are "
+        "alike; leave it out");
+  }
   plan.level = prepared.test.alpha;
   plan.margin = prepared.test.margin.value_or(0.0);
   if (!arguments.other.empty()) return what_if(arguments, prepared, plan);
@@ -501,6 +506,18 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
   }
 }
 
+/// Refuses a value that is empty, as an unset variable of a shell makes it: it would count as left
+/// out, and the numbers be those of another question.
+void refuse_empty_values(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    const auto& values = option->results();
+    const bool takes_value = option->get_items_expected_max() > 0;
+    if (takes_value && std::ranges::find(values, "") != values.end()) {
+      throw UsageError(option->get_name() + ": is empty; give a value, or leave the option out");
+    }
+  }
+}
+
 }  // namespace
 
 void add_power_command(CLI::App& program, Action& action) {
@@ -538,6 +555,7 @@ void add_power_command(CLI::App& program, Action& action) {
   for (CLI::Option* option : of_a_run) combine->excludes(option);
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] {
+    refuse_empty_values(*command);
     arguments->has_shard = shard->count() > 0;
     action = [=] { return power(*arguments); };
   });

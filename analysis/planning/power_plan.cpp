@@ -58,9 +58,9 @@ void settle(PowerPlan& plan) {
   require_range("--runs", plan.runs, 1, kMostPowerRuns);
   require_range("--explorations", plan.explorations, 1, kMostExplorations);
   require_range("--trainings", plan.trainings, 1, kMostTrainings);
-  if (!(plan.effect >= 0.0 && plan.effect <= 1.0)) {
-    throw UsageError(fmt::format("--effect: {:.4g} is out of range; give a share above 0, up to 1",
-                                 plan.effect));
+  if (!(plan.effect >= -1.0 && plan.effect <= 1.0)) {
+    throw UsageError(
+        fmt::format("--effect: {:.4g} is out of range; give a share from -1 to 1", plan.effect));
   }
   if (!(plan.first_half_loss >= 0.0 && plan.first_half_loss <= 1.0)) {
     throw UsageError(fmt::format("--first-half-loss: {} is out of range; give a share from 0 to 1",

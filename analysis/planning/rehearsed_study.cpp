@@ -32,7 +32,8 @@ std::vector<design::StimulusIndex> stimuli_of_method(const design::Study& study,
   return stimuli;
 }
 
-/// Refuses participants who explore until the time is up in a study that then takes no answer.
+}  // namespace
+
 void require_answers(const design::Study& study, const simulation::SubjectModel& subject) {
   const bool in_time = subject.explore_s < study.trials.explore_limit_s;
   if (in_time || study.trials.on_timeout != design::OnTimeout::no_response) return;
@@ -41,8 +42,6 @@ void require_answers(const design::Study& study, const simulation::SubjectModel&
       "it takes no answer (on_timeout \"no-response\"); nobody would ever answer: explore for less",
       subject.source, subject.explore_s, study.trials.explore_limit_s)));
 }
-
-}  // namespace
 
 BankedFeelings::BankedFeelings(const simulation::LabelledFields& fields, const design::Study& study,
                                const simulation::SubjectModel& subject,
@@ -110,7 +109,9 @@ RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::Sub
 
 void RehearsedStudy::set_margin() {
   constexpr int kPeople = 400;
-  const double accuracy = accuracy_of(kPeople, test_.first, Hypothesis::population);
+  constexpr int kTogether = 8;
+  const double accuracy = accuracy_of(kPeople, options_.draws.empty() ? kPeople : kTogether,
+                                      test_.first, Hypothesis::population);
   if (accuracy <= *test_.margin) {
     throw UsageError(fmt::format(
         "a margin of {:.4g} points is not less than the accuracy of methods that are alike "
@@ -121,7 +122,9 @@ void RehearsedStudy::set_margin() {
 }
 
 void RehearsedStudy::set_effect() {
-  const double none = estimand_of(Hypothesis::null);
+  // Methods that are felt at random do not differ.
+  const bool compares = test_.estimand == design::Estimand::difference;
+  const double none = compares ? 0.0 : estimand_of(Hypothesis::null);
   const double whole = estimand_of(Hypothesis::population);
   const double share = (*options_.effect - none) / (whole - none);
   if (!(share > 0.0 && share <= 1.0)) {
@@ -155,8 +158,9 @@ RehearsedStudy::PlannedSchedule RehearsedStudy::planned_visit(const design::Stud
   return planned;
 }
 
-double RehearsedStudy::accuracy_of(int people, int method, Hypothesis hypothesis) const {
-  const auto size = std::min(static_cast<int>(schedules_.size()) / visits_, people);
+double RehearsedStudy::accuracy_of(int people, int together, int method,
+                                   Hypothesis hypothesis) const {
+  const auto size = std::min(static_cast<int>(schedules_.size()) / visits_, together);
   analysis::Proportion right;
   for (int made = 0; made < people; made += size) {
     RandomStream seeds(0, "power: methods alike", static_cast<std::uint64_t>(made));
@@ -170,10 +174,11 @@ double RehearsedStudy::accuracy_of(int people, int method, Hypothesis hypothesis
 }
 
 double RehearsedStudy::estimand_of(Hypothesis hypothesis) const {
-  constexpr int kPeople = 4000;
-  const double first = accuracy_of(kPeople, test_.first, hypothesis);
+  constexpr int kPeople = 16'000;
+  constexpr int kTogether = 8;
+  const double first = accuracy_of(kPeople, kTogether, test_.first, hypothesis);
   if (test_.estimand == design::Estimand::mean_accuracy) return first;
-  return first - accuracy_of(kPeople, test_.second, hypothesis);
+  return first - accuracy_of(kPeople, kTogether, test_.second, hypothesis);
 }
 
 double RehearsedStudy::loss_of(const PlannedSchedule& planned, int place, int method,

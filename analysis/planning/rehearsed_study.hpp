@@ -91,6 +91,10 @@ class ServoFeelings final : public Feelings {
   const simulation::SubjectModel& subject_;
 };
 
+/// Refuses people who explore until the time is up in a study that then takes no answer.
+/// \throws StudyError naming the subject's file
+void require_answers(const design::Study& study, const simulation::SubjectModel& subject);
+
 struct RehearsalOptions {
   /// Share of right answers that people miss in the first half of their scored trials, as an effect
   /// of learning: 0 .. 1.
@@ -155,7 +159,9 @@ class RehearsedStudy final : public Rehearsal {
   [[nodiscard]] double loss_of(const PlannedSchedule& planned, int place, int method,
                                Hypothesis hypothesis) const;
   /// The accuracy of people with a method.
-  [[nodiscard]] double accuracy_of(int people, int method, Hypothesis hypothesis) const;
+  /// \param together  people of one study, and so of one draw and training
+  [[nodiscard]] double accuracy_of(int people, int together, int method,
+                                   Hypothesis hypothesis) const;
   /// The test's estimand, among many people.
   [[nodiscard]] double estimand_of(Hypothesis hypothesis) const;
   void set_margin();

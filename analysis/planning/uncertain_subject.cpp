@@ -25,6 +25,15 @@ constexpr std::size_t kMostDraws = 100'000;
                            "print it anew"));
 }
 
+/// Parses without going deeper than a fit is: what is done with values goes down with them.
+Json parsed_fit(std::string_view text, const std::string& file) {
+  constexpr int kDeepest = 24;
+  return Json::parse(text, [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepest) refuse_fit(file);
+    return true;
+  });
+}
+
 /// A draw's subject: the fitted one, but for the draw's own keys.
 simulation::SubjectModel drawn_subject(Json fitted, const Json& draw, const std::string& source) {
   for (const std::string_view key : kDrawnKeys) fitted[std::string(key)] = draw.at(key);
@@ -40,6 +49,11 @@ UncertainSubject uncertain_subject_of(const Json& fit, const std::string& file) 
   UncertainSubject uncertain;
   uncertain.subject = simulation::parse_subject_model(fitted.dump(), file + ": /fitted");
   uncertain.subject.device = device;
+  // Missing keys have defaults in a subject file, but no fit lacks one.
+  const Json whole = Json::parse(simulation::subject_model_json(uncertain.subject));
+  for (const auto& [key, value] : whole.items()) {
+    if (!fitted.contains(key)) refuse_fit(file);
+  }
   const Json& draws = fit.at("draws");
   if (!draws.is_array() || draws.size() > kMostDraws) refuse_fit(file);
   for (std::size_t i = 0; i < draws.size(); ++i) {
@@ -57,7 +71,7 @@ UncertainSubject load_uncertain_subject(const std::filesystem::path& file) {
   const std::string name = one_line(file.string());
   UncertainSubject uncertain;
   try {
-    const Json fit = Json::parse(text_of(content));
+    const Json fit = parsed_fit(text_of(content), name);
     if (fit.is_object() && fit.contains("accuracies")) {
       throw FileError(name +
                       ": has no draws, because published accuracies have none; fit a "
@@ -69,8 +83,8 @@ UncertainSubject load_uncertain_subject(const std::filesystem::path& file) {
   }
   if (uncertain.draws.empty()) {
     throw FileError(name +
-                    ": has no draws, because it was made with --bootstraps 0; fit again "
-                    "with --bootstraps 499");
+                    ": has no draws, as a fit with --bootstraps 0; fit again with --bootstraps "
+                    "499");
   }
   return uncertain;
 }

@@ -35,15 +35,19 @@ constexpr std::array<std::string_view, 12> kAnswerKeys{"threshold_spread_db",
                                                        "period_noise_spread",
                                                        "serial",
                                                        "fatigue"};
-/// Rows of their own have the first two; the third has no effect on answers.
-constexpr std::array<std::string_view, 3> kNotByKey{"sense", "hand", "thought"};
+/// The first has rows of its own, the second no effect on answers.
+constexpr std::array<std::string_view, 2> kNotByKey{"sense", "thought"};
+/// Keys that only go together.
+constexpr std::array<std::string_view, 2> kSpeeds{"slowest_mm_s", "fastest_mm_s"};
 
 Json json_of(const simulation::SubjectModel& subject) {
   return Json::parse(simulation::subject_model_json(subject));
 }
 
-simulation::SubjectModel subject_of(const Json& json, const simulation::SubjectModel& base) {
-  simulation::SubjectModel subject = simulation::parse_subject_model(json.dump(), base.source);
+/// \param source  where the change comes from
+simulation::SubjectModel subject_of(const Json& json, const simulation::SubjectModel& base,
+                                    const std::string& source) {
+  simulation::SubjectModel subject = simulation::parse_subject_model(json.dump(), source);
   subject.device = base.device;
   return subject;
 }
@@ -71,6 +75,11 @@ std::string device_name(const simulation::SubjectModel& subject) {
   return subject.device.name.empty() ? "ideal" : subject.device.name;
 }
 
+std::string words_of_speeds(const Json& subject) {
+  return fmt::format("{} to {} mm/s", subject.at("slowest_mm_s").dump(),
+                     subject.at("fastest_mm_s").dump());
+}
+
 void add_senses(const simulation::SubjectModel& base, std::vector<Assumption>& all) {
   using Sense = std::optional<engine::ThresholdCurve>;
   for (const Sense& sense : {Sense{}, Sense{engine::ThresholdCurve::israr_2006},
@@ -96,7 +105,10 @@ void add_hands(const simulation::SubjectModel& base, std::vector<Assumption>& al
 
 void add_devices(const simulation::SubjectModel& base, std::vector<Assumption>& all) {
   for (const device::DeviceModel& model : device::shipped_device_models()) {
-    if (model.name == device_name(base)) continue;
+    const bool is_same = base.device.name.empty() ? model.name == device_name(base)
+                                                  : device::device_model_json(model) ==
+                                                        device::device_model_json(base.device);
+    if (is_same) continue;
     Assumption one{"device", device_name(base), model.name, base};
     one.subject.device = model;
     all.push_back(std::move(one));
@@ -107,15 +119,31 @@ void add_keys(const simulation::SubjectModel& base, const simulation::SubjectMod
               std::vector<Assumption>& all) {
   const Json from = json_of(base);
   const Json to = json_of(other);
+  bool matters = from.at("sense") != to.at("sense");
+  bool has_speeds = false;
   for (const auto& [key, value] : to.items()) {
     const bool is_left_out = std::ranges::find(kNotByKey, key) != kNotByKey.end();
+    const bool is_speed = std::ranges::find(kSpeeds, key) != kSpeeds.end();
     if (is_left_out || from.at(key) == value) continue;
+    matters = true;
     Json changed = from;
     changed[key] = value;
-    auto [words_from, words_to] = words_of_change(from.at(key), value);
-    all.push_back({key, std::move(words_from), std::move(words_to), subject_of(changed, base)});
+    // The other model of a hand has a row already.
+    if (key == "hand") changed[key]["model"] = from.at(key).at("model");
+    if (changed == from || (is_speed && has_speeds)) continue;
+    auto [words_from, words_to] = words_of_change(from.at(key), changed.at(key));
+    if (is_speed) {
+      has_speeds = true;
+      for (const std::string_view speed : kSpeeds) {
+        changed[std::string(speed)] = to.at(std::string(speed));
+      }
+      words_from = words_of_speeds(from);
+      words_to = words_of_speeds(to);
+    }
+    all.push_back({is_speed ? "speeds" : key, std::move(words_from), std::move(words_to),
+                   subject_of(changed, base, other.source)});
   }
-  if (from == to) return;
+  if (!matters) return;
   Assumption whole{"all of the other subject", "", other.source, other};
   whole.subject.device = base.device;
   all.push_back(std::move(whole));
@@ -179,6 +207,7 @@ WhatIf what_if(const design::Study& study, const PrimaryTest& test,
                const simulation::SubjectModel& base, const std::vector<Assumption>& assumptions,
                const PowerPlan& plan, PowerSetting setting, const MakeFeelings& feelings, int jobs,
                const std::function<void(int done, int of)>& progress) {
+  for (const Assumption& one : assumptions) require_answers(study, one.subject);
   const auto of = static_cast<int>(assumptions.size()) + 1;
   int done = 0;
   const auto tell = [&] {
@@ -258,6 +287,18 @@ std::string what_if_text(const WhatIf& result) {
                       "the error of the {} explorations and {} trainings.",
                       result.plan.runs, result.plan.seed, result.plan.explorations,
                       result.plan.trainings));
+  if (result.plan.first_half_loss > 0.0) {
+    text += analysis::wrapped(
+        "", fmt::format("In the first half of their trials, people miss {:.4g} % of their right "
+                        "answers.",
+                        100.0 * result.plan.first_half_loss));
+  }
+  if (result.plan.margin > 0.0) {
+    text += analysis::wrapped(
+        "",
+        "Power is that for methods that feel alike: each presentation is felt as one of the "
+        "two at random.");
+  }
   return text + kStamp + "\n";
 }
 
@@ -277,6 +318,7 @@ std::string what_if_json(const WhatIf& result) {
                     {"seed", result.plan.seed},
                     {"explorations", result.plan.explorations},
                     {"trainings", result.plan.trainings},
+                    {"margin", result.plan.margin},
                     {"first_half_loss", result.plan.first_half_loss}};
   object["base"] = row_json(result.base);
   object["assumptions"] = Json::array();

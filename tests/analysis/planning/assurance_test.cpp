@@ -117,6 +117,10 @@ TEST_CASE("what is not a fit with draws is refused in one line that names the fi
   };
   const std::string whole = planning::fit_json(fit_with_draws(hasty_subject()), {});
   refuse(whole.substr(0, whole.size() / 2), "truncated");
+  refuse(std::string(R"({"fitted":)") + std::string(200'000, '[') + std::string(200'000, ']') +
+             R"(,"device":null,"draws":[]})",
+         "is not what");
+  refuse(R"({"fitted": {}, "device": null, "draws": [{}]})", "is not what");
   refuse("[1, 2]", "is not what `touchtrial fit DB --json` prints");
   refuse(R"({"accuracies": []})", "published accuracies have none");
   planning::SubjectFit without = fit_with_draws(hasty_subject());
@@ -186,6 +190,37 @@ TEST_CASE("every assumption is changed alone, and only what is felt asks for fee
       CHECK(one.from == "position 0.3");
       CHECK(one.to == "position 1.0");
     }
+  }
+}
+
+TEST_CASE("keys that belong together are changed together, and a hand's spread without its model") {
+  const simulation::SubjectModel base = hasty_subject();
+  simulation::SubjectModel other = base;
+  other.source = "other.json";
+  other.slowest_mm_s = 200.0;
+  other.fastest_mm_s = 300.0;
+  other.hand_spread = 0.5;
+  int speeds = 0;
+  int hands = 0;
+  for (const planning::Assumption& one : planning::assumptions_about(base, other)) {
+    if (one.name == "speeds") {
+      ++speeds;
+      CHECK(one.subject.slowest_mm_s == 200.0);
+      CHECK(one.subject.fastest_mm_s == 300.0);
+      CHECK(one.subject.hand_spread == base.hand_spread);
+      CHECK(one.subject.source == "other.json");
+    }
+    if (one.name == "hand" && one.subject.hand == base.hand) {
+      ++hands;
+      CHECK(one.subject.hand_spread == 0.5);
+    }
+  }
+  CHECK(speeds == 1);
+  CHECK(hands == 1);
+  simulation::SubjectModel thinks = base;
+  thinks.thought.emplace();
+  for (const planning::Assumption& one : planning::assumptions_about(base, thinks)) {
+    CHECK(one.name != "all of the other subject");
   }
 }
 
