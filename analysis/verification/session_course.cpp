@@ -11,10 +11,12 @@ namespace touchtrial::analysis {
 
 SessionCourse::SessionCourse(const design::Study& study, const design::ScheduleDraw& draw)
     : study_(study),
-      course_(design::make_schedule(study, draw), study.trials.on_interruption,
-              [&study, draw](int block, int restarts_before, int first_trial) {
-                return design::restarted_block(study, draw, block, restarts_before, first_trial);
-              }) {}
+      course_(
+          design::make_schedule(study, draw), study.trials.on_interruption,
+          [&study, draw](int block, int restarts_before, int first_trial) {
+            return design::restarted_block(study, draw, block, restarts_before, first_trial);
+          },
+          design::adaptive_order(study, draw)) {}
 
 void SessionCourse::fail(const store::Event& event, const std::string& why) const {
   throw VerificationError(
@@ -99,13 +101,37 @@ void SessionCourse::follow_trial(const store::Event& event) {
                                       study_.trials.on_timeout == design::OnTimeout::no_response;
   if (event.kind == store::EventKind::interrupted) {
     course_.spoil();
-  } else if (event.kind == store::EventKind::answered || is_over_without_answer) {
-    course_.finish();
+  } else if (event.kind == store::EventKind::answered) {
+    answer(event);
+  } else if (is_over_without_answer) {
+    course_.finish(std::nullopt);
   } else {
     return;
   }
   is_under_way_ = false;
   is_spoilt_ = false;
+}
+
+void SessionCourse::answer(const store::Event& event) {
+  const store::AnswerBody body = store::answer_from_json(event.body);
+  const std::optional<design::ChosenLevel>& due = course_.current()->chosen;
+  std::optional<design::ChosenLevel> shown;
+  if (body.track && body.level && body.target) shown = {*body.track, *body.level, *body.target};
+  if (shown != due) {
+    const auto words = [](const std::optional<design::ChosenLevel>& chosen) {
+      return chosen ? fmt::format("track {}, level {}, target {}", chosen->track, chosen->level,
+                                  chosen->target)
+                    : std::string("no level");
+    };
+    fail(event, body.trial,
+         fmt::format("presented {} where the procedure chooses {}", words(shown), words(due)));
+  }
+  if (body.position &&
+      (*body.position < 0 || *body.position >= std::ssize(course_.schedule().layout))) {
+    fail(event, body.trial,
+         fmt::format("answered at position {}, which there is not", *body.position));
+  }
+  course_.finish(body.position);
 }
 
 void SessionCourse::restart_block(const store::Event& event) {

@@ -33,6 +33,7 @@ class SessionCourse {
   [[noreturn]] void fail(const store::Event& event, int trial, const std::string& why) const;
   void follow_trial(const store::Event& event);
   void present(const store::Event& event);
+  void answer(const store::Event& event);
   void require_under_way(const store::Event& event, int trial) const;
   void restart_block(const store::Event& event);
   void take_up(const store::Event& event);

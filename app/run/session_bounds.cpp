@@ -112,7 +112,8 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study, Run
       {}, store::keep_participant_key(study.key.station.secret, entered.number, key));
   entered.session = std::make_unique<session::Session>(
       schedule, study.key.study.trials, store::SessionRecorder(entered.number, key, *entered.sink),
-      block_restart_of(study.key, entered.draw));
+      block_restart_of(study.key, entered.draw),
+      design::adaptive_order(study.key.study, entered.draw));
   store::SessionOpening opening;
   opening.participant = options.participant;
   opening.enrolment = enrolment;
@@ -239,10 +240,11 @@ std::string standing(const store::StudyStore& store, const store::SessionRow& ro
 
 session::Session restored(const RunOptions& options, const RunStudy& study, const KeptSession& kept,
                           const store::SessionRow& row, store::EventSink& sink) {
+  const design::ScheduleDraw draw = study.key.draw_of(row.enrolment, draws_of(options), row.visit);
   session::Session session(
       design::schedule_from_json(kept.schedule, study.key), study.key.study.trials,
-      store::SessionRecorder(row.session, kept.key, sink),
-      block_restart_of(study.key, study.key.draw_of(row.enrolment, draws_of(options), row.visit)));
+      store::SessionRecorder(row.session, kept.key, sink), block_restart_of(study.key, draw),
+      design::adaptive_order(study.key.study, draw));
   session.restore(kept.events);
   return session;
 }

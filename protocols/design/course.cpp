@@ -7,23 +7,37 @@
 
 namespace touchtrial::design {
 
-Course::Course(Schedule schedule, OnInterruption policy, DrawBlock draw)
+Course::Course(Schedule schedule, OnInterruption policy, DrawBlock draw,
+               std::unique_ptr<AdaptiveOrder> order)
     : schedule_(std::move(schedule)),
       policy_(policy),
       draw_(std::move(draw)),
+      order_(std::move(order)),
       queue_(schedule_.presentations.size()) {
   if (policy == OnInterruption::restart_block && !draw_) {
     throw std::invalid_argument("Course: a study that restarts blocks needs to draw them");
   }
+  if (policy == OnInterruption::restart_block && order_) {
+    throw std::invalid_argument("Course: blocks that an order chooses cannot be restarted");
+  }
   std::iota(queue_.begin(), queue_.end(), std::size_t{0});
+  choose();
+}
+
+void Course::choose() {
+  if (order_ && !queue_.empty()) order_->choose(schedule_.presentations[queue_.front()]);
 }
 
 const Presentation* Course::current() const noexcept {
   return queue_.empty() ? nullptr : &schedule_.presentations[queue_.front()];
 }
 
-void Course::finish() {
+void Course::finish(std::optional<int> position) {
+  if (order_ && position) {
+    order_->answer(schedule_.layout[static_cast<std::size_t>(*position)]);
+  }
   queue_.pop_front();
+  choose();
 }
 
 void Course::spoil() {
@@ -32,9 +46,11 @@ void Course::spoil() {
     case OnInterruption::repeat:
       queue_.pop_front();
       queue_.push_back(spoilt);
+      choose();
       return;
     case OnInterruption::leave_out:
       queue_.pop_front();
+      choose();
       return;
     case OnInterruption::restart_block:
       to_restart_ = schedule_.presentations[spoilt].block;

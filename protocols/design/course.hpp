@@ -3,6 +3,7 @@
 /// events.
 #pragma once
 
+#include "protocols/design/adaptive_order.hpp"
 #include "protocols/design/schedule.hpp"
 #include "protocols/design/study.hpp"
 
@@ -10,6 +11,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -33,8 +35,12 @@ class Course {
 
   /// \param policy  what follows an interrupted presentation
   /// \param draw  needed only if the policy restarts blocks
-  /// \throws std::invalid_argument if `draw` is needed and missing
-  Course(Schedule schedule, OnInterruption policy, DrawBlock draw = {});
+  /// \param order  chooses each presentation when it becomes the current one; null: the schedule
+  ///   says all
+  /// \throws std::invalid_argument if `draw` is needed and missing, or the policy restarts blocks
+  ///   whose presentations an order chooses
+  Course(Schedule schedule, OnInterruption policy, DrawBlock draw = {},
+         std::unique_ptr<AdaptiveOrder> order = nullptr);
 
   /// The schedule with which the session began, followed by the restarted blocks.
   [[nodiscard]] const Schedule& schedule() const noexcept { return schedule_; }
@@ -45,8 +51,10 @@ class Course {
   [[nodiscard]] bool is_over() const noexcept { return queue_.empty(); }
 
   /// Marks the current presentation as done.
-  /// \pre there is a current presentation
-  void finish();
+  /// \param position  of the answer, in the schedule's layout; nothing: it ended without one, and
+  ///   an adaptive order hears nothing of it
+  /// \pre there is a current presentation; the layout has the position
+  void finish(std::optional<int> position);
   /// Marks the current presentation as interrupted. Depending on the policy, it is repeated at the
   /// end, is left out, or waits for its block's restart.
   /// \pre there is a current presentation
@@ -65,9 +73,13 @@ class Course {
   [[nodiscard]] bool has(int trial) const;
 
  private:
+  /// Lets the order choose the current presentation.
+  void choose();
+
   Schedule schedule_;
   OnInterruption policy_;
   DrawBlock draw_;
+  std::unique_ptr<AdaptiveOrder> order_;
   std::deque<std::size_t> queue_;    ///< indices into the schedule, current one first
   std::map<int, int> restarts_;      ///< number of restarts, by block
   std::map<int, int> first_trials_;  ///< first trial of the last restart, by block

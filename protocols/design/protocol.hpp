@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/strict_json.hpp"
+#include "protocols/design/adaptive_order.hpp"
 #include "protocols/design/schedule.hpp"
 
 #include <memory>
@@ -65,6 +66,14 @@ class Protocol {
                                                                   const ScheduleDraw& draw,
                                                                   int block, int restarts_before,
                                                                   int first_trial) const;
+
+  /// The order of a participant whose answers decide what comes next. The schedule then has a place
+  /// for each presentation, and the order fills them one by one; blocks cannot be restarted.
+  /// \return null: the schedule says all
+  [[nodiscard]] virtual std::unique_ptr<AdaptiveOrder> adaptive_order(
+      const Study& /*study*/, const ScheduleDraw& /*draw*/) const {
+    return nullptr;
+  }
 
   /// The alternatives that a participant chooses between, at least two. An answer is an index into
   /// them.

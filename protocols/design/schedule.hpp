@@ -3,6 +3,7 @@
 
 #include "core/cipher.hpp"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,11 +24,22 @@ struct StimulusIndex {
 /// A catch trial presents a plane without texture; its `stimulus` has no meaning.
 enum class PresentationKind { scored, lead_in, catch_trial };
 
+/// What an adaptive order chose for a presentation.
+struct ChosenLevel {
+  int track = 0;   ///< from 1; 0: a catch trial, which belongs to no track
+  int level = 0;   ///< index into the track's levels
+  int target = 0;  ///< index of the right choice
+
+  friend bool operator==(const ChosenLevel&, const ChosenLevel&) = default;
+};
+
 struct Presentation {
   int trial = 0;  ///< from 1
   int block = 0;  ///< from 0
   PresentationKind kind = PresentationKind::scored;
   StimulusIndex stimulus;
+  /// Nothing: the schedule says what is presented, or the order has not chosen yet.
+  std::optional<ChosenLevel> chosen{};
 
   friend bool operator==(const Presentation&, const Presentation&) = default;
 };
@@ -63,6 +75,12 @@ struct ScheduleDraw {
 [[nodiscard]] std::vector<Presentation> restarted_block(const Study& study,
                                                         const ScheduleDraw& draw, int block,
                                                         int restarts_before, int first_trial);
+
+class AdaptiveOrder;
+/// The order of one participant whose answers decide what comes next.
+/// \return null: the schedule says all
+[[nodiscard]] std::unique_ptr<AdaptiveOrder> adaptive_order(const Study& study,
+                                                            const ScheduleDraw& draw);
 
 /// The name and version of the rule that makes schedules; the seal commits to it.
 [[nodiscard]] std::string schedule_rule(const Study& study);

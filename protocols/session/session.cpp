@@ -71,8 +71,10 @@ std::string_view name_of(SessionInput input) {
 }
 
 Session::Session(design::Schedule schedule, const design::TrialOptions& options,
-                 store::SessionRecorder recorder, BlockDrawing blocks)
-    : course_(std::move(schedule), options.on_interruption, std::move(blocks.draw)),
+                 store::SessionRecorder recorder, BlockDrawing blocks,
+                 std::unique_ptr<design::AdaptiveOrder> order)
+    : course_(std::move(schedule), options.on_interruption, std::move(blocks.draw),
+              std::move(order)),
       options_(options),
       recorder_(std::move(recorder)),
       secret_of_block_(std::move(blocks.secret)) {
@@ -208,7 +210,7 @@ void Session::time_out(Time at) {
   recorder_.timed_out(at, current()->trial, over ? evidence_ : std::nullopt);
   was_timed_out_ = true;
   if (over) {
-    finish_presentation(at);
+    finish_presentation(at, std::nullopt);
   } else {
     move_to(Phase::answering, at);
   }
@@ -248,10 +250,15 @@ void Session::choose(int position) {
 
 void Session::confirm(Time at, std::optional<int> confidence) {
   require(Input::confirm, at);
-  recorder_.answered(at, {current()->trial, answer_->position, answer_->first_position, confidence},
-                     evidence_);
+  store::AnswerBody body{current()->trial, answer_->position, answer_->first_position, confidence};
+  if (const auto& chosen = current()->chosen) {
+    body.track = chosen->track;
+    body.level = chosen->level;
+    body.target = chosen->target;
+  }
+  recorder_.answered(at, body, evidence_);
   note_answer(at, answer_->position);
-  finish_presentation(at);
+  finish_presentation(at, answer_->position);
 }
 
 void Session::note_evidence(const store::TraceBody& body) {
@@ -267,9 +274,9 @@ void Session::note_force(double largest_n) {
   largest_force_n_ = std::max(largest_force_n_.value_or(0.0), largest_n);
 }
 
-void Session::finish_presentation(Time at) {
+void Session::finish_presentation(Time at, std::optional<int> position) {
   if (evidence_) note_evidence(evidence_->body);
-  course_.finish();
+  course_.finish(position);
   evidence_.reset();
   ++done_since_break_;
   move_to(between_trials(), at);

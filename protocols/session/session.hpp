@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -90,8 +91,10 @@ class Session {
   using Time = std::chrono::nanoseconds;
 
   /// \param blocks  needed only if the study restarts blocks
+  /// \param order  needed only if the protocol has one: design::adaptive_order
   Session(design::Schedule schedule, const design::TrialOptions& options,
-          store::SessionRecorder recorder, BlockDrawing blocks = {});
+          store::SessionRecorder recorder, BlockDrawing blocks = {},
+          std::unique_ptr<design::AdaptiveOrder> order = nullptr);
 
   /// Brings a fresh session to the state that its stored events left; the recorder continues after
   /// the last one. Records nothing.
@@ -198,7 +201,8 @@ class Session {
   [[nodiscard]] bool is_under_way() const noexcept;
   void move_to(SessionPhase phase, Time at) noexcept;
   void begin_presentation(Time at) noexcept;
-  void finish_presentation(Time at);
+  /// \param position  of the answer, if there is one
+  void finish_presentation(Time at, std::optional<int> position);
   void note_answer(Time at, int position);
   void note_evidence(const store::TraceBody& body);
   void note_force(double largest_n);

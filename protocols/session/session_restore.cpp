@@ -66,7 +66,7 @@ bool Session::follow_trial(const store::Event& event) {
       require_current();
       was_timed_out_ = true;
       if (options_.on_timeout == design::OnTimeout::no_response) {
-        finish_presentation(event.at);
+        finish_presentation(event.at, std::nullopt);
       } else {
         phase_ = Phase::answering;
       }
@@ -75,8 +75,11 @@ bool Session::follow_trial(const store::Event& event) {
       require_current();
       const std::optional<int> position = store::answer_from_json(event.body).position;
       if (!position) refuse(event, "is not opened");
+      if (*position < 0 || *position >= static_cast<int>(layout().size())) {
+        refuse(event, "answers at a position that there is not");
+      }
       note_answer(event.at, *position);
-      finish_presentation(event.at);
+      finish_presentation(event.at, *position);
       return true;
     }
     case store::EventKind::interrupted:

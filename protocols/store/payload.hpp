@@ -174,6 +174,12 @@ struct AnswerBody {
   std::optional<int> position;
   std::optional<int> first_position;  ///< the answer before a change, if it was changed
   std::optional<int> confidence;
+  /// \name What an adaptive order chose (design::ChosenLevel); sealed like all of an answer
+  ///@{
+  std::optional<int> track{};
+  std::optional<int> level{};
+  std::optional<int> target{};
+  ///@}
 };
 
 /// `practised`: one presentation of a practice round, of a texture that is not in the study.

@@ -108,6 +108,9 @@ void members(Io& io, In<Io, AnswerBody>& body) {
   io("position", body.position);
   io("first_position", body.first_position);
   io("confidence", body.confidence);
+  io("track", body.track);
+  io("level", body.level);
+  io("target", body.target);
 }
 
 template <typename Io>

@@ -29,9 +29,10 @@ std::vector<Presentation> drawn(int block, int restarts_before, int first_trial)
   return again;
 }
 
-std::vector<int> rest_of(design::Course course) {
+/// Finishes the course.
+std::vector<int> rest_of(design::Course& course) {
   std::vector<int> trials;
-  for (; !course.is_over(); course.finish()) trials.push_back(course.current()->trial);
+  for (; !course.is_over(); course.finish({})) trials.push_back(course.current()->trial);
   return trials;
 }
 
@@ -39,40 +40,43 @@ TEST_CASE("a course presents its schedule in order, and is over after it") {
   design::Course course(two_blocks(), OnInterruption::repeat);
   CHECK(course.left() == 4);
   CHECK(rest_of(course) == std::vector<int>{1, 2, 3, 4});
-  for (int i = 0; i < 4; ++i) course.finish();
   CHECK(course.is_over());
   CHECK(course.current() == nullptr);
 }
 
 TEST_CASE("an interrupted presentation is repeated at the end, or left out, as the policy says") {
   design::Course repeated(two_blocks(), OnInterruption::repeat);
-  repeated.finish();
+  repeated.finish({});
   repeated.spoil();
   CHECK(rest_of(repeated) == std::vector<int>{3, 4, 2});
   design::Course left_out(two_blocks(), OnInterruption::leave_out);
-  left_out.finish();
+  left_out.finish({});
   left_out.spoil();
   CHECK(rest_of(left_out) == std::vector<int>{3, 4});
 }
 
 TEST_CASE("an interrupted block is restarted under new numbers before all else") {
-  design::Course course(two_blocks(), OnInterruption::restart_block, drawn);
-  course.finish();
-  course.spoil();
-  REQUIRE(course.block_to_restart() == 0);
-  design::BlockRestart again = course.drawn_again(0);
-  CHECK(again.first_trial() == 5);
-  course.restart(again);
-  CHECK_FALSE(course.block_to_restart());
-  CHECK(rest_of(course) == std::vector<int>{5, 6, 3, 4});
+  const auto restarted = [] {
+    design::Course course(two_blocks(), OnInterruption::restart_block, drawn);
+    course.finish({});
+    course.spoil();
+    REQUIRE(course.block_to_restart() == 0);
+    const design::BlockRestart again = course.drawn_again(0);
+    CHECK(again.first_trial() == 5);
+    course.restart(again);
+    CHECK_FALSE(course.block_to_restart());
+    return course;
+  };
+  design::Course once = restarted();
+  CHECK(rest_of(once) == std::vector<int>{5, 6, 3, 4});
+  design::Course course = restarted();
   CHECK(course.was_given_up(2));
   CHECK_FALSE(course.was_given_up(3));
   CHECK_FALSE(course.was_given_up(5));
   CHECK(course.has(6));
   CHECK_FALSE(course.has(7));
   course.spoil();
-  again = course.drawn_again(0);
-  course.restart(again);
+  course.restart(course.drawn_again(0));
   CHECK(rest_of(course) == std::vector<int>{7, 8, 9, 3, 4});
   CHECK(course.was_given_up(6));
   CHECK(course.schedule().presentations.size() == 9);

@@ -1,0 +1,26 @@
+/// \file Orders in which the answers so far decide what comes next. Source: docs/procedures.md.
+#pragma once
+
+#include "protocols/design/schedule.hpp"
+
+namespace touchtrial::design {
+
+/// A state machine that a protocol makes for each participant: what it chooses is a function of the
+/// participant's draw and of the answers that it was told, and so a session that is taken up again,
+/// and the check of its record, choose the same. Not thread-safe.
+class AdaptiveOrder {
+ public:
+  virtual ~AdaptiveOrder() = default;
+  AdaptiveOrder() = default;
+  AdaptiveOrder(const AdaptiveOrder&) = delete;
+  AdaptiveOrder& operator=(const AdaptiveOrder&) = delete;
+
+  /// Chooses what comes next: the same until the next answer.
+  /// \param presentation  its trial and block stay; `stimulus`, `kind` and `chosen` are set
+  virtual void choose(Presentation& presentation) const = 0;
+  /// The answer to what was chosen last.
+  /// \param choice  index into the protocol's choices
+  virtual void answer(int choice) = 0;
+};
+
+}  // namespace touchtrial::design
