@@ -86,10 +86,18 @@ TrialOutcome outcome_of(const store::TrialRow& row, const SessionOutcome& sessio
   trial.row = row;
   trial.stimulus = presentation.stimulus;
   trial.kind = presentation.kind;
-  trial.scored = presentation.kind == design::PresentationKind::scored;
+  if (row.track && row.level && row.target) {
+    trial.chosen = {*row.track, *row.level, *row.target};
+    trial.stimulus = study.protocol->stimulus_of(study, *trial.chosen);
+    const bool in_track = trial.kind == design::PresentationKind::scored;
+    if (in_track && *row.track == 0) trial.kind = design::PresentationKind::catch_trial;
+  }
+  trial.scored = trial.kind == design::PresentationKind::scored;
   trial.counted = session.counted && trial.scored && ended;
   trial.response = response_of(row, schedule);
-  if (trial.kind != design::PresentationKind::catch_trial) {
+  if (trial.chosen) {
+    trial.right = trial.chosen->target;
+  } else if (trial.kind != design::PresentationKind::catch_trial) {
     trial.right = study.protocol->right_choice(study, presentation);
   }
   return trial;

@@ -29,6 +29,7 @@ struct TrialOutcome {
   store::TrialRow row;
   design::StimulusIndex stimulus;  ///< without meaning for a catch trial
   design::PresentationKind kind = design::PresentationKind::scored;
+  std::optional<design::ChosenLevel> chosen{};  ///< by an adaptive order
   bool scored = false;          ///< by the schedule; not a lead-in or catch trial
   bool counted = false;         ///< counts towards accuracy
   std::optional<int> response;  ///< index of the chosen alternative; empty: no response

@@ -66,6 +66,10 @@ std::vector<ResultTable> ProtocolAnalysis::tables(const Outcomes&) const {
   return {};
 }
 
+std::vector<TrialColumn> ProtocolAnalysis::trial_columns() const {
+  return {};
+}
+
 std::vector<std::filesystem::path> ProtocolAnalysis::export_model(
     const store::StudyStore&, const Outcomes& outcomes, const std::filesystem::path&) const {
   throw UsageError("--format r: the protocol " + outcomes.design.protocol_name() +

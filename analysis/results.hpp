@@ -3,6 +3,7 @@
 #pragma once
 
 #include "analysis/exports/data_table.hpp"
+#include "analysis/exports/trial_tables.hpp"
 #include "analysis/figures/figure.hpp"
 #include "analysis/outcomes.hpp"
 #include "analysis/page/study_document.hpp"
@@ -76,6 +77,9 @@ class ProtocolAnalysis {
       const Outcomes& outcomes, const ReportWishes& wishes) const = 0;
   /// Tables that `export --format csv` writes in addition to those of every study.
   [[nodiscard]] virtual std::vector<ResultTable> tables(const Outcomes& outcomes) const;
+  /// Columns about what an adaptive order chose, which tables of trials have in addition. Their
+  /// names are known to meaning_of (exports/dataset.hpp).
+  [[nodiscard]] virtual std::vector<TrialColumn> trial_columns() const;
   /// Writes the files of `export --format r`: a table, a script that fits a model to it, and
   /// instructions.
   /// \return the files, in the order in which they were written

@@ -55,6 +55,7 @@ void add_people_commands(CLI::App& program, Action& action);
 void add_study_end_commands(CLI::App& program, Action& action);
 void add_merge_command(CLI::App& program, Action& action);
 void add_power_command(CLI::App& program, Action& action);
+void add_procedure_command(CLI::App& program, Action& action);
 void add_device_command(CLI::App& program, Action& action);
 void add_screen_command(CLI::App& program, Action& action);
 /// The commands of "device".

@@ -55,6 +55,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_fit_command(program, action);
   add_merge_command(program, action);
   add_power_command(program, action);
+  add_procedure_command(program, action);
   add_device_command(program, action);
   add_screen_command(program, action);
 }

@@ -9,6 +9,7 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
+#include "app/threshold_power.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/hash.hpp"
@@ -19,6 +20,7 @@
 #include "protocols/simulation/felt_knowledge.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -72,25 +74,6 @@ planning::Shard shard_named(std::string_view text) {
   throw UsageError(one_line(
       fmt::format("--shard: '{}' is not a shard; give its number and the count, from 1/1 to {}/{}",
                   text.substr(0, 60), planning::kMostShards, planning::kMostShards)));
-}
-
-/// Sizes as they are typed: "8,12,16".
-/// \throws UsageError if a part is not a whole number
-std::vector<int> sizes_named(std::string_view text) {
-  std::vector<int> sizes;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string_view part = text.substr(begin, end - begin);
-    const auto size = number_in<int>(part);
-    if (!size || *size < 0) {
-      throw UsageError(one_line(fmt::format(
-          "--participants: '{}' is not a number of participants; give for instance 8,12,16",
-          part.substr(0, 60))));
-    }
-    sizes.push_back(*size);
-    begin = end + 1;
-  }
-  return sizes;
 }
 
 /// The file of a run's progress: "power-progress.json" in its folder.
@@ -195,6 +178,8 @@ struct PowerArguments {
   double sd_between = 0.0;
   std::optional<double> accuracy;
   planning::PowerPlan plan;
+  ThresholdPowerArguments of_thresholds;
+  std::vector<std::string> given;  ///< the options that were given, by name
   int jobs = 1;
   bool no_early_stop = false;
   bool resume = false;
@@ -383,19 +368,46 @@ int what_if(const PowerArguments& arguments, const PowerPreparation& prepared,
   return 0;
 }
 
+/// Options of studies whose thresholds are planned, and those that such studies share with others.
+constexpr std::array<std::string_view, 4> kOfThresholds = {"--trials", "--width", "--difference",
+                                                           "--pool"};
+constexpr std::array<std::string_view, 8> kOfAllProtocols = {
+    "STUDY", "--participants", "--runs", "--seed", "--subject", "--on", "--jobs", "--json"};
+
+/// \throws UsageError if an option was given that the study's protocol does not know
+void refuse_options_of_others(const design::Study& study, const PowerArguments& arguments) {
+  const bool has_thresholds = study.protocol_name() == "threshold";
+  for (const std::string& option : arguments.given) {
+    const bool is_own = std::ranges::find(kOfThresholds, option) != kOfThresholds.end();
+    const bool is_shared = std::ranges::find(kOfAllProtocols, option) != kOfAllProtocols.end();
+    if (is_shared || is_own == has_thresholds) continue;
+    throw UsageError(
+        one_line(fmt::format("{}: {}; leave it out", option,
+                             is_own ? "is for studies of the protocol threshold"
+                                    : "is not for studies of the protocol threshold")));
+  }
+}
+
 int power(PowerArguments arguments) {
   if (!arguments.combine.empty()) return combine(arguments);
   if (arguments.study.empty()) {
     throw UsageError("power: STUDY is missing; give a study file, or shards with --combine");
   }
   planning::PowerPlan plan = arguments.plan;
-  plan.participants = sizes_named(arguments.sizes);
+  plan.participants = numbers_named(arguments.sizes, "--participants", "a number of participants");
   if (arguments.effect) plan.effect = require_effect(*arguments.effect);
   plan.stop_early = !arguments.no_early_stop;
   planning::settle(plan);
   const planning::Shard shard =
       arguments.has_shard ? shard_named(arguments.shard) : planning::Shard{};
-  const PowerPreparation prepared(arguments, design::load_study(arguments.study));
+  design::Study loaded = design::load_study(arguments.study);
+  refuse_options_of_others(loaded, arguments);
+  if (loaded.protocol_name() == "threshold") {
+    return plan_thresholds(loaded, arguments.study,
+                           subject_for(arguments.subject, loaded, arguments.on), plan,
+                           arguments.of_thresholds, arguments.jobs, arguments.json);
+  }
+  const PowerPreparation prepared(arguments, std::move(loaded));
   if (plan.effect != 0.0 && prepared.test.margin) {
     throw UsageError(
         "--effect: the study registers a margin, and then power is that for methods that are "
@@ -433,6 +445,30 @@ void add_stated_options(CLI::App& command, PowerArguments& arguments) {
                   "With --mean of two methods: everybody's accuracy, the mean of both")
       ->type_name("SHARE")
       ->needs(mean);
+}
+
+void add_threshold_options(CLI::App& command, ThresholdPowerArguments& arguments) {
+  command
+      .add_option("--trials", arguments.trials,
+                  "Thresholds: numbers of trials of a track to try (default: the study's)")
+      ->type_name("N,N..");
+  command
+      .add_option("--width", arguments.width_db,
+                  "Thresholds: how often the half-width of a mean's 95 % interval is at most so "
+                  "much")
+      ->check(finite_range(0.001, 100.0))
+      ->type_name("DB");
+  command
+      .add_option(
+          "--difference", arguments.difference,
+          "Thresholds: which two to compare, first minus second, by their order in the study "
+          "(default: 1,2)")
+      ->type_name("N,N");
+  command
+      .add_option("--pool", arguments.pool,
+                  "Thresholds: simulated participants from whom samples are drawn")
+      ->check(CLI::Range(10, 10'000))
+      ->capture_default_str();
 }
 
 void add_plan_options(CLI::App& command, PowerArguments& arguments) {
@@ -497,6 +533,7 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
   command.add_flag(
       "--servo", plan.servo,
       "Run every exploration through the servo, for comparison; some hundred times slower");
+  add_threshold_options(command, arguments.of_thresholds);
   command.get_option("--mean")->excludes(fit)->excludes(other);
   other->excludes(command.get_option("--effect"))->excludes(command.get_option("--servo"));
   // They describe people who feel.
@@ -524,7 +561,8 @@ void add_power_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<PowerArguments>();
   CLI::App* command = program.add_subcommand(
       "power",
-      "Estimate power, type-I error and interval width of a study for an assumed sensitivity");
+      "Estimate power, type-I error and interval width of a study for an assumed sensitivity; of a "
+      "study of thresholds, the interval of a mean threshold and the power of a difference");
   command->add_option("STUDY", arguments->study, "Study file");
   add_plan_options(*command, *arguments);
   const std::vector<CLI::Option*> of_a_run = command->get_options(
@@ -557,6 +595,9 @@ void add_power_command(CLI::App& program, Action& action) {
   command->callback([=, &action] {
     refuse_empty_values(*command);
     arguments->has_shard = shard->count() > 0;
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->count() > 0) arguments->given.push_back(option->get_name());
+    }
     action = [=] { return power(*arguments); };
   });
 }

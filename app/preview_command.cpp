@@ -78,6 +78,7 @@ class Preview {
     if (arguments_.mouse) wanted.pointer = &pointer_;
     if (arguments_.console) wanted.console = &console_;
     wanted.least_touch = {0.0, 0.0};  // nothing is felt
+    wanted.interval_pause = std::chrono::hours(24);
     wanted.turn = [this](int pages) {
       turn_ = pages == 0 ? Turn::end : pages < 0 ? Turn::back : Turn::next;
     };
@@ -101,6 +102,7 @@ class Preview {
     console_.show(status);
     window_.see_pictures(preview_labels(study_, screen));
     static_cast<void>(window_.attend(session::ReadyStep{1, 1, screen.practice}));
+    if (screen.interval) static_cast<void>(window_.attend(*screen.interval));
     window_.show_exploring(plane_);
     if (!screen.step) return;
     static_cast<void>(window_.attend(*screen.step));

@@ -27,6 +27,8 @@ struct PlaneGeometry {
   [[nodiscard]] constexpr bool contains(double x_mm, double y_mm) const noexcept {
     return x_mm >= 0.0 && y_mm >= 0.0 && x_mm <= width_mm() && y_mm <= height_mm();
   }
+
+  friend constexpr bool operator==(const PlaneGeometry&, const PlaneGeometry&) = default;
 };
 
 /// A length on the image, converted from millimetres to pixels.

@@ -227,6 +227,10 @@ bool JsonValue::is_text() const {
   return node_->value->is_string();
 }
 
+bool JsonValue::is_object() const {
+  return node_->value->is_object();
+}
+
 const std::string& JsonValue::text() const {
   if (!node_->value->is_string()) refuse_type("text in quotes");
   return node_->value->get_ref<const std::string&>();

@@ -88,6 +88,13 @@ Meanings of_trials() {
       {"samples", {"Samples in the trial's trace"}},
       {"sampling_hz", {"Sampling rate of the trial's trace", "Hz"}},
       {"overruns", {"Servo ticks that came too late"}},
+      {"track",
+       {"Track that the trial belongs to, from 1; none for a catch trial and with the hand off"}},
+      {"standard", {"What the track is about: a texture, and what comparisons differ from"}},
+      {"level_db",
+       {"Level of the comparison: of detection its gain, of discrimination 20 log10 of the "
+        "difference over the standard",
+        "dB"}},
   };
 }
 

@@ -1,15 +1,18 @@
 #include "analysis/exports/trial_tables.hpp"
 
 #include "analysis/exports/study_tables.hpp"
+#include "analysis/results.hpp"
 
+#include <algorithm>
 #include <array>
 #include <map>
 
 namespace touchtrial::analysis {
 namespace {
 
+/// A trial with a chosen level presents several planes, and no single stimulus.
 bool has_stimulus(const TrialView& trial) {
-  return trial.outcome->kind != design::PresentationKind::catch_trial;
+  return trial.outcome->kind != design::PresentationKind::catch_trial && !trial.outcome->chosen;
 }
 
 DataCell response_of(const TrialView& trial) {
@@ -19,7 +22,7 @@ DataCell response_of(const TrialView& trial) {
 
 /// Empty for a trial that did not end, so that the mean of the column is an accuracy.
 DataCell correctness_of(const TrialView& trial) {
-  if (!has_stimulus(trial)) return std::monostate{};
+  if (!has_stimulus(trial) && !trial.outcome->chosen) return std::monostate{};
   const store::TrialState state = trial.row.state;
   if (state != store::TrialState::answered && state != store::TrialState::timed_out)
     return std::monostate{};
@@ -136,24 +139,25 @@ constexpr std::array<TrialColumn, 36> kTrialColumns{{
     {"overruns", false, [](const TrialView& t) -> DataCell { return t.row.overruns; }},
 }};
 
-void add_trial(DataTable& table, const TrialView& trial) {
+void add_trial(DataTable& table, const std::vector<TrialColumn>& columns, const TrialView& trial) {
   std::vector<DataCell>& row = table.rows.emplace_back();
   row.reserve(table.columns.size());
-  for (const TrialColumn& column : trial_columns()) {
+  for (const TrialColumn& column : columns) {
     if (trial.study != nullptr || !column.after_unblinding) row.push_back(column.value(trial));
   }
 }
 
-DataTable trials_header(bool unblinded) {
+DataTable trials_header(const std::vector<TrialColumn>& columns, bool unblinded) {
   DataTable table;
-  for (const TrialColumn& column : trial_columns()) {
+  for (const TrialColumn& column : columns) {
     if (unblinded || !column.after_unblinding) table.columns.emplace_back(column.name);
   }
   return table;
 }
 
 DataTable blinded_trials(const store::StudyStore& store) {
-  DataTable table = trials_header(false);
+  const std::vector<TrialColumn> columns = trial_columns_of(nullptr);
+  DataTable table = trials_header(columns, false);
   std::map<int, store::SessionRow> shown;
   for (const store::SessionRow& session : store.sessions()) {
     if (!session.erased) shown[session.session] = session;
@@ -161,16 +165,18 @@ DataTable blinded_trials(const store::StudyStore& store) {
   for (const store::TrialRow& row : store.trials()) {
     const auto session = shown.find(row.session);
     if (session == shown.end()) continue;
-    add_trial(table, {session->second.participant, row, session->second.simulated});
+    add_trial(table, columns, {session->second.participant, row, session->second.simulated});
   }
   return table;
 }
 
 DataTable trials_that_are(bool scored, const Outcomes& outcomes) {
-  DataTable table = trials_header(true);
+  const std::vector<TrialColumn> columns = trial_columns_of(&outcomes);
+  DataTable table = trials_header(columns, true);
   for (const TrialOutcome& trial : outcomes.trials) {
     if (trial.scored != scored) continue;
-    add_trial(table, {trial.participant, trial.row, outcomes.simulated, &outcomes, &trial});
+    add_trial(table, columns,
+              {trial.participant, trial.row, outcomes.simulated, &outcomes, &trial});
   }
   add_visit_and_group(table, outcomes.collection);
   return table;
@@ -186,6 +192,18 @@ DataCell time_between(const std::optional<std::chrono::nanoseconds>& from,
 
 std::span<const TrialColumn> trial_columns() {
   return kTrialColumns;
+}
+
+std::vector<TrialColumn> trial_columns_of(const Outcomes* outcomes) {
+  std::vector<TrialColumn> columns(kTrialColumns.begin(), kTrialColumns.end());
+  const bool chosen =
+      outcomes != nullptr && std::ranges::any_of(outcomes->trials, [](const TrialOutcome& trial) {
+        return trial.chosen.has_value();
+      });
+  if (!chosen) return columns;
+  const std::vector<TrialColumn> own = analysis_of(outcomes->design).trial_columns();
+  columns.insert(columns.end(), own.begin(), own.end());
+  return columns;
 }
 
 const std::string& image_of(const Outcomes& study, const TrialOutcome& trial) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace touchtrial::analysis {
 
@@ -26,8 +27,13 @@ struct TrialColumn {
   DataCell (*value)(const TrialView&);
 };
 
-/// The columns in the order of trials.csv.
+/// The columns that every protocol has, in the order of trials.csv.
 [[nodiscard]] std::span<const TrialColumn> trial_columns();
+
+/// These, and if an adaptive order chose what was presented, the columns of the protocol's
+/// analysis.
+/// \param outcomes  null before unblinding
+[[nodiscard]] std::vector<TrialColumn> trial_columns_of(const Outcomes* outcomes);
 
 /// The time between two moments of a trial; missing unless both occurred.
 [[nodiscard]] DataCell time_between(const std::optional<std::chrono::nanoseconds>& from,

@@ -9,14 +9,17 @@
 
 namespace touchtrial::analysis {
 
-SessionCourse::SessionCourse(const design::Study& study, const design::ScheduleDraw& draw)
+SessionCourse::SessionCourse(const design::Study& study, const design::ScheduleDraw& draw,
+                             bool opened)
     : study_(study),
       course_(
           design::make_schedule(study, draw), study.trials.on_interruption,
           [&study, draw](int block, int restarts_before, int first_trial) {
             return design::restarted_block(study, draw, block, restarts_before, first_trial);
           },
-          design::adaptive_order(study, draw)) {}
+          opened ? design::adaptive_order(study, draw) : nullptr) {
+  if (course_.is_adaptive()) places_ = design::make_schedule(study, draw);
+}
 
 void SessionCourse::fail(const store::Event& event, const std::string& why) const {
   throw VerificationError(

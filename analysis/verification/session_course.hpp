@@ -15,17 +15,22 @@ namespace touchtrial::analysis {
 class SessionCourse {
  public:
   /// \param study  must outlive this object
-  /// \param enrolment  the participant's enrolment number, from 1
+  /// \param opened  the answers are opened, and so an adaptive order can be followed
   /// \throws StudyError if the study has no order for this enrolment number
-  SessionCourse(const design::Study& study, const design::ScheduleDraw& draw);
+  SessionCourse(const design::Study& study, const design::ScheduleDraw& draw, bool opened = true);
 
   /// Checks the session's next event.
   /// \throws VerificationError, naming the session and its event or trial, if the event cannot
   ///   follow the earlier ones
   void follow(const store::Event& event);
 
-  /// The schedule with which the session began, followed by the restarted blocks.
-  [[nodiscard]] const design::Schedule& schedule() const noexcept { return course_.schedule(); }
+  /// The schedule with which the session began, followed by the restarted blocks. Of an adaptive
+  /// order, its places.
+  [[nodiscard]] const design::Schedule& scheduled() const noexcept {
+    return places_ ? *places_ : course_.schedule();
+  }
+  /// Whether the answers decide what comes next.
+  [[nodiscard]] bool is_adaptive() const noexcept { return places_.has_value(); }
   [[nodiscard]] int presentations() const noexcept { return presentations_; }
 
  private:
@@ -41,6 +46,7 @@ class SessionCourse {
 
   const design::Study& study_;
   design::Course course_;
+  std::optional<design::Schedule> places_;  ///< of an adaptive order, as sealed at the opening
   bool is_under_way_ = false;  ///< the course's current presentation waits for its answer
   bool is_spoilt_ = false;     ///< the program ended during the current presentation
   bool is_paused_ = false;

@@ -77,12 +77,15 @@ std::string check_configuration(const store::StudyStore& store, const design::St
 SessionCourse course_of(const store::StudyStore& store, const design::StudyKey& key,
                         const store::SessionRow& session) {
   try {
-    SessionCourse course(key.study,
-                         key.draw_of(session.enrolment, draws_of(session), session.visit));
     const std::optional<SecretKey> own = participant_key(store, key, session);
+    SessionCourse course(key.study,
+                         key.draw_of(session.enrolment, draws_of(session), session.visit),
+                         own.has_value());
     for (const store::Event& event : store.events(session.session)) {
-      // How long a session was away is sealed; what else matters here is not.
-      const bool has_more = own && event.kind == store::EventKind::resumed;
+      // How long a session was away is sealed, and what answers decide; what else matters is not.
+      const bool has_more =
+          own && (event.kind == store::EventKind::resumed ||
+                  (course.is_adaptive() && event.kind == store::EventKind::answered));
       course.follow(has_more ? whole_event(event, *own).event : event);
     }
     return course;
@@ -163,7 +166,7 @@ std::string check_schedule(const store::StudyStore& store, const design::StudyKe
     presentations += course.presentations();
     const auto schedule = schedules.find(session.session);
     if (schedule == schedules.end()) continue;  // withdrawn
-    if (schedule->second == course.schedule()) continue;
+    if (schedule->second == course.scheduled()) continue;
     throw VerificationError(
         fmt::format("session {}: the schedule is not the one that enrolment {} gets",
                     session.session, session.enrolment));
@@ -183,7 +186,7 @@ std::string check_responses(const store::StudyStore& store, const design::StudyK
     }
     if (row.position) ++responses;
   }
-  return fmt::format("{} answers within the {} pictures", responses, positions);
+  return fmt::format("{} answers within the {} choices", responses, positions);
 }
 
 /// Opens what is left of erased sessions, and the texts about people on the file's chain.

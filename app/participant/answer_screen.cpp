@@ -11,6 +11,9 @@ namespace {
 
 constexpr int kFeelAgain = 102;
 constexpr double kBadge = 40.0;  ///< height of the number below a picture
+constexpr double kBadgeSide = 34.0;
+constexpr double kWordWidth = 300.0;  ///< of a choice that is a word
+constexpr double kWordHeight = 130.0;
 
 }  // namespace
 
@@ -30,6 +33,11 @@ std::string AnswerScreen::hint() const {
   return with_numbers(words.choose_hint, {{"keys", std::min(count(), 9)}});
 }
 
+std::string AnswerScreen::name_of(int position) const {
+  const std::string& label = labels_[static_cast<std::size_t>(position)];
+  return has_words() ? choice_text(*context_.words, label) : label;
+}
+
 void AnswerScreen::paint(Canvas& canvas) {
   const Words& words = *context_.words;
   draw_progress(canvas, {step_.trial - 1, step_.of,
@@ -37,12 +45,15 @@ void AnswerScreen::paint(Canvas& canvas) {
                                       {{"trial", step_.trial}, {"of", step_.of}})});
   if (answered_at_) return paint_confidence(canvas);
   const bool spoken = step_.sight == design::Sight::blindfold;
-  const std::string note =
-      step_.time_is_up ? words.time_is_up : (spoken ? words.answer_spoken_text : "");
-  const Box area = draw_heading(canvas, spoken ? words.answer_spoken_title : words.answer_title,
-                                note, step_.time_is_up ? tone::kWarn : tone::kQuiet);
+  const std::string& saying = has_words() ? words.answer_spoken_choice : words.answer_spoken_text;
+  const std::string note = step_.time_is_up ? words.time_is_up : (spoken ? saying : "");
+  const std::string& which = spoken ? words.answer_spoken_title : words.answer_title;
+  const Box area = draw_heading(canvas, has_words() ? title_of(words, step_.question) : which, note,
+                                step_.time_is_up ? tone::kWarn : tone::kQuiet);
   if (spoken) {
     paint_names(canvas, area);
+  } else if (has_words()) {
+    paint_words(canvas, area);
   } else {
     paint_pictures(canvas, area);
   }
@@ -83,15 +94,42 @@ void AnswerScreen::paint_picture(Canvas& canvas, int position, const Box& pictur
   } else if (open && canvas.attention().hover == position) {
     canvas.outline(rim, tone::kAccent, 2.0 * unit, 6.0 * unit);
   }
-  const double side = 34.0 * unit;
+  const double side = kBadgeSide * unit;
   const Box badge = {std::round(picture.x + (picture.width - side) / 2.0),
                      std::round(picture.bottom() + 10.0 * unit), side, side};
-  if (chosen) canvas.fill(badge, tone::kAccent, side / 2.0);
-  canvas.label(badge, Letters::body, chosen ? tone::kWhite : (open ? tone::kText : tone::kQuiet),
-               std::to_string(position + 1));
+  paint_number(canvas, position, badge);
   if (!open) return;
   canvas.target(position, {picture.x, picture.y, picture.width, badge.bottom() - picture.y});
   canvas.focus_ring(position, rim, 8.0 * unit);
+}
+
+void AnswerScreen::paint_number(Canvas& canvas, int position, const Box& badge) const {
+  const bool chosen = chosen_ == position;
+  if (chosen) canvas.fill(badge, tone::kAccent, badge.width / 2.0);
+  canvas.label(badge, Letters::body,
+               chosen ? tone::kWhite : (is_fixed() ? tone::kQuiet : tone::kText),
+               std::to_string(position + 1));
+}
+
+void AnswerScreen::paint_words(Canvas& canvas, const Box& area) {
+  const double unit = canvas.unit();
+  const double line = 30.0 * unit;
+  const double gap = 36.0 * unit;
+  const double side = kBadgeSide * unit;
+  const int shown = std::max(count(), 1);
+  const double width = std::min(kWordWidth * unit, (area.width - gap * (shown - 1)) / shown);
+  const double height = kWordHeight * unit;
+  const double left = area.x + (area.width - shown * width - (shown - 1) * gap) / 2.0;
+  const double top = std::round(area.y + 0.4 * (area.height - line - height - side - 12.0 * unit));
+  for (int i = 0; i < count(); ++i) {
+    const Box box = {std::round(left + i * (width + gap)), top, width, height};
+    canvas.button(i, box, name_of(i), ButtonKind::choice, !is_fixed(), chosen_ == i);
+    paint_number(
+        canvas, i,
+        {std::round(box.x + (width - side) / 2.0), box.bottom() + 12.0 * unit, side, side});
+  }
+  canvas.label({area.x, area.bottom() - line, area.width, line}, Letters::small,
+               is_fixed() ? tone::kText : tone::kQuiet, hint());
 }
 
 void AnswerScreen::paint_names(Canvas& canvas, const Box& area) {
@@ -109,8 +147,7 @@ void AnswerScreen::paint_names(Canvas& canvas, const Box& area) {
     const Box box = {std::round(left + (i / rows) * (width + gap)),
                      std::round(top + (i % rows) * (height + gap)), width, height};
     // No numbers: those of the experimenter's list differ, because it is in alphabetical order.
-    canvas.button(i, box, labels_[static_cast<std::size_t>(i)], ButtonKind::line, !is_fixed(),
-                  chosen_ == i);
+    canvas.button(i, box, name_of(i), ButtonKind::line, !is_fixed(), chosen_ == i);
   }
   if (chosen_ < 0) return;
   canvas.label({area.x, area.y + room, area.width, line}, Letters::small, tone::kQuiet, hint());
@@ -200,7 +237,10 @@ void FeedbackScreen::paint(Canvas& canvas) {
   const Words& words = *context_.words;
   const bool correct = step_.answered == step_.correct;
   const std::string title = correct ? words.correct_title : words.wrong_title;
-  if (context_.sight == design::Sight::blindfold) {
+  if (context_.intervals != nullptr) {
+    draw_card(canvas, title,
+              filled(words.right_answer, {{"label", choice_text(words, name_of(step_.correct))}}));
+  } else if (context_.sight == design::Sight::blindfold) {
     draw_card(canvas, title, filled(words.it_was, {{"label", name_of(step_.correct)}}));
   } else {
     const Box area = draw_heading(canvas, title);

@@ -11,7 +11,8 @@
 namespace touchtrial::app {
 
 /// Shows pictures of the originals in the participant's layout, or their names if answers are
-/// spoken. A choice may be changed once; after that, only Next remains.
+/// spoken; large buttons if the step has a question, whose choices are words. A choice may be
+/// changed once; after that, only Next remains.
 class AnswerScreen final : public Screen {
  public:
   AnswerScreen(const session::AnswerStep& step, const ScreenContext& context,
@@ -25,12 +26,17 @@ class AnswerScreen final : public Screen {
 
   void paint_pictures(Canvas& canvas, const Box& area);
   void paint_picture(Canvas& canvas, int position, const Box& picture);
+  void paint_words(Canvas& canvas, const Box& area);
+  /// The number of a choice, below it.
+  void paint_number(Canvas& canvas, int position, const Box& badge) const;
   void paint_names(Canvas& canvas, const Box& area);
   void paint_confidence(Canvas& canvas);
   void choose(int position);
   [[nodiscard]] bool is_fixed() const noexcept { return first_.has_value(); }
   [[nodiscard]] int count() const noexcept { return static_cast<int>(labels_.size()); }
   [[nodiscard]] std::string hint() const;
+  [[nodiscard]] bool has_words() const noexcept { return !step_.question.empty(); }
+  [[nodiscard]] std::string name_of(int position) const;
 
   session::AnswerStep step_;
   ScreenContext context_;

@@ -8,6 +8,11 @@ enum class Cue {
   plane_off,  ///< the plane is off: an answer is due
   too_hard,   ///< too much force for hand and device
   stopped,    ///< a comfort stop: the force is off
+  // Of a trial with several planes:
+  first_begins,  ///< the first can be touched
+  second_begins,
+  third_begins,
+  interval_over,
 };
 
 /// Plays cues.

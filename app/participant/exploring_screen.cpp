@@ -69,6 +69,7 @@ PlaneOnScreen place_plane(Vec2 window, Vec2 plane_mm, double mm_per_unit) {
 
 void ExploringScreen::paint(Canvas& canvas) {
   if (view_.pointer != nullptr) paint_plane(canvas);
+  if (view_.interval) paint_interval(canvas);
   if (view_.bars != nullptr) paint_bars(canvas);
   if (view_.asks_for_touch == nullptr || !*view_.asks_for_touch) return;
   const double unit = canvas.unit();
@@ -88,11 +89,50 @@ void ExploringScreen::paint_plane(Canvas& canvas) {
   // In practice the bars are below.
   const double up = (view_.bars == nullptr ? 84.0 : 126.0) * unit;
   canvas.label({0.0, canvas.size().y - up, canvas.size().x, 30.0 * unit}, Letters::small,
-               tone::kQuiet, context_.words->exploring_mouse);
+               tone::kQuiet, below_plane());
   const device::StylusState stylus = view_.pointer->stylus();
   if (stylus.sequence == 0) return;
   draw_stylus(placed.corner + (1.0 / placed.mm_per_unit) * stylus.position_mm,
               view_.pressed->load(), true, static_cast<float>(unit));
+}
+
+const std::string& ExploringScreen::below_plane() const {
+  const Words& words = *context_.words;
+  if (!view_.interval) return words.exploring_mouse;
+  return view_.interval->hand_off ? words.exploring_hand_off : words.exploring_interval_mouse;
+}
+
+/// Beside a plane, in the margin above it; else in the middle, with what to do.
+void ExploringScreen::paint_interval(Canvas& canvas) {
+  const Words& words = *context_.words;
+  const double unit = canvas.unit();
+  const double middle = canvas.size().x / 2.0;
+  const std::string which = with_numbers(
+      words.interval_of, {{"interval", view_.interval->interval}, {"of", view_.interval->of}});
+  if (view_.pointer != nullptr) {
+    const double left = middle - 80.0 * unit;
+    canvas.label({left - 420.0 * unit, 5.0 * unit, 420.0 * unit, 30.0 * unit}, Letters::strong,
+                 tone::kText, which, Align::right);
+    paint_explored(canvas, {left + 24.0 * unit, 14.0 * unit, 300.0 * unit, 12.0 * unit});
+    return;
+  }
+  const double width = 1000.0 * unit;
+  const double top = 0.386 * canvas.size().y;
+  canvas.label({middle - width / 2.0, top, width, 56.0 * unit}, Letters::title, tone::kText, which);
+  canvas.label({middle - width / 2.0, top + 58.0 * unit, width, 66.0 * unit}, Letters::body,
+               tone::kText,
+               view_.interval->hand_off ? words.exploring_hand_off : words.exploring_interval);
+  paint_explored(canvas, {middle - 220.0 * unit, top + 146.0 * unit, 440.0 * unit, 14.0 * unit});
+}
+
+void ExploringScreen::paint_explored(Canvas& canvas, const Box& track) {
+  const double rounding = track.height / 2.0;
+  canvas.fill(track, tone::kTrack, rounding);
+  const int steps = std::min(view_.explored->load(), kExploredSteps);
+  if (steps <= 0) return;
+  const double share = static_cast<double>(steps) / kExploredSteps;
+  canvas.fill({track.x, track.y, std::max(share * track.width, track.height), track.height},
+              tone::kAccent, rounding);
 }
 
 void ExploringScreen::paint_bars(Canvas& canvas) {

@@ -6,6 +6,8 @@
 #include "device/mouse/pointer_exchange.hpp"
 
 #include <atomic>
+#include <optional>
+#include <string>
 
 namespace touchtrial::app {
 
@@ -23,6 +25,9 @@ struct PlaneOnScreen {
 };
 [[nodiscard]] PlaneOnScreen place_plane(Vec2 window, Vec2 plane_mm, double mm_per_unit);
 
+/// An interval's bar grows in steps, so that the screen is seldom drawn.
+inline constexpr int kExploredSteps = 40;
+
 /// What the exploring screen shows.
 struct ExploringView {
   const FeltNow* bars = nullptr;               ///< in practice; null: no bars
@@ -30,6 +35,9 @@ struct ExploringView {
   const std::atomic<bool>* pressed = nullptr;  ///< the mouse button; set if `pointer` is
   const std::atomic<bool>* asks_for_touch = nullptr;  ///< says that feeling comes before answering
   PlaneGeometry plane;
+  std::optional<session::IntervalStep> interval{};  ///< the plane is one of several
+  /// How much of the interval was explored as asked for, of kExploredSteps; set if `interval` is.
+  const std::atomic<int>* explored = nullptr;
 };
 
 class ExploringScreen final : public Screen {
@@ -48,6 +56,9 @@ class ExploringScreen final : public Screen {
   }
   void paint_plane(Canvas& canvas);
   void paint_bars(Canvas& canvas);
+  void paint_interval(Canvas& canvas);
+  void paint_explored(Canvas& canvas, const Box& track);
+  [[nodiscard]] const std::string& below_plane() const;
 
   ExploringView view_;
   ScreenContext context_;

@@ -44,6 +44,7 @@ constexpr milliseconds kNoAccident{500};
 // second limit.
 constexpr double kPushTooHardN = 2.0;
 constexpr double kSoftAgainN = 1.7;
+constexpr double kLiftedMm = 1.0;    ///< above the plane: as in protocols/session/interval_run.cpp
 constexpr double kBarsTimeS = 0.06;  ///< time constant of the bars in practice
 
 GLFWmonitor* monitor_of(const ParticipantWindowOptions& options) {
@@ -155,9 +156,13 @@ struct ParticipantWindow::State {
         window(make_window(options, monitor)),
         shelf(options.pictures, options.pitch_mm) {
     if (wanted.has_several_methods) words.answer_title = words.answer_fits_title;
-    context = {
-        &words, options.session.language, options.session.sight, options.pointer != nullptr, &shelf,
-        &glass};
+    context = {&words,
+               options.session.language,
+               options.session.sight,
+               options.pointer != nullptr,
+               &shelf,
+               &glass,
+               options.intervals ? &*options.intervals : nullptr};
     glfwSetWindowUserPointer(window, this);
     take_callbacks();
     tell_surface();
@@ -181,7 +186,7 @@ struct ParticipantWindow::State {
     ConsoleWindowOptions wanted;
     wanted.monitor = options.console_monitor;
     if (!wanted.monitor) (monitor != nullptr ? choose_monitor : choose_area)(window, wanted);
-    wanted.keyboard_is_participants = [this] { return exploring.load(); };
+    wanted.keyboard_is_participants = [this] { return exploring || between; };
     wanted.key = [this](int key, int action, int modifiers) {
       take_key(event_of_key(key, action, modifiers));
     };
@@ -234,19 +239,21 @@ struct ParticipantWindow::State {
   /// Takes the events of keyboards, mouse and gamepads.
   void take(const InputEvent& event) {
     const bool is_space = event.kind == InputEvent::Kind::key && event.key == Key::space;
+    if (is_space && (exploring || between)) return take_stop(event.at);
     if (!exploring) {
       if (is_space) space_on_screen = event.at.time_since_epoch();
       return exchange.push(event);
     }
-    if (event.kind != InputEvent::Kind::key) return;
-    if (is_space) {
-      // One press alone is forgiven: somebody who wants to stop presses again.
-      const Clock::time_point before{space_on_screen.exchange(Clock::duration{})};
-      if (event.at - before > kNoAccident) comfort_asked = true;
-    }
-    if (event.key == Key::enter && event.at - Clock::time_point(plane_on) > kNoAccident) {
+    if (event.kind == InputEvent::Kind::key && event.key == Key::enter && !has_clock &&
+        event.at - Clock::time_point(plane_on) > kNoAccident) {
       finish_asked = true;
     }
+  }
+
+  void take_stop(Clock::time_point at) {
+    // One press alone is forgiven: somebody who wants to stop presses again.
+    const Clock::time_point before{space_on_screen.exchange(Clock::duration{})};
+    if (at - before > kNoAccident) comfort_asked = true;
   }
 
   void take_key(const InputEvent& event) {
@@ -310,7 +317,7 @@ struct ParticipantWindow::State {
 
   /// Hides the pointer while a plane is on: it would show where a mouse user's hand is.
   void hide_pointer() {
-    const bool hide = exploring;
+    const bool hide = exploring || between;
     if (hide == pointer_hidden) return;
     pointer_hidden = hide;
     glfwSetInputMode(window, GLFW_CURSOR, hide ? GLFW_CURSOR_HIDDEN : GLFW_CURSOR_NORMAL);
@@ -330,9 +337,59 @@ struct ParticipantWindow::State {
     replied = false;
     if (const auto* const ready = std::get_if<session::ReadyStep>(&next))
       practice = ready->practice;
+    if (const auto* const announced = std::get_if<session::IntervalStep>(&next))
+      begin_pause(*announced);
     exchange.show(screen);
     const auto* const notice = std::get_if<session::NoticeStep>(&next);
     if (notice != nullptr && notice->what == session::NoticeStep::What::stopped) cue(Cue::stopped);
+  }
+
+  /// A stop that comes after a plane has ended stops the next plane of the trial.
+  void begin_pause(const session::IntervalStep& next) {
+    if (next.interval == 1) comfort_asked = false;
+    practice = next.practice;
+    paused_at = Clock::now();
+  }
+
+  [[nodiscard]] bool is_pause_over() const {
+    return between && (comfort_asked || Clock::now() - paused_at >= options.interval_pause);
+  }
+
+  /// The tone for the beginning of a plane.
+  void tell_of_begin() noexcept {
+    constexpr Cue kBegins[] = {Cue::first_begins, Cue::second_begins, Cue::third_begins};
+    if (interval) {
+      cue(kBegins[std::clamp(interval->interval, 1, 3) - 1]);
+    } else if (options.session.sight == design::Sight::blindfold) {
+      cue(Cue::plane_on);
+    }
+  }
+
+  /// The tone for its end, which a comfort stop has of its own.
+  void tell_of_end(const session::Step& next) noexcept {
+    const auto* const notice = std::get_if<session::NoticeStep>(&next);
+    const bool is_stopped = notice != nullptr && notice->what == session::NoticeStep::What::stopped;
+    if (interval) {
+      if (!is_stopped) cue(Cue::interval_over);
+    } else if (options.session.sight == design::Sight::blindfold) {
+      cue(Cue::plane_off);
+    }
+  }
+
+  /// Counts how long the hand has explored an interval as asked for.
+  void count_explored(double press_n, double seconds, Vec2 way_mm) noexcept {
+    if (!has_lifted && !interval->hand_off) return;
+    constexpr double kSmoothS = 0.02;  ///< positions have steps
+    const double share = std::min(1.0, seconds / kSmoothS);
+    velocity_mm_s = velocity_mm_s + share * ((1.0 / seconds) * way_mm - velocity_mm_s);
+    const design::IntervalWindows& windows = options.intervals->windows;
+    const double speed_mm_s = norm(velocity_mm_s);
+    const bool counts = interval->hand_off ||
+                        (press_n >= windows.lightest_n && press_n <= windows.strongest_n &&
+                         speed_mm_s >= windows.slowest_mm_s && speed_mm_s <= windows.fastest_mm_s);
+    if (!counts) return;
+    explored_s += seconds;
+    explored = static_cast<int>(kExploredSteps * explored_s / options.intervals->seconds);
   }
 
   [[nodiscard]] engine::ColourImage existing(std::optional<engine::ColourImage> picture) const {
@@ -372,6 +429,9 @@ struct ParticipantWindow::State {
   // Between threads.
   std::atomic<int> gone{-1};
   std::atomic<bool> exploring{false};
+  std::atomic<bool> between{false};    ///< it is said which of a trial's planes comes next
+  std::atomic<bool> has_clock{false};  ///< the plane ends by itself
+  std::atomic<int> explored{0};        ///< of the interval, in steps of its bar
   std::atomic<bool> comfort_asked{false};
   std::atomic<bool> finish_asked{false};
   std::atomic<bool> has_touched{false};  ///< as the options want it
@@ -390,6 +450,8 @@ struct ParticipantWindow::State {
   std::optional<std::pair<session::Step, std::shared_ptr<Screen>>> suspended;
   bool replied = false;
   bool practice = false;
+  Clock::time_point paused_at{};
+  int explored_shown = 0;
 
   // The servo's listener. Only what the hand did counts, so that the hint on the screen is the same
   // for every texture (decision 54).
@@ -397,6 +459,10 @@ struct ParticipantWindow::State {
   double along_plane_mm = 0.0;
   std::optional<device::ServoSample> last_felt;
   bool is_too_hard = false;
+  std::optional<session::IntervalStep> interval;  ///< of the plane; set before it comes on
+  bool has_lifted = false;                        ///< since the plane can come on
+  Vec2 velocity_mm_s;
+  double explored_s = 0.0;
 
   std::thread drawing;
 };
@@ -413,7 +479,7 @@ void ParticipantWindow::pump(milliseconds longest) {
     InputEvent event = State::event_now(InputEvent::Kind::key);
     event.key = key;
     // B stops forces but chooses nothing.
-    if (key != Key::space || s.exploring) s.take(event);
+    if (key != Key::space || s.exploring || s.between) s.take(event);
   });
   s.hide_pointer();
   s.publish_pointer();
@@ -435,14 +501,15 @@ void ParticipantWindow::see_pictures(const std::vector<std::string>& labels) {
 std::optional<session::StepReply> ParticipantWindow::attend(const session::Step& step) {
   State& s = *state_;
   s.exchange.check();
-  if (s.exploring.exchange(false) && s.options.session.sight == design::Sight::blindfold)
-    s.cue(Cue::plane_off);
+  s.between = std::holds_alternative<session::IntervalStep>(step);
+  if (s.exploring.exchange(false)) s.tell_of_end(step);
   if (gone()) {
     std::this_thread::sleep_for(kAttention);
     return std::nullopt;
   }
   if (!s.step || s.replied || !is_same_step(*s.step, step)) s.switch_to(step);
   std::optional<session::StepReply> reply = s.exchange.reply(*s.screen, kAttention);
+  if (s.is_pause_over()) reply = session::StepReply{};
   s.replied = reply.has_value();
   return reply;
 }
@@ -476,22 +543,35 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
   if (!again) s.at_plane_s = s.along_plane_mm = 0.0;
   s.has_touched = s.touches_enough();
   s.asks_for_touch = false;
+  const auto* const interval = s.step ? std::get_if<session::IntervalStep>(&*s.step) : nullptr;
+  s.interval = interval != nullptr && s.options.intervals ? std::optional(*interval) : std::nullopt;
+  s.has_clock = s.interval.has_value();
+  s.has_lifted = false;
+  s.velocity_mm_s = {};
+  s.explored_s = 0.0;
+  s.explored = s.explored_shown = 0;
   s.step.reset();
   s.suspended.reset();
   s.last_felt.reset();
   s.is_too_hard = false;
   s.felt.force_n = 0.0F;
   s.felt.speed_mm_s = 0.0F;
-  const ExploringView view{s.practice ? &s.felt : nullptr, s.options.pointer, &s.pressed,
-                           &s.asks_for_touch, plane};
+  const ExploringView view{s.practice ? &s.felt : nullptr,
+                           s.options.pointer,
+                           &s.pressed,
+                           &s.asks_for_touch,
+                           plane,
+                           s.interval,
+                           &s.explored};
   s.screen = std::make_shared<ExploringScreen>(view, s.context);
   s.exchange.show(s.screen);
-  s.comfort_asked = false;
+  if (!s.between) s.comfort_asked = false;
   s.finish_asked = false;
   s.plane_on = Clock::now().time_since_epoch();
   s.exploring = true;
+  s.between = false;
   glfwPostEmptyEvent();
-  if (s.options.session.sight == design::Sight::blindfold) s.cue(Cue::plane_on);
+  s.tell_of_begin();
 }
 
 void ParticipantWindow::exploring(device::ServoControl& servo) {
@@ -501,12 +581,17 @@ void ParticipantWindow::exploring(device::ServoControl& servo) {
   if (s.comfort_asked) servo.comfort_stop();
   if (s.finish_asked && s.has_touched) servo.finish();
   const bool asks = !s.has_touched && (s.finish_asked.exchange(false) || s.asks_for_touch);
-  if (s.asks_for_touch.exchange(asks) != asks) s.exchange.redraw();
+  const int explored = s.explored;
+  const bool grew = std::exchange(s.explored_shown, explored) != explored;
+  if (s.asks_for_touch.exchange(asks) != asks || grew) s.exchange.redraw();
 }
 
 void ParticipantWindow::feel(const device::ServoSample& sample) noexcept {
   State& s = *state_;
-  const double force_n = norm(sample.force_n);
+  // In an interval the hand's force alone: a texture's would tell the planes apart.
+  const double press_n = s.options.stiffness_n_per_mm * std::max(0.0, -sample.position_mm.z);
+  const double force_n = s.interval ? press_n : norm(sample.force_n);
+  s.has_lifted = s.has_lifted || sample.position_mm.z > kLiftedMm;
   if (force_n > kPushTooHardN && !s.is_too_hard) s.cue(Cue::too_hard);
   s.is_too_hard = force_n > (s.is_too_hard ? kSoftAgainN : kPushTooHardN);
   if (s.last_felt && sample.tick > s.last_felt->tick) {
@@ -520,6 +605,7 @@ void ParticipantWindow::feel(const device::ServoSample& sample) noexcept {
       s.along_plane_mm += way_mm;
       if (!s.has_touched) s.has_touched = s.touches_enough();
     }
+    if (s.interval) s.count_explored(press_n, seconds, {way.x, way.y});
     const auto share = static_cast<float>(std::min(1.0, seconds / kBarsTimeS));
     const auto follow = [share](std::atomic<float>& shown, double now) {
       const float before = shown;

@@ -7,6 +7,7 @@
 #include "core/plane.hpp"
 #include "device/mouse/pointer_exchange.hpp"
 #include "engine/pictures/colour_image.hpp"
+#include "protocols/design/interval_plan.hpp"
 #include "protocols/design/study.hpp"
 #include "protocols/session/participant.hpp"
 
@@ -40,6 +41,12 @@ struct ParticipantWindowOptions {
   bool has_several_methods = false;
   /// What must be felt before Enter ends an exploration: over all explorations of a presentation.
   design::LeastTouch least_touch{0.0, 0.0};
+  /// Of trials with several planes, each of which ends by itself; empty: a trial has one, and the
+  /// choices are pictures.
+  std::optional<design::IntervalPlan> intervals;
+  double stiffness_n_per_mm = 0.0;  ///< of the planes' wall; only needed with `intervals`
+  /// For how long it is said which of a trial's planes comes next.
+  std::chrono::milliseconds interval_pause{1000};
   /// Returns the explored device; called when each plane comes on.
   std::function<device::HapticDevice&()> device;
   /// Null: silent. Must outlive the window.
@@ -73,6 +80,11 @@ enum class WindowGone {
 /// While a plane is on, the space bar is a comfort stop and Enter ends the exploration; neither
 /// needs the drawing thread. Enter before the least touch shows what is missing. Escape does
 /// nothing.
+///
+/// In a trial with several planes, Enter ends none of them. The space bar also stops while it is
+/// said which plane comes next: that plane is stopped as soon as it is on. The screen shows which
+/// plane it is and how much of its clock has run, as far as positions tell; neither this nor the
+/// tone for too much force depends on the force of a texture.
 ///
 /// The experimenter's window, if there is one, uses the same threads. Whichever window has the
 /// focus, keys belong to the participant unless they are text typed into the experimenter's window;

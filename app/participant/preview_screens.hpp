@@ -18,6 +18,8 @@ struct PreviewScreen {
   std::optional<session::Step> step;  ///< empty: a plane is on
   std::vector<InputEvent> keys{};     ///< lead from the step's first page to this one; no times
   bool practice = false;              ///< with the pictures of practice
+  /// Of a plane that is one of several: the step before it.
+  std::optional<session::IntervalStep> interval{};
 };
 
 /// All screens, in the order of a session.

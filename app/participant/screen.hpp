@@ -5,6 +5,7 @@
 #include "app/participant/canvas.hpp"
 #include "app/participant/input_event.hpp"
 #include "app/participant/words.hpp"
+#include "protocols/design/interval_plan.hpp"
 #include "protocols/session/participant.hpp"
 
 #include <memory>
@@ -28,6 +29,8 @@ struct ScreenContext {
   bool mouse = false;  ///< the device is a mouse
   PictureShelf* shelf = nullptr;
   const Glass* glass = nullptr;
+  /// Of trials with several planes, whose choices are words; null: a trial has one plane.
+  const design::IntervalPlan* intervals = nullptr;
 };
 
 class Screen {

@@ -131,16 +131,21 @@ class Maker {
   }
   Made operator()(const session::PracticeStep& step) const {
     const bool again = step.round > 1;
+    const std::string& first =
+        context_.intervals != nullptr ? words_.practice_text_intervals : words_.practice_text;
     return note(again ? words_.practice_again_title : words_.practice_title,
-                again ? words_.practice_again_text : words_.practice_text, "",
-                words_.practice_start);
+                again ? words_.practice_again_text : first, "", words_.practice_start);
   }
   Made operator()(const session::ReadyStep& step) const {
     const Progress progress{step.trial - 1, step.of,
                             with_numbers(step.practice ? words_.practice_of : words_.trial_of,
                                          {{"trial", step.trial}, {"of", step.of}})};
-    return note(words_.ready_title, context_.mouse ? words_.ready_text_mouse : words_.ready_text,
-                words_.ready_keys, words_.go_on, progress);
+    return note(words_.ready_title, ready_text(step), words_.ready_keys, words_.go_on, progress);
+  }
+  Made operator()(const session::IntervalStep& step) const {
+    const std::string& pen = context_.mouse ? words_.interval_text_mouse : words_.interval_text;
+    return note(with_numbers(words_.interval_of, {{"interval", step.interval}, {"of", step.of}}),
+                step.hand_off ? words_.interval_text_hand_off : pen, "", "");
   }
   Made operator()(const session::AnswerStep& step) const {
     return std::make_shared<AnswerScreen>(step, context_, labels_);
@@ -157,10 +162,19 @@ class Maker {
   Made operator()(const session::NoticeStep& step) const {
     using What = session::NoticeStep::What;
     if (step.what == What::practice_over) {
-      return note(words_.practice_over_title, words_.practice_over_text, "", words_.go_on);
+      const bool is_told = context_.intervals != nullptr && context_.intervals->feedback;
+      return note(words_.practice_over_title,
+                  is_told ? words_.practice_over_text_feedback : words_.practice_over_text, "",
+                  words_.go_on);
     }
     if (step.what == What::time_is_up) {
       return note(words_.no_response_title, words_.no_response_text, "", words_.go_on);
+    }
+    if (step.what == What::not_explored) {
+      return note(words_.not_explored_title, words_.not_explored_text, "", words_.go_on);
+    }
+    if (step.what == What::hand_off) {
+      return note(words_.hand_off_title, words_.hand_off_text, "", words_.go_on);
     }
     // Whoever stops the force may press the space bar more than once.
     return std::make_shared<NoteScreen>(
@@ -179,6 +193,13 @@ class Maker {
   }
 
  private:
+  [[nodiscard]] const std::string& ready_text(const session::ReadyStep& step) const {
+    if (step.hand_off) return words_.ready_text_hand_off;
+    if (context_.intervals != nullptr) {
+      return context_.mouse ? words_.ready_text_intervals_mouse : words_.ready_text_intervals;
+    }
+    return context_.mouse ? words_.ready_text_mouse : words_.ready_text;
+  }
   [[nodiscard]] static Made note(const std::string& title, const std::string& body,
                                  const std::string& small, const std::string& button,
                                  const Progress& progress = Progress()) {
@@ -201,6 +222,9 @@ bool same(const session::PracticeStep& a, const session::PracticeStep& b) {
 }
 bool same(const session::ReadyStep& a, const session::ReadyStep& b) {
   return a.trial == b.trial && a.practice == b.practice;
+}
+bool same(const session::IntervalStep& a, const session::IntervalStep& b) {
+  return a.trial == b.trial && a.practice == b.practice && a.interval == b.interval;
 }
 bool same(const session::AnswerStep& a, const session::AnswerStep& b) {
   return a.trial == b.trial && a.practice == b.practice;

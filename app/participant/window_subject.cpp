@@ -27,8 +27,11 @@ std::optional<session::StepReply> WindowSubject::attend(const session::Step& ste
   if (!step_ || !is_same_step(*step_, step)) forget();
   step_ = step;
   if (!reply && !meant_) meant_ = subject_.attend(step);
+  // Nothing is typed between intervals, and no time passes there unless it is real.
+  const bool is_between = std::holds_alternative<session::IntervalStep>(step);
+  if (is_between && !real_time_ && !reply) reply = meant_;
   constexpr std::chrono::milliseconds kShownLimit{1000};
-  if (!reply && meant_ && !typed_ && window_.wait_until_shown(kShownLimit)) {
+  if (!is_between && !reply && meant_ && !typed_ && window_.wait_until_shown(kShownLimit)) {
     type(step, *meant_);
     typed_ = true;
     reply = window_.attend(step);

@@ -24,15 +24,28 @@ struct Words {
   std::string practice_title;
   std::string practice_again_title;  ///< second round
   std::string practice_text;
+  std::string practice_text_intervals;  ///< where a trial has several planes
   std::string practice_again_text;
   std::string practice_start;
   std::string practice_over_title;
   std::string practice_over_text;
+  std::string practice_over_text_feedback;  ///< where answers are told in trials too
 
   std::string ready_title;
   std::string ready_text;
   std::string ready_text_mouse;
+  std::string ready_text_intervals;
+  std::string ready_text_intervals_mouse;
+  std::string ready_text_hand_off;
   std::string ready_keys;
+
+  std::string interval_of;    ///< which plane of a trial comes next, or is on
+  std::string interval_text;  ///< before it
+  std::string interval_text_mouse;
+  std::string interval_text_hand_off;
+  std::string exploring_interval;  ///< while it is on
+  std::string exploring_interval_mouse;
+  std::string exploring_hand_off;
 
   std::string exploring_mouse;  ///< below the plane of the device "mouse"
   std::string force;
@@ -44,6 +57,17 @@ struct Words {
   std::string answer_fits_title;  ///< where textures are made by several methods
   std::string answer_spoken_title;
   std::string answer_spoken_text;
+  std::string answer_spoken_choice;  ///< where choices are words
+  std::string threshold_texture;     ///< titles that a protocol names by their keys
+  std::string threshold_stronger;
+  std::string threshold_coarser;
+  std::string threshold_odd;
+  std::string threshold_same;
+  std::string choice_first;  ///< choices that are words
+  std::string choice_second;
+  std::string choice_third;
+  std::string choice_same;
+  std::string choice_different;
   std::string time_is_up;  ///< an answer is still required
   std::string no_response_title;
   std::string no_response_text;
@@ -65,6 +89,7 @@ struct Words {
   std::string your_answer;
   std::string it_was;
   std::string it_was_this;
+  std::string right_answer;  ///< where choices are words
 
   std::string break_title;
   std::string break_text;
@@ -77,6 +102,11 @@ struct Words {
   std::string stopped_text;        ///< while the experimenter decides
   std::string stopped_text_alone;  ///< where the participant decides, with a mouse
 
+  std::string not_explored_title;  ///< a trial comes again
+  std::string not_explored_text;
+  std::string hand_off_title;  ///< from here on the device is only heard
+  std::string hand_off_text;
+
   std::string end_title;
   std::string end_text;
   std::string finish;
@@ -88,6 +118,15 @@ struct Words {
 /// \param texts  a language's, as design::texts_of gives them
 /// \throws std::out_of_range if one is missing
 [[nodiscard]] Words words_of(const design::Texts& texts);
+
+/// The title of an answer.
+/// \param key  in "screens"
+/// \return that of an answer without a key if there is no such text
+[[nodiscard]] const std::string& title_of(const Words& words, const std::string& key);
+
+/// A choice that is a word, in the words' language.
+/// \return the label itself if there is no text for it
+[[nodiscard]] std::string choice_text(const Words& words, const std::string& label);
 
 /// \param values  what stands in the place of "{name}", by name
 [[nodiscard]] std::string filled(std::string text,

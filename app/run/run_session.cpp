@@ -23,6 +23,7 @@
 #include "engine/image_file.hpp"
 #include "protocols/design/languages.hpp"
 #include "protocols/design/practice.hpp"
+#include "protocols/design/protocol.hpp"
 #include "protocols/session/device_station.hpp"
 #include "protocols/session/real_time_explorer.hpp"
 #include "protocols/session/session_clock.hpp"
@@ -78,6 +79,8 @@ ParticipantWindowOptions window_options(const RunOptions& options, const design:
   window.pitch_mm = study.rendering.pitch_mm;
   window.has_several_methods = study.presented_methods() > 1;
   window.least_touch = study.trials.answer_after;
+  window.intervals = study.protocol->interval_plan(study);
+  window.stiffness_n_per_mm = study.rendering.stiffness_n_per_mm;
   return window;
 }
 
@@ -95,10 +98,20 @@ class ParticipantPractice {
  public:
   /// \throws StudyError as PracticeSet
   ParticipantPractice(const RunStudy& study, const PlaneGeometry& plane) : study_(study.key.study) {
+    if (const auto intervals = study_.protocol->interval_plan(study_)) {
+      design::PracticePlan plan;
+      plan.criterion = intervals->practice_criterion;
+      plan.rounds = intervals->practice_rounds;
+      const auto trials = study_.protocol->practice_trials(study_, {}, 1);
+      if (trials.empty()) return;
+      textures_ = session::PracticeTextures{plane, static_cast<int>(trials.size()), plan,
+                                            [this](int number) { return interval_round(number); }};
+      return;
+    }
     if (study_.trials.practice == 0 || study_.practice.classes.empty()) return;
     set_.emplace(study_, design::weakest_gains(study.pack.manifest()), plane);
-    textures_ =
-        session::PracticeTextures{set_->plane(), [this](int number) { return round(number); }};
+    textures_ = session::PracticeTextures{set_->plane(), study_.trials.practice, study_.practice,
+                                          [this](int number) { return round(number); }};
   }
 
   /// \param draw  the participant's
@@ -120,6 +133,15 @@ class ParticipantPractice {
       const auto place = std::ranges::find(layout, class_index);
       round.order.push_back(static_cast<int>(place - layout.begin()));
     }
+    return round;
+  }
+
+  [[nodiscard]] session::PracticeRound interval_round(int number) const {
+    session::PracticeRound round;
+    for (const design::Choice& choice : study_.protocol->choices(study_)) {
+      round.labels.push_back(choice.label);
+    }
+    round.trials = study_.protocol->practice_trials(study_, draw_, number);
     return round;
   }
 
@@ -186,10 +208,12 @@ void require_blind(const RunOptions& options, const device::DeviceInfo& device) 
                    "pilot's database, or choose a device that is felt");
 }
 
-/// Without a known size, nobody can tell whether pictures have their true size.
+/// Without a known size, nobody can tell whether pictures have their true size. Trials with several
+/// planes show none.
 void warn_of_unknown_size(const RunOptions& options, const design::Study& study,
                           const ParticipantWindow& window) {
   if (study.session.sight == design::Sight::blindfold || window.screen().is_known) return;
+  if (study.protocol->interval_plan(study)) return;
   spdlog::warn(
       "window: the size of this screen is not known, and so that of the pictures; measure it once "
       "with `touchtrial screen calibrate{}`",
@@ -224,7 +248,7 @@ class PersonsSession {
       : options_(options),
         study_(study),
         database_(options, study),
-        source_(study.pack, study.key.study.rendering),
+        source_(study.pack, study.key),
         terminal_(standard_terminal()),
         device_(options, source_.plane(), terminal_),
         instruments_(session_instruments(device_.instruments(), device::kServoRateHz)),
@@ -349,7 +373,7 @@ class SimulatedSession {
       : options_(options),
         study_(study),
         database_(options, study),
-        source_(study.pack, study.key.study.rendering),
+        source_(study.pack, study.key),
         instruments_(instruments_for(options)),
         subject_(subject_for(*options.subject, study.key.study, options.on)),
         population_(simulation::population_of(

@@ -35,13 +35,22 @@ std::vector<double> sum_of_steps(RandomStream& random) {
   return sum;
 }
 
-/// Three tones and the loudest noise together stay within full scale; more would be clipped.
+/// Three tones, or one of them and an interval's mark, stay within full scale together with the
+/// loudest noise; more would be clipped.
 constexpr double kToneAmplitude = 0.06;
+constexpr Cue kCues[] = {Cue::plane_on,     Cue::plane_off,    Cue::too_hard,
+                         Cue::stopped,      Cue::first_begins, Cue::second_begins,
+                         Cue::third_begins, Cue::interval_over};
+// The marks of intervals.
+constexpr double kMarkHz = 1000.0;
+constexpr double kPipS = 0.12;
+constexpr double kBetweenPipsS = 0.12;
+constexpr double kLongMarkS = 0.45;
 constexpr double kToneRampS = 0.01;
 
 /// A glide from one frequency to another, between two ramps.
 void add_tone(std::vector<float>& samples, double rate_hz, double from_hz, double to_hz,
-              double seconds) {
+              double seconds, double amplitude = kToneAmplitude) {
   const auto count = static_cast<std::size_t>(std::lround(seconds * rate_hz));
   const auto ramp = std::lround(kToneRampS * rate_hz);
   double turns = 0.0;
@@ -50,7 +59,7 @@ void add_tone(std::vector<float>& samples, double rate_hz, double from_hz, doubl
     const double up = std::min(1.0, to_edge / static_cast<double>(ramp));
     const double envelope = 0.5 - 0.5 * std::cos(std::numbers::pi * up);
     samples.push_back(
-        static_cast<float>(kToneAmplitude * envelope * std::sin(2.0 * std::numbers::pi * turns)));
+        static_cast<float>(amplitude * envelope * std::sin(2.0 * std::numbers::pi * turns)));
     const double done = static_cast<double>(i) / static_cast<double>(count);
     turns += (from_hz + (to_hz - from_hz) * done) / rate_hz;
   }
@@ -58,6 +67,14 @@ void add_tone(std::vector<float>& samples, double rate_hz, double from_hz, doubl
 
 void add_silence(std::vector<float>& samples, double rate_hz, double seconds) {
   samples.resize(samples.size() + static_cast<std::size_t>(std::lround(seconds * rate_hz)));
+}
+
+/// The number of an interval, to be counted.
+void add_pips(std::vector<float>& samples, double rate_hz, int count) {
+  for (int i = 0; i < count; ++i) {
+    if (i > 0) add_silence(samples, rate_hz, kBetweenPipsS);
+    add_tone(samples, rate_hz, kMarkHz, kMarkHz, kPipS, kMarkAmplitude);
+  }
 }
 
 /// The tones differ in their course and not only in their pitch.
@@ -77,6 +94,18 @@ std::vector<float> tone_of(Cue cue, double rate_hz) {
       break;
     case Cue::stopped:
       add_tone(samples, rate_hz, 800.0, 400.0, 0.5);
+      break;
+    case Cue::first_begins:
+      add_pips(samples, rate_hz, 1);
+      break;
+    case Cue::second_begins:
+      add_pips(samples, rate_hz, 2);
+      break;
+    case Cue::third_begins:
+      add_pips(samples, rate_hz, 3);
+      break;
+    case Cue::interval_over:
+      add_tone(samples, rate_hz, kMarkHz, kMarkHz, kLongMarkS, kMarkAmplitude);
       break;
   }
   return samples;
@@ -103,7 +132,7 @@ std::vector<float> masking_noise(double level_dbfs, std::uint64_t seed) {
 
 SoundMixer::SoundMixer(double sample_rate_hz, std::vector<float> noise)
     : noise_(std::move(noise)), gain_step_(static_cast<float>(1.0 / (kRampS * sample_rate_hz))) {
-  for (const Cue cue : {Cue::plane_on, Cue::plane_off, Cue::too_hard, Cue::stopped}) {
+  for (const Cue cue : kCues) {
     Voice& voice = voices_[static_cast<std::size_t>(cue)];
     voice.tone = tone_of(cue, sample_rate_hz);
     voice.at = voice.tone.size();

@@ -30,6 +30,12 @@ inline constexpr double kHighestMaskingDbfs = -18.0;
 /// \return 2^18 samples, 5.5 s at 48 kHz, with mean 0; |sample| < 0.8
 [[nodiscard]] std::vector<float> masking_noise(double level_dbfs, std::uint64_t seed);
 
+/// The peak of the tones that mark intervals, twice that of the others, because a trial hangs on
+/// them. Each is a pure tone of 1 kHz at -21.4 dBFS rms: 8.6 dB above all of the noise at its
+/// default level of -30 dBFS, and 13 dB above that third of an octave of the loudest noise in which
+/// the tone lies (25 dB at the default level).
+inline constexpr double kMarkAmplitude = 0.12;
+
 /// One channel. `render` belongs to the sound card's thread; the other functions may be called on
 /// any thread. Neither waits for the other. Noise and tones begin and end in ramps, so that nothing
 /// clicks.
@@ -62,7 +68,7 @@ class SoundMixer {
   float gain_ = 0.0F;
   float gain_step_;
   std::atomic<bool> masks_{false};
-  std::array<Voice, 4> voices_;
+  std::array<Voice, 8> voices_;
   std::atomic<std::int64_t> rendered_{0};
 };
 

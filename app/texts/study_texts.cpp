@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,26 +24,57 @@ std::string seconds_text(double seconds, const std::string& language) {
   return text;
 }
 
+std::optional<design::IntervalPlan> intervals_of(const design::Study& study) {
+  return study.protocol->interval_plan(study);
+}
+
 Values values_for(const design::Study& study) {
-  return {{"pictures", std::to_string(study.classes.size())},
-          {"limit", seconds_text(study.trials.explore_limit_s, study.session.language)},
-          {"confidence", std::to_string(study.session.confidence_levels)},
-          {"consent", study.session.consent_version}};
+  const std::string& language = study.session.language;
+  Values values = {{"pictures", std::to_string(study.classes.size())},
+                   {"limit", seconds_text(study.trials.explore_limit_s, language)},
+                   {"confidence", std::to_string(study.session.confidence_levels)},
+                   {"consent", study.session.consent_version}};
+  if (const auto intervals = intervals_of(study)) {
+    const Words words = words_of(design::texts_of(study.session));
+    values.emplace_back("planes", std::to_string(intervals->count));
+    values.emplace_back("seconds", seconds_text(intervals->seconds, language));
+    values.emplace_back("question", title_of(words, intervals->question));
+  }
+  return values;
+}
+
+/// The parts about practice: what is practised, and whether answers are told afterwards too.
+std::vector<std::string> practice_parts(const design::Study& study) {
+  const auto intervals = intervals_of(study);
+  if (!intervals) {
+    return study.trials.practice > 0 ? std::vector<std::string>{"practice"}
+                                     : std::vector<std::string>{};
+  }
+  if (intervals->practice_rounds == 0 || study.protocol->practice_trials(study, {}, 1).empty()) {
+    return {};
+  }
+  return {intervals->feedback ? "practice_intervals_feedback" : "practice_intervals"};
+}
+
+std::string sight_part(const design::Study& study) {
+  const std::string part =
+      study.session.sight == design::Sight::blindfold ? "blindfold" : "curtain";
+  return intervals_of(study) ? part + "_intervals" : part;
+}
+
+std::string time_part(const design::Study& study) {
+  if (intervals_of(study)) return "time_intervals";
+  return study.trials.on_timeout == design::OnTimeout::fade ? "time_fade" : "time_no_response";
 }
 
 /// The parts of the instructions on each page.
 std::vector<std::vector<std::string>> pages_for(const design::Study& study) {
-  std::vector<std::string> rules{
-      study.trials.on_timeout == design::OnTimeout::fade ? "time_fade" : "time_no_response"};
+  std::vector<std::string> rules{time_part(study)};
   if (study.session.confidence_levels > 0) rules.push_back("confidence");
   if (study.session.masking.wanted) rules.push_back("masking");
   std::vector<std::vector<std::string>> pages{
-      {"welcome"},
-      {study.protocol_name()},
-      {"hand"},
-      {study.session.sight == design::Sight::blindfold ? "blindfold" : "curtain"},
-      rules};
-  if (study.trials.practice > 0) pages.push_back({"practice"});
+      {"welcome"}, {study.protocol_name()}, {"hand"}, {sight_part(study)}, rules};
+  if (const auto parts = practice_parts(study); !parts.empty()) pages.push_back(parts);
   pages.push_back({"comfort"});
   return pages;
 }
@@ -128,7 +160,9 @@ std::optional<design::Questionnaire> closing_questions(const design::SessionPlan
 }
 
 /// Each item's deviation code (for skipping it) and its key in a language file.
-std::vector<std::pair<std::string, std::string>> items_for(const design::SessionPlan& plan) {
+/// \param learns_names  whether participants with a blindfold answer with the textures' names
+std::vector<std::pair<std::string, std::string>> items_for(const design::SessionPlan& plan,
+                                                           bool learns_names) {
   std::vector<std::pair<std::string, std::string>> items{
       {"consent", plan.consent_version.empty() ? "consent" : "consent_version"},
       {"warm-up", "warm_up"},
@@ -137,7 +171,7 @@ std::vector<std::pair<std::string, std::string>> items_for(const design::Session
       {"fixture-touch", "fixture"},
       {"placement", "placement"}};
   if (plan.sight == design::Sight::blindfold) {
-    items.emplace_back("labels-learnt", "labels");
+    if (learns_names) items.emplace_back("labels-learnt", "labels");
     items.emplace_back("blindfold", "blindfold");
   } else {
     items.emplace_back("curtain", "curtain");
@@ -151,7 +185,7 @@ std::vector<std::pair<std::string, std::string>> items_for(const design::Session
 std::vector<session::DaySheetItem> day_sheet(const design::Study& study, const Section& texts) {
   const Values values = values_for(study);
   std::vector<session::DaySheetItem> sheet;
-  for (const auto& [code, key] : items_for(study.session)) {
+  for (const auto& [code, key] : items_for(study.session, !intervals_of(study))) {
     sheet.push_back({"no-" + code, filled(texts.at(key), values)});
   }
   int number = 0;

@@ -214,6 +214,7 @@ class ServoRun {
     if (sample.delivered_n) note_delivered(*sample.delivered_n);
     const double fade = fade_at(start.tick);
     const Vec3 rendered_n = (fade * share()) * force_.force_n(sample);
+    if (force_.is_done()) fade_out(start.tick, ServoEnd::hand_stopped);
     const Vec3 support_n = fade * device_.support_force_n(sample);
     most_support_n2_ = std::max(most_support_n2_, dot(support_n, support_n));
     SafeForce safe = safety_.check(rendered_n, sample, start.tick - last_tick_, support_n);

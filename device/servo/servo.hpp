@@ -25,6 +25,8 @@ class ForceSource {
   virtual ~ForceSource() = default;
   /// \return the force on the hand in this state, N, in the plane frame
   [[nodiscard]] virtual Vec3 force_n(const DeviceSample& sample) noexcept = 0;
+  /// Asked after each force: whether the run is to end, with a fade, as if the hand were done.
+  [[nodiscard]] virtual bool is_done() const noexcept { return false; }
 };
 
 /// One tick: where the stylus was, and the force that was sent.

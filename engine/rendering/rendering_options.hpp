@@ -33,6 +33,11 @@ inline constexpr std::array kGains = {NamedGain{"tangential_n", &Gains::tangenti
                                       NamedGain{"normal_n", &Gains::normal_n},
                                       NamedGain{"height_mm", &Gains::height_mm}};
 
+[[nodiscard]] inline Gains scaled(Gains gains, double factor) noexcept {
+  for (const NamedGain& gain : kGains) gains.*gain.value *= factor;
+  return gains;
+}
+
 /// Whether every gain is a finite number >= 0.
 [[nodiscard]] inline bool are_valid(const Gains& gains) noexcept {
   for (const NamedGain& gain : kGains) {

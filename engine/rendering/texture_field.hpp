@@ -60,6 +60,22 @@ class TextureField {
   double highest_;
 };
 
+/// A field with gains, for applied_sum.
+struct FieldWithGains {
+  FieldView field;
+  Gains gains;
+};
+
+/// The sum of fields with their gains applied, less its mean height: the wall of a texture then
+/// lies where the wall without it does. A model renders it with gains of 1, and a reference of 128.
+/// Thread-safe.
+/// \param parts  of one geometry and model
+/// \throws std::invalid_argument if there is none, or they differ
+[[nodiscard]] TextureField applied_sum(std::span<const FieldWithGains> parts);
+
+/// Root mean square of a field's lateral force, or slope, in units of its samples.
+[[nodiscard]] double lateral_rms(FieldView field);
+
 /// Builds a field for the options' model from an extracted texture T. `paper`: the surface 128 + T
 /// after the reconstruction filter, and its tangential force with the options' neighbourhood.
 /// `surface`: the filtered T as a spline, without force planes. Computed in double, stored as

@@ -16,11 +16,12 @@ class AdaptiveOrder {
   AdaptiveOrder& operator=(const AdaptiveOrder&) = delete;
 
   /// Chooses what comes next: the same until the next answer.
-  /// \param presentation  its trial and block stay; `stimulus`, `kind` and `chosen` are set
+  /// \param presentation  its trial and block stay; all else may be set
   virtual void choose(Presentation& presentation) const = 0;
   /// The answer to what was chosen last.
+  /// \param shown  as `choose` made it
   /// \param choice  index into the protocol's choices
-  virtual void answer(int choice) = 0;
+  virtual void answer(const Presentation& shown, int choice) = 0;
 };
 
 }  // namespace touchtrial::design

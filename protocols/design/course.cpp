@@ -34,7 +34,7 @@ const Presentation* Course::current() const noexcept {
 
 void Course::finish(std::optional<int> position) {
   if (order_ && position) {
-    order_->answer(schedule_.layout[static_cast<std::size_t>(*position)]);
+    order_->answer(*current(), schedule_.layout[static_cast<std::size_t>(*position)]);
   }
   queue_.pop_front();
   choose();

@@ -49,6 +49,8 @@ class Course {
   /// The number of remaining presentations, including the current one.
   [[nodiscard]] int left() const noexcept { return static_cast<int>(queue_.size()); }
   [[nodiscard]] bool is_over() const noexcept { return queue_.empty(); }
+  /// Whether the answers decide what comes next.
+  [[nodiscard]] bool is_adaptive() const noexcept { return order_ != nullptr; }
 
   /// Marks the current presentation as done.
   /// \param position  of the answer, in the schedule's layout; nothing: it ended without one, and

@@ -5,6 +5,7 @@
 
 #include "core/strict_json.hpp"
 #include "protocols/design/adaptive_order.hpp"
+#include "protocols/design/interval_plan.hpp"
 #include "protocols/design/schedule.hpp"
 
 #include <memory>
@@ -75,6 +76,12 @@ class Protocol {
     return nullptr;
   }
 
+  /// The stimulus that a choice of the adaptive order was about, for tables and exports.
+  [[nodiscard]] virtual StimulusIndex stimulus_of(const Study& /*study*/,
+                                                  const ChosenLevel& /*chosen*/) const {
+    return {};
+  }
+
   /// The alternatives that a participant chooses between, at least two. An answer is an index into
   /// them.
   [[nodiscard]] virtual std::vector<Choice> choices(const Study& study) const = 0;
@@ -85,8 +92,31 @@ class Protocol {
   /// The page of the instructions that tells participants what to do, in English. Needed only by a
   /// protocol for which the files in config/texts have no page of its name; otherwise empty.
   [[nodiscard]] virtual std::string instruction() const { return {}; }
-  /// The minimum number of methods in a study of this protocol.
+  /// The minimum numbers of methods and classes in a study of this protocol.
   [[nodiscard]] virtual int least_methods() const noexcept { return 1; }
+  [[nodiscard]] virtual int least_classes() const noexcept { return 2; }
+
+  /// Adds to a study what follows from the protocol's section, such as a method for each level.
+  /// Called before `check`.
+  /// \throws StudyError with the place of what makes that impossible
+  virtual void complete(const JsonValue& /*file*/, Study& /*study*/) const {}
+
+  /// How trials of several intervals go. The schedule's presentations, or those of the adaptive
+  /// order, then have intervals.
+  /// \return nothing: a trial presents one plane
+  [[nodiscard]] virtual std::optional<IntervalPlan> interval_plan(const Study& /*study*/) const {
+    return std::nullopt;
+  }
+  /// What its intervals mix, of two stimuli: every pair and share.
+  [[nodiscard]] virtual std::vector<Interval> mixtures(const Study& /*study*/) const { return {}; }
+  /// The presentations of a practice round of such trials, each with its target; empty: no
+  /// practice.
+  /// \param round  from 1
+  [[nodiscard]] virtual std::vector<Presentation> practice_trials(const Study& /*study*/,
+                                                                  const ScheduleDraw& /*draw*/,
+                                                                  int /*round*/) const {
+    return {};
+  }
 };
 
 /// Registers a protocol under its name. Call before the first study is read. Not thread-safe.

@@ -33,13 +33,29 @@ struct ChosenLevel {
   friend bool operator==(const ChosenLevel&, const ChosenLevel&) = default;
 };
 
+/// One of the planes that a trial presents one after the other.
+struct Interval {
+  StimulusIndex stimulus;
+  bool blank = false;         ///< the wall of the stimulus without its texture
+  double gain_db = 0.0;       ///< re the pack's gain of the stimulus
+  double pitch_factor = 1.0;  ///< of the texture's millimetres a pixel, >= 1
+  /// A texture that is mixed in, and its share, 0 .. 1.
+  std::optional<StimulusIndex> other{};
+  double share = 0.0;
+
+  friend bool operator==(const Interval&, const Interval&) = default;
+};
+
 struct Presentation {
   int trial = 0;  ///< from 1
   int block = 0;  ///< from 0
   PresentationKind kind = PresentationKind::scored;
-  StimulusIndex stimulus;
+  StimulusIndex stimulus;  ///< with intervals: without meaning
   /// Nothing: the schedule says what is presented, or the order has not chosen yet.
   std::optional<ChosenLevel> chosen{};
+  /// Empty: one plane, which is explored for as long as the participant wants.
+  std::vector<Interval> intervals{};
+  bool hand_off = false;  ///< the device moves by itself, and is only heard
 
   friend bool operator==(const Presentation&, const Presentation&) = default;
 };

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{16} << 20U;
 constexpr std::int64_t kMaxSeed = std::int64_t{1} << 53U;  // exact in every JSON reader
-constexpr std::array kBlindingNames = {Named<int>{"double", 0}};
+constexpr std::array kBlindingNames = {Named<bool>{"double", true},
+                                       Named<bool>{"participant", false}};
 
 }  // namespace
 
@@ -156,7 +157,7 @@ Study read_study(const JsonValue& place) {
   study.name = read_plain_name(root.at("study"));
   study.protocol = &read_protocol(root.at("protocol"));
   study.options = read_options(root, *study.protocol);
-  study.classes = read_classes(root.at("classes"));
+  study.classes = read_classes(root.at("classes"), study.protocol->least_classes());
   study.methods = read_methods(root.at("methods"));
   if (const auto member = root.find("rendering")) {
     study.rendering = read_rendering(*member, study.device);
@@ -169,10 +170,13 @@ Study read_study(const JsonValue& place) {
   if (const auto member = root.find("registration")) {
     study.registration = read_registration(*member, usual_test_of(study));
   }
-  if (const auto member = root.find("blinding")) static_cast<void>(member->choice(kBlindingNames));
+  if (const auto member = root.find("blinding")) {
+    study.double_blind = member->choice(kBlindingNames);
+  }
   if (const auto member = root.find("seed")) {
     study.seed = static_cast<std::uint64_t>(member->integer(0, kMaxSeed));
   }
+  study.protocol->complete(place, study);
   check_size(place, study);
   study.protocol->check(place, study);
   check_practice(place, study);

@@ -77,8 +77,9 @@ struct TrialOptions {
   TrialOrder order = TrialOrder::shuffled;
   double explore_limit_s = 60.0;  ///< > 0
   OnTimeout on_timeout = OnTimeout::fade;
-  int practice = 0;      ///< presentations in a practice round
-  int break_every = 0;   ///< trials between breaks; 0: none
+  int practice = 0;              ///< presentations in a practice round
+  int break_every = 0;           ///< trials between breaks; 0: none
+  double break_after_min = 0.0;  ///< time between breaks, ended by the next trial's end; 0: none
   int catch_trials = 0;  ///< unscored presentations of a plane without texture, among the others
   int lead_in = 0;       ///< unscored presentations at the start of each block
   Blocks blocks = Blocks::by_method;
@@ -96,7 +97,7 @@ struct Study {
   std::string name;
   const Protocol* protocol = nullptr;              ///< never null in a study read from a file
   std::shared_ptr<const ProtocolOptions> options;  ///< from the protocol's own section; may be null
-  std::vector<StudyClass> classes;                 ///< >= 2, labels unique
+  std::vector<StudyClass> classes;                 ///< >= 1, labels unique
   std::vector<StudyMethod> methods;                ///< >= 1, labels unique
   engine::RenderingOptions rendering;
   std::string device;  ///< model of the device that the forces are for, or its file; may be empty
@@ -106,6 +107,8 @@ struct Study {
   VisitPlan visits;
   GroupPlan groups;
   Registration registration;
+  /// Whether the experimenter must not know what is presented either.
+  bool double_blind = true;
   std::uint64_t seed = 0;
   std::filesystem::path folder;  ///< image paths are relative to this folder
   std::string source;            ///< the file's name, for errors

@@ -212,7 +212,7 @@ std::string blinded_configuration(const StudyKey& key) {
                                   {"methods", methods},
                                   {"rendering", to_json(study.rendering)},
                                   {"trials", to_json(study.trials)},
-                                  {"blinding", "double"}};
+                                  {"blinding", study.double_blind ? "double" : "participant"}};
   const std::string options = study.protocol->options_in_clear(study);
   if (!options.empty()) {
     configuration[std::string(study.protocol->section())] = nlohmann::json::parse(options);
@@ -245,6 +245,8 @@ nlohmann::json parts_of(const Study& study) {
           {"visits", to_json(study.visits)},
           {"groups", to_json(study.groups)},
           {"registration", to_json(study.registration)},
+          {"blinding", study.double_blind},
+          {"protocol's own section", study.protocol->options_in_clear(study)},
           {"seed", study.seed}};
 }
 

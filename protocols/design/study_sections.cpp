@@ -112,9 +112,9 @@ void refuse_same_label(const JsonValue& place, const std::string& label, const s
   }
 }
 
-std::vector<StudyClass> read_classes(const JsonValue& place, std::size_t most_images) {
+std::vector<StudyClass> read_classes(const JsonValue& place, int fewest, std::size_t most_images) {
   std::vector<StudyClass> classes;
-  for (const JsonValue& item : place.items(2, kMaxClasses)) {
+  for (const JsonValue& item : place.items(static_cast<std::size_t>(fewest), kMaxClasses)) {
     const JsonObject object = item.object({"label", "images"});
     StudyClass study_class{read_label(object.at("label")),
                            read_images(object.at("images"), most_images)};
@@ -129,8 +129,8 @@ std::vector<StudyClass> read_classes(const JsonValue& place, std::size_t most_im
 TrialOptions read_trials(const JsonValue& place) {
   const JsonObject object =
       place.object({"repeats", "order", "explore_limit_s", "on_timeout", "practice", "break_every",
-                    "catch", "lead_in", "blocks", "max_run", "on_interruption", "resume_within_h",
-                    "validity", "answer_after"});
+                    "break_after_min", "catch", "lead_in", "blocks", "max_run", "on_interruption",
+                    "resume_within_h", "validity", "answer_after"});
   TrialOptions options;
   read_count(object, "repeats", 1, 1000, options.repeats);
   read_count(object, "break_every", 0, 10'000, options.break_every);
@@ -140,6 +140,9 @@ TrialOptions read_trials(const JsonValue& place) {
   read_count(object, "max_run", 0, kMaxScoredTrials, options.max_run);
   if (const auto member = object.find("explore_limit_s")) {
     options.explore_limit_s = member->number({.low = 0.0, .high = 3600.0, .open_low = true});
+  }
+  if (const auto member = object.find("break_after_min")) {
+    options.break_after_min = member->number({0.0, 240.0});
   }
   if (const auto member = object.find("order")) options.order = member->choice(kTrialOrderNames);
   if (const auto member = object.find("on_timeout")) {
@@ -166,6 +169,9 @@ nlohmann::json to_json(const TrialOptions& trials) {
                          {"blocks", word_for(kBlocksNames, trials.blocks)}};
   const TrialOptions usual;
   if (trials.max_run != usual.max_run) text["max_run"] = trials.max_run;
+  if (trials.break_after_min != usual.break_after_min) {
+    text["break_after_min"] = trials.break_after_min;
+  }
   if (trials.on_interruption != usual.on_interruption) {
     text["on_interruption"] = word_for(kOnInterruptionNames, trials.on_interruption);
   }
@@ -189,7 +195,7 @@ nlohmann::json to_json(const TrialOptions& trials) {
 PracticePlan read_practice(const JsonValue& place) {
   const JsonObject object = place.object({"classes", "criterion", "rounds"});
   PracticePlan practice;
-  practice.classes = read_classes(object.at("classes"), 1);
+  practice.classes = read_classes(object.at("classes"), 2, 1);
   if (const auto member = object.find("criterion")) {
     practice.criterion = static_cast<int>(member->integer(0, 100));
   }

@@ -121,7 +121,8 @@ void refuse_same_label(const JsonValue& place, const std::string& label, const s
 
 /// These functions read one section each.
 /// \throws StudyError with the place of a value that they do not accept
-[[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place,
+/// \param fewest  classes
+[[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place, int fewest,
                                                    std::size_t most_images = kMaxImagesOfClass);
 [[nodiscard]] std::vector<StudyMethod> read_methods(const JsonValue& place);
 /// \param device  receives Study::device, if there is one

@@ -64,7 +64,13 @@ class FitSearch {
  private:
   [[nodiscard]] Observer observer_of(const Numbers& at) const;
   [[nodiscard]] Numbers numbers_of(const Observer& observer) const;
-  [[nodiscard]] Numbers coarse_start(const Numbers& lower, const Numbers& upper) const;
+  /// Of a coarse grid of thresholds and widths, the best threshold of each width that is better
+  /// than its neighbours, and that of half the range, which the grid's steps may hide.
+  [[nodiscard]] std::vector<Numbers> coarse_starts(const Numbers& lower, const Numbers& upper,
+                                                   double lapse) const;
+  /// The likelihood of few answers has several maxima, often a steep one with lapses and a flat one
+  /// without, so it is searched from several lapses and widths.
+  [[nodiscard]] Fit search_all(const Numbers& lower, const Numbers& upper) const;
   [[nodiscard]] Fit search(Numbers start, Numbers lower, Numbers upper) const;
 
   std::span<const LevelCounts> counts_;
@@ -111,27 +117,34 @@ Numbers FitSearch::numbers_of(const Observer& observer) const {
   return {observer.threshold, std::log(width_at_one_ / observer.slope), observer.lapse};
 }
 
-Numbers FitSearch::coarse_start(const Numbers& lower, const Numbers& upper) const {
-  constexpr int kWidths = 7;
+std::vector<Numbers> FitSearch::coarse_starts(const Numbers& lower, const Numbers& upper,
+                                              double lapse) const {
+  constexpr std::size_t kWidths = 7;
   const int thresholds = lower[0] < upper[0] ? 17 : 1;
-  Numbers best{};
-  double most = -std::numeric_limits<double>::infinity();
-  for (int t = 0; t < thresholds; ++t) {
-    for (int w = 0; w < kWidths; ++w) {
+  std::array<Numbers, kWidths> best{};
+  std::array<double, kWidths> most{};
+  for (std::size_t w = 0; w < kWidths; ++w) {
+    const double width = range_ * std::pow(0.5, static_cast<double>(w));
+    for (int t = 0; t < thresholds; ++t) {
       const double at = counts_.front().level + range_ * t / std::max(1, thresholds - 1);
-      const Numbers numbers{at, std::log(range_ * std::pow(0.5, w)), 0.2 * options_.most_lapse};
-      Numbers inside;
+      Numbers numbers{at, std::log(width), lapse};
       for (std::size_t i = 0; i < kNumbers; ++i) {
-        inside[i] = std::clamp(numbers[i], lower[i], upper[i]);
+        numbers[i] = std::clamp(numbers[i], lower[i], upper[i]);
       }
-      const double found = log_likelihood(observer_of(inside), counts_);
-      if (found > most || (t == 0 && w == 0)) {
-        most = found;
-        best = inside;
-      }
+      const double found = log_likelihood(observer_of(numbers), counts_);
+      if (t > 0 && !(found > most[w])) continue;
+      most[w] = found;
+      best[w] = numbers;
     }
   }
-  return best;
+  std::vector<Numbers> starts;
+  for (std::size_t w = 0; w < kWidths; ++w) {
+    const bool above_wider = w == 0 || most[w] > most[w - 1];
+    const bool above_narrower = w + 1 == kWidths || most[w] >= most[w + 1];
+    if (above_wider && above_narrower) starts.push_back(best[w]);
+  }
+  starts.push_back(best[1]);
+  return starts;
 }
 
 /// Over the numbers whose bounds differ.
@@ -170,17 +183,40 @@ Fit FitSearch::search(Numbers start, Numbers lower, Numbers upper) const {
   return {observer, most, procedures::deviance(observer, counts_)};
 }
 
+Fit FitSearch::search_all(const Numbers& lower, const Numbers& upper) const {
+  std::optional<Fit> best;
+  std::optional<double> before;
+  for (const double share : {0.0, 0.2, 1.0}) {
+    const double lapse = std::clamp(share * options_.most_lapse, lower[2], upper[2]);
+    if (before == lapse) continue;
+    before = lapse;
+    for (const Numbers& start : coarse_starts(lower, upper, lapse)) {
+      const Fit found = search(start, lower, upper);
+      if (!best || found.log_likelihood > best->log_likelihood) best = found;
+    }
+  }
+  return *best;
+}
+
 Fit FitSearch::best(std::optional<Observer> start) const {
-  return search(start ? numbers_of(*start) : coarse_start(lower_, upper_), lower_, upper_);
+  Fit fit = start ? search(numbers_of(*start), lower_, upper_) : search_all(lower_, upper_);
+  // Subplex may stop on a ridge, and then goes on from there.
+  constexpr int kMostAgain = 4;
+  constexpr double kGain = 1e-9;
+  for (int again = 0; again < kMostAgain; ++again) {
+    const double before = fit.log_likelihood;
+    fit = search(numbers_of(fit.observer), lower_, upper_);
+    if (!(fit.log_likelihood > before + kGain)) break;
+  }
+  return fit;
 }
 
 Fit FitSearch::best_at(double threshold, const Observer& start) const {
   Numbers lower = lower_;
   Numbers upper = upper_;
   lower[0] = upper[0] = threshold;
-  // The likelihood of few answers has several maxima, which one start would not all find.
   const Fit near = search(numbers_of(start), lower, upper);
-  const Fit coarse = search(coarse_start(lower, upper), lower, upper);
+  const Fit coarse = search_all(lower, upper);
   return near.log_likelihood >= coarse.log_likelihood ? near : coarse;
 }
 

@@ -89,12 +89,11 @@ std::string words_in_clear(const device::ServoReport& report) {
   return "device fault";
 }
 
-Exploration VirtualExplorer::explore(const engine::RenderingModel& model,
-                                     const PlaneGeometry& plane, Participant& participant,
-                                     const device::ServoOptions& options, store::Trace& trace) {
+Exploration VirtualExplorer::explore(device::ForceSource& force, const PlaneGeometry& plane,
+                                     Participant& participant, const device::ServoOptions& options,
+                                     store::Trace& trace) {
   TraceBuilder builder(trace, options.rate_hz, most_samples(options));
   device::HapticDevice& device = participant.begin_exploring(plane);
-  ModelForce force(model);
   TrialSink sink(participant, builder);
   Exploration done;
   done.servo = device::run_servo_in_virtual_time(device, force, sink, options);

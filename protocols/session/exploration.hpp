@@ -111,8 +111,8 @@ class Explorer {
   /// Puts a plane before a participant until the hand stops, time is up, or something fails. The
   /// last force written is zero.
   /// \param trace  gets every sample; its memory is reused
-  [[nodiscard]] virtual Exploration explore(const engine::RenderingModel& model,
-                                            const PlaneGeometry& plane, Participant& participant,
+  [[nodiscard]] virtual Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
+                                            Participant& participant,
                                             const device::ServoOptions& options,
                                             store::Trace& trace) = 0;
 };
@@ -120,7 +120,7 @@ class Explorer {
 /// Runs as fast as the processor allows, on the calling thread: for hands in virtual time.
 class VirtualExplorer final : public Explorer {
  public:
-  [[nodiscard]] Exploration explore(const engine::RenderingModel& model, const PlaneGeometry& plane,
+  [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                     Participant& participant, const device::ServoOptions& options,
                                     store::Trace& trace) override;
 };

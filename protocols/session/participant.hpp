@@ -37,6 +37,17 @@ struct ReadyStep {
   int trial = 0;  ///< from 1 to `of`
   int of = 0;
   bool practice = false;
+  bool hand_off = false;  ///< the device is only heard
+};
+
+/// Before each plane of a trial with several: the hand lifts off. Goes on by itself, after a moment
+/// in which it can be read.
+struct IntervalStep {
+  int trial = 0;  ///< its number in the schedule; in practice, in the round
+  bool practice = false;
+  int interval = 1;  ///< from 1 to `of`
+  int of = 2;
+  bool hand_off = false;
 };
 
 /// Asks for one of the pictures of `Participant::see_pictures`.
@@ -47,6 +58,8 @@ struct AnswerStep {
   bool time_is_up = false;
   bool may_explore_again = false;                ///< the reply may be `explore_again`
   int confidence_levels = 0;                     ///< 0: not asked
+  /// Key of the title in the texts' "screens", of trials with intervals; empty: which picture it is.
+  std::string question{};
   design::Sight sight = design::Sight::curtain;  ///< blindfold: the answer is spoken
 };
 
@@ -67,6 +80,8 @@ struct NoticeStep {
     practice_over,  ///< the trials begin
     time_is_up,     ///< a presentation has ended without an answer
     stopped,        ///< a comfort stop: the force is off
+    not_explored,   ///< an interval was not explored as asked for; its trial comes again
+    hand_off,       ///< from here on the device is only heard
   };
   What what{};
   int presentations = 0;  ///< begun so far
@@ -82,8 +97,8 @@ struct EndStep {};
 
 /// Data alone, which a window draws, a simulated participant answers, and a test scripts. Nothing
 /// in a step depends on what is presented.
-using Step = std::variant<InstructionStep, QuestionStep, PracticeStep, ReadyStep, AnswerStep,
-                          FeedbackStep, BreakStep, NoticeStep, PauseStep, EndStep>;
+using Step = std::variant<InstructionStep, QuestionStep, PracticeStep, ReadyStep, IntervalStep,
+                          AnswerStep, FeedbackStep, BreakStep, NoticeStep, PauseStep, EndStep>;
 
 struct StepReply {
   /// When the participant replied, on the servo's monotonic clock; empty: now.

@@ -125,7 +125,7 @@ struct RealTimeExplorer::Machinery {
   /// Runs the servo on its thread; the caller's looks after the participant meanwhile.
   /// \param began  set to the time at which the servo starts
   [[nodiscard]] device::ServoReport run(device::HapticDevice& device,
-                                        const engine::RenderingModel& model,
+                                        device::ForceSource& force,
                                         device::SampleSink& sink, const device::ServoOptions& servo,
                                         Participant& participant,
                                         std::chrono::steady_clock::time_point& began);
@@ -141,13 +141,12 @@ struct RealTimeExplorer::Machinery {
 };
 
 device::ServoReport RealTimeExplorer::Machinery::run(device::HapticDevice& device,
-                                                     const engine::RenderingModel& model,
+                                                     device::ForceSource& force,
                                                      device::SampleSink& sink,
                                                      const device::ServoOptions& servo,
                                                      Participant& participant,
                                                      std::chrono::steady_clock::time_point& began) {
   control.forget_wishes();
-  ModelForce force(model);
   const std::unique_ptr<device::ServoClock> clock = make_clock();
   device::ServoHooks hooks;
   hooks.control = &control;
@@ -191,8 +190,8 @@ device::ServoControl& RealTimeExplorer::control() noexcept {
   return machinery_->control;
 }
 
-Exploration RealTimeExplorer::explore(const engine::RenderingModel& model,
-                                      const PlaneGeometry& plane, Participant& participant,
+Exploration RealTimeExplorer::explore(device::ForceSource& force, const PlaneGeometry& plane,
+                                      Participant& participant,
                                       const device::ServoOptions& options, store::Trace& trace) {
   Machinery& m = *machinery_;
   m.make_room(options);
@@ -202,7 +201,7 @@ Exploration RealTimeExplorer::explore(const engine::RenderingModel& model,
   Exploration done;
   {
     const TraceWriter writer(*m.ring, builder, participant);
-    done.servo = m.run(device, model, sink, options, participant, done.began.emplace());
+    done.servo = m.run(device, force, sink, options, participant, done.began.emplace());
   }
   done.landed_at = builder.landed_at();
   done.lasted = time_of_tick(done.servo.ticks + done.servo.overruns, options.rate_hz);

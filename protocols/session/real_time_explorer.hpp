@@ -34,7 +34,7 @@ class RealTimeExplorer final : public Explorer {
 
   [[nodiscard]] bool in_real_time() const noexcept override { return true; }
   /// \throws whatever `participant.exploring` throws; the force is zero by then
-  [[nodiscard]] Exploration explore(const engine::RenderingModel& model, const PlaneGeometry& plane,
+  [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                     Participant& participant, const device::ServoOptions& options,
                                     store::Trace& trace) override;
 

@@ -153,8 +153,11 @@ SessionPhase Session::between_trials() const noexcept {
 }
 
 bool Session::break_due() const noexcept {
-  return phase_ == Phase::ready && options_.break_every > 0 &&
-         done_since_break_ >= options_.break_every;
+  if (phase_ != Phase::ready || done_since_break_ == 0) return false;
+  const bool by_trials = options_.break_every > 0 && done_since_break_ >= options_.break_every;
+  const std::chrono::duration<double, std::ratio<60>> since = last_ - rested_at_;
+  const bool by_time = options_.break_after_min > 0.0 && since.count() >= options_.break_after_min;
+  return by_trials || by_time;
 }
 
 void Session::open(Time at, const store::SessionOpening& opening,
@@ -183,6 +186,8 @@ void Session::present(Time at) {
 }
 
 void Session::begin_presentation(Time at) noexcept {
+  // The first trial after a break, instructions or practice: until then the hand has rested.
+  if (done_since_break_ == 0) rested_at_ = at;
   presented_at_ = at;
   had_contact_ = false;
   was_timed_out_ = false;

@@ -238,6 +238,7 @@ class Session {
   std::optional<double> largest_force_n_;  ///< sent in presentations
   int begun_ = 0;
   int done_since_break_ = 0;
+  Time rested_at_{};  ///< when the first trial after the last break began
 };
 
 }  // namespace touchtrial::session

@@ -137,11 +137,11 @@ std::optional<StepReply> SessionDesk::attend(const Step& step) {
   return std::nullopt;
 }
 
-Exploration SessionDesk::explore(const engine::RenderingModel& model, const PlaneGeometry& plane,
+Exploration SessionDesk::explore(device::ForceSource& force, const PlaneGeometry& plane,
                                  const device::ServoOptions& options, store::Trace& trace) {
   AttendedParticipant participant(*this);
   hand_.begin();
-  Exploration done = parts_.explorer.explore(model, plane, participant, options, trace);
+  Exploration done = parts_.explorer.explore(force, plane, participant, options, trace);
   hand_.begin();
   parts_.clock.pass(done.lasted);
   status_.rate_hz = done.servo.rate_hz;

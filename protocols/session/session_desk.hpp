@@ -43,7 +43,7 @@ class SessionDesk {
   /// Runs an exploration, and lets its time pass. In real time the experimenter's requests end it,
   /// or are obeyed after it.
   /// \param trace  gets every sample
-  [[nodiscard]] Exploration explore(const engine::RenderingModel& model, const PlaneGeometry& plane,
+  [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                     const device::ServoOptions& options, store::Trace& trace);
   /// The options of the session's explorations.
   [[nodiscard]] device::ServoOptions servo_options() const;

@@ -1,5 +1,7 @@
 #include "protocols/session/session_runner.hpp"
 
+#include "protocols/design/protocol.hpp"
+#include "protocols/session/interval_run.hpp"
 #include "protocols/session/session_desk.hpp"
 #include "protocols/session/trial_trace.hpp"
 
@@ -26,14 +28,21 @@ class TrialRun {
         session_(desk.session()),
         parts_(desk.parts()),
         tally_(tally),
-        servo_(desk.servo_options()) {}
+        servo_(desk.servo_options()),
+        intervals_(parts_.key.study.protocol->interval_plan(parts_.key.study)) {}
 
   /// Runs the current presentation to its answer or interruption.
   /// \pre the session is ready
   void run();
+  /// How many trials came again because they were not explored as asked for.
+  [[nodiscard]] int came_again() const noexcept { return came_again_; }
 
  private:
   [[nodiscard]] const engine::RenderingModel& model() const;
+  /// Presents all planes of a trial with intervals.
+  void run_intervals();
+  /// \return when the exploration ended
+  [[nodiscard]] Time note_exploration(const Exploration& done, Time plane_on);
   /// \return whether the participant is to answer
   [[nodiscard]] bool explore(const engine::RenderingModel& model);
   [[nodiscard]] bool explore_again(const engine::RenderingModel& model);
@@ -48,8 +57,11 @@ class TrialRun {
   const SessionParts& parts_;
   SessionTally& tally_;
   device::ServoOptions servo_;
+  std::optional<design::IntervalPlan> intervals_;
   TrialTrace trace_;
-  int of_ = 0;  ///< presentations in all, as far as is known
+  int of_ = 0;                 ///< presentations in all, as far as is known
+  int came_again_ = 0;         ///< trials that were not explored as asked for
+  bool hand_was_off_ = false;  ///< in the trial before
   bool time_is_up_ = false;
 };
 
@@ -57,7 +69,14 @@ void TrialRun::run() {
   of_ = session_.presentations_begun() + session_.presentations_left();
   time_is_up_ = false;
   desk_.enter("ready");
-  if (!desk_.attend(ReadyStep{session_.presentations_begun() + 1, of_, false})) return;
+  const bool hand_off = session_.current()->hand_off;
+  if (hand_off && !hand_was_off_) {
+    const NoticeStep notice{NoticeStep::What::hand_off, session_.presentations_begun()};
+    if (!desk_.attend(notice)) return;
+  }
+  hand_was_off_ = hand_off;
+  if (!desk_.attend(ReadyStep{session_.presentations_begun() + 1, of_, false, hand_off})) return;
+  if (intervals_) return run_intervals();
   const engine::RenderingModel& presented = model();
   if (explore(presented)) answer(presented);
   const bool is_lost =
@@ -81,7 +100,8 @@ bool TrialRun::explore(const engine::RenderingModel& model) {
   session_.present(plane_on);
   desk_.enter("exploring");
   ++tally_.presentations;
-  return end_exploration(desk_.explore(model, parts_.source.plane(), servo_, trace_.next_part()),
+  ModelForce force(model);
+  return end_exploration(desk_.explore(force, parts_.source.plane(), servo_, trace_.next_part()),
                          plane_on);
 }
 
@@ -92,18 +112,24 @@ bool TrialRun::explore_again(const engine::RenderingModel& model) {
   const Time plane_on = desk_.now();
   session_.explore_again(plane_on);
   desk_.enter("exploring");
-  return end_exploration(desk_.explore(model, parts_.source.plane(), rest, part), plane_on);
+  ModelForce force(model);
+  return end_exploration(desk_.explore(force, parts_.source.plane(), rest, part), plane_on);
 }
 
 /// Ticks count from the servo's start, a moment after plane-on was recorded. Events that follow the
 /// exploration have the time of its end and not the present one: how long it takes to pack a trace
 /// or to write a flight record tells rough textures from smooth ones.
-bool TrialRun::end_exploration(const Exploration& done, Time plane_on) {
+Session::Time TrialRun::note_exploration(const Exploration& done, Time plane_on) {
   const Time began =
       done.began ? std::clamp(parts_.clock.of(*done.began), plane_on, desk_.now()) : plane_on;
   const Time ended = std::min(began + done.lasted, desk_.now());
   tally_.ticks += done.servo.ticks;
   if (done.landed_at) session_.contact(std::min(began + *done.landed_at, ended));
+  return ended;
+}
+
+bool TrialRun::end_exploration(const Exploration& done, Time plane_on) {
+  const Time ended = note_exploration(done, plane_on);
   if (is_interrupted(done.servo)) {
     session_.interrupt(ended, desk_.note_interruption(done.servo), done.detail);
     return false;
@@ -118,6 +144,58 @@ bool TrialRun::end_exploration(const Exploration& done, Time plane_on) {
     session_.time_out(ended);
   }
   return session_.phase() == SessionPhase::answering;
+}
+
+void TrialRun::run_intervals() {
+  const design::Presentation shown = *session_.current();
+  trace_.begin();
+  time_is_up_ = false;
+  Time plane_on{};
+  Time ended{};
+  bool is_presented = false;
+  device::ServoReport last;
+  std::optional<store::InterruptionDetail> detail;
+  IntervalListener listener;
+  listener.plane_on = [&]() -> store::Trace& {
+    plane_on = desk_.now();
+    if (!is_presented) {
+      session_.present(plane_on);
+      ++tally_.presentations;
+      is_presented = true;
+    }
+    desk_.enter("exploring");
+    return trace_.next_part();
+  };
+  listener.explored = [&](const Exploration& done) {
+    ended = note_exploration(done, plane_on);
+    last = done.servo;
+    detail = done.detail;
+    if (!is_interrupted(done.servo)) trace_.add(done);
+  };
+  switch (session::run_intervals(desk_, shown, false, listener)) {
+    case IntervalsEnd::broken_off:
+      return;
+    case IntervalsEnd::interrupted:
+      session_.interrupt(ended, desk_.note_interruption(last), detail);
+      return;
+    case IntervalsEnd::not_explored:
+      session_.interrupt(ended, "not explored as asked for");
+      ++came_again_;
+      static_cast<void>(
+          desk_.attend(NoticeStep{NoticeStep::What::not_explored, session_.presentations_begun()}));
+      return;
+    case IntervalsEnd::explored:
+      break;
+  }
+  trace_.pack(session_, parts_.explorer.in_real_time());
+  session_.end_exploring(ended);
+  desk_.enter("answering");
+  const std::optional<StepReply> reply = desk_.attend(question());
+  if (!reply) return;
+  confirm(*reply);
+  if (!intervals_->feedback || shown.hand_off || !shown.chosen) return;
+  desk_.enter("feedback");
+  static_cast<void>(desk_.attend(FeedbackStep{reply->position, shown.chosen->target}));
 }
 
 void TrialRun::answer(const engine::RenderingModel& model) {
@@ -138,8 +216,9 @@ AnswerStep TrialRun::question() const {
           .of = of_,
           .practice = false,
           .time_is_up = time_is_up_,
-          .may_explore_again = !time_is_up_ && left_s >= kLeastAgainS,
+          .may_explore_again = !intervals_ && !time_is_up_ && left_s >= kLeastAgainS,
           .confidence_levels = plan.confidence_levels,
+          .question = intervals_ ? intervals_->question : std::string(),
           .sight = plan.sight};
 }
 
@@ -181,6 +260,9 @@ void run_trials(SessionDesk& desk, SessionTally& tally) {
     static_cast<void>(desk.obey());
     if (desk.interruptions() > most_interruptions && session.accepts(SessionInput::stop)) {
       session.stop(desk.now(), "", "too many faults");
+    }
+    if (trials.came_again() > most_interruptions && session.accepts(SessionInput::stop)) {
+      session.stop(desk.now(), "", "too many trials not explored as asked for");
     }
   }
 }

@@ -1,6 +1,8 @@
 #include "protocols/session/session_stages.hpp"
 
 #include "core/text.hpp"
+#include "protocols/design/protocol.hpp"
+#include "protocols/session/interval_run.hpp"
 #include "protocols/session/session_desk.hpp"
 
 #include <chrono>
@@ -146,22 +148,27 @@ PracticeProgress progress_of(const std::vector<store::PracticeBody>& practised,
 class PracticeRun {
  public:
   PracticeRun(SessionDesk& desk, const PracticeTextures& textures)
-      : desk_(desk), textures_(textures), a_round_(desk.parts().key.study.trials.practice) {}
+      : desk_(desk), textures_(textures), a_round_(textures.presentations) {}
 
   /// \return whether the session goes on
   [[nodiscard]] bool run();
 
  private:
   [[nodiscard]] PracticeProgress progress() const {
-    return progress_of(desk_.session().remarks().practice, desk_.parts().key.study.practice,
-                       a_round_);
+    return progress_of(desk_.session().remarks().practice, textures_.plan, a_round_);
   }
   [[nodiscard]] bool run_round(int round);
   /// \return empty if it was interrupted; to be repeated if the session goes on
-  [[nodiscard]] std::optional<store::PracticeBody> present(const PracticeProgress& at, int position,
-                                                           const engine::RenderingModel& model);
+  [[nodiscard]] std::optional<store::PracticeBody> present(const PracticeProgress& at,
+                                                           const PracticeRound& round);
+  /// The position that is right.
+  [[nodiscard]] static int right_at(const PracticeProgress& at, const PracticeRound& round);
   /// \return how it ended; empty if it was interrupted
-  [[nodiscard]] std::optional<device::ServoEnd> explore(const engine::RenderingModel& model);
+  [[nodiscard]] std::optional<device::ServoEnd> explore(const PracticeProgress& at,
+                                                        const PracticeRound& round);
+  [[nodiscard]] std::optional<device::ServoEnd> explore_plane(const engine::RenderingModel& model);
+  [[nodiscard]] std::optional<device::ServoEnd> explore_intervals(
+      const design::Presentation& shown);
 
   SessionDesk& desk_;
   const PracticeTextures& textures_;
@@ -170,7 +177,7 @@ class PracticeRun {
 };
 
 bool PracticeRun::run() {
-  const int rounds = desk_.parts().key.study.practice.rounds;
+  const int rounds = textures_.plan.rounds;
   for (PracticeProgress at = progress(); !at.passed; at = progress()) {
     if (at.round > rounds) {
       if (!desk_.session().remarks().deviations.contains("practice-not-passed")) {
@@ -188,45 +195,82 @@ bool PracticeRun::run_round(int round) {
   desk_.parts().participant.see_pictures(shown.labels);
   desk_.enter_practice("practice", 0, a_round_);
   if (!desk_.attend(PracticeStep{round})) return desk_.goes_on();
-  const std::vector<int>& order = shown.order;
   for (PracticeProgress at = progress(); at.round == round && !at.passed; at = progress()) {
     if (!desk_.await_device()) {
       if (!desk_.goes_on()) return false;
       continue;
     }
-    const int position = order[static_cast<std::size_t>(at.done) % order.size()];
-    const std::optional<store::PracticeBody> done =
-        present(at, position, *shown.models[static_cast<std::size_t>(position)]);
+    const std::optional<store::PracticeBody> done = present(at, shown);
     if (!desk_.goes_on()) return false;
     if (!done) continue;
     desk_.session().practise(desk_.now(), *done);
     desk_.enter_practice("feedback", done->presentation, a_round_);
-    if (!desk_.attend(FeedbackStep{*done->position, position}) && !desk_.goes_on()) return false;
+    const FeedbackStep feedback{*done->position, right_at(at, shown)};
+    if (!desk_.attend(feedback) && !desk_.goes_on()) return false;
   }
   return true;
 }
 
-std::optional<store::PracticeBody> PracticeRun::present(const PracticeProgress& at, int position,
-                                                        const engine::RenderingModel& model) {
+int PracticeRun::right_at(const PracticeProgress& at, const PracticeRound& round) {
+  const auto nth = static_cast<std::size_t>(at.done);
+  if (!round.trials.empty()) return round.trials[nth % round.trials.size()].chosen->target;
+  return round.order[nth % round.order.size()];
+}
+
+std::optional<store::PracticeBody> PracticeRun::present(const PracticeProgress& at,
+                                                        const PracticeRound& round) {
   const int number = at.done + 1;
   desk_.enter_practice("ready", number, a_round_);
   if (!desk_.attend(ReadyStep{number, a_round_, true})) return std::nullopt;
   desk_.enter_practice("exploring", number, a_round_);
-  const std::optional<device::ServoEnd> end = explore(model);
+  const std::optional<device::ServoEnd> end = explore(at, round);
   if (!end) return std::nullopt;
   desk_.enter_practice("answering", number, a_round_);
+  const design::Study& study = desk_.parts().key.study;
+  const auto intervals = study.protocol->interval_plan(study);
   const std::optional<StepReply> reply =
       desk_.attend(AnswerStep{.trial = number,
                               .of = a_round_,
                               .practice = true,
                               .time_is_up = *end == device::ServoEnd::time_limit,
-                              .sight = desk_.parts().key.study.session.sight});
+                              .question = intervals ? intervals->question : std::string(),
+                              .sight = study.session.sight});
   if (!reply) return std::nullopt;
-  return store::PracticeBody{at.round, number, reply->position, reply->position == position};
+  return store::PracticeBody{at.round, number, reply->position,
+                             reply->position == right_at(at, round)};
 }
 
-std::optional<device::ServoEnd> PracticeRun::explore(const engine::RenderingModel& model) {
-  const Exploration done = desk_.explore(model, textures_.plane, desk_.servo_options(), trace_);
+std::optional<device::ServoEnd> PracticeRun::explore(const PracticeProgress& at,
+                                                     const PracticeRound& round) {
+  if (round.trials.empty()) {
+    return explore_plane(*round.models[static_cast<std::size_t>(right_at(at, round))]);
+  }
+  return explore_intervals(round.trials[static_cast<std::size_t>(at.done) % round.trials.size()]);
+}
+
+std::optional<device::ServoEnd> PracticeRun::explore_intervals(const design::Presentation& shown) {
+  device::ServoReport last;
+  const IntervalListener listener{[this]() -> store::Trace& { return trace_; },
+                                  [&last](const Exploration& done) { last = done.servo; }};
+  switch (run_intervals(desk_, shown, true, listener)) {
+    case IntervalsEnd::explored:
+      return device::ServoEnd::hand_stopped;
+    case IntervalsEnd::interrupted:
+      desk_.session().note(desk_.now(), "practice interrupted: " + desk_.note_interruption(last));
+      return std::nullopt;
+    case IntervalsEnd::not_explored:
+      static_cast<void>(desk_.attend(
+          NoticeStep{NoticeStep::What::not_explored, desk_.session().presentations_begun()}));
+      return std::nullopt;
+    case IntervalsEnd::broken_off:
+      break;
+  }
+  return std::nullopt;
+}
+
+std::optional<device::ServoEnd> PracticeRun::explore_plane(const engine::RenderingModel& model) {
+  ModelForce force(model);
+  const Exploration done = desk_.explore(force, textures_.plane, desk_.servo_options(), trace_);
   if (!is_interrupted(done.servo)) return done.servo.end;
   desk_.session().note(desk_.now(), "practice interrupted: " + desk_.note_interruption(done.servo));
   return std::nullopt;
@@ -235,7 +279,7 @@ std::optional<device::ServoEnd> PracticeRun::explore(const engine::RenderingMode
 /// \return whether the session goes on
 bool practise(SessionDesk& desk) {
   const PracticeTextures* textures = desk.parts().practice;
-  const bool wanted = textures != nullptr && desk.parts().key.study.trials.practice > 0;
+  const bool wanted = textures != nullptr && textures->presentations > 0;
   if (!wanted || desk.session().presentations_begun() > 0) return true;
   const std::size_t before = desk.session().remarks().practice.size();
   if (!PracticeRun(desk, *textures).run()) return false;
@@ -245,9 +289,11 @@ bool practise(SessionDesk& desk) {
 }
 
 void show_pictures(SessionDesk& desk) {
+  const design::Study& study = desk.parts().key.study;
+  const std::vector<design::Choice> choices = study.protocol->choices(study);
   std::vector<std::string> pictures;
-  for (const int class_index : desk.session().layout()) {
-    pictures.push_back(desk.parts().key.study.classes[class_index].label);
+  for (const int choice : desk.session().layout()) {
+    pictures.push_back(choices[static_cast<std::size_t>(choice)].label);
   }
   desk.parts().participant.see_pictures(pictures);
 }

@@ -4,6 +4,7 @@
 
 #include "core/plane_geometry.hpp"
 #include "engine/rendering/rendering_model.hpp"
+#include "protocols/design/schedule.hpp"
 #include "protocols/design/session_plan.hpp"
 #include "protocols/session/experimenter.hpp"
 
@@ -26,12 +27,16 @@ struct PracticeRound {
   std::vector<std::string> labels;                    ///< by position
   std::vector<const engine::RenderingModel*> models;  ///< by position
   std::vector<int> order;                             ///< positions in the order of presentation
+  /// Instead of models and order: trials with intervals, each with its target.
+  std::vector<design::Presentation> trials{};
 };
 
 /// One participant's practice on textures that are not in the study. The fields of the models must
 /// outlive this.
 struct PracticeTextures {
   PlaneGeometry plane;
+  int presentations = 0;        ///< of a round
+  design::PracticePlan plan{};  ///< criterion and rounds
   /// Numbered from 1. The same number always gives the same round.
   std::function<PracticeRound(int round)> round;
 };

@@ -1,10 +1,14 @@
 #include "protocols/session/stimulus_source.hpp"
 
 #include "core/errors.hpp"
+#include "protocols/design/protocol.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
+#include <stdexcept>
 
 namespace touchtrial::session {
 namespace {
@@ -22,7 +26,7 @@ void touch(std::span<const std::byte> bytes) noexcept {
 }  // namespace
 
 StimulusSource::StimulusSource(const engine::Pack& pack, const engine::RenderingOptions& rendering)
-    : folder_(pack.folder().string()) {
+    : folder_(pack.folder().string()), rendering_(rendering) {
   for (const engine::PackEntry& entry : pack.manifest().entries) {
     fields_.push_back(pack.map(entry.code));
     const engine::FieldView view = fields_.back().view();
@@ -31,14 +35,15 @@ StimulusSource::StimulusSource(const engine::Pack& pack, const engine::Rendering
                                " is of another rendering model than the study; run `touchtrial "
                                "prepare`"));
     }
-    models_.emplace(entry.code, engine::RenderingModel(view, rendering, entry.gains));
+    stimuli_.emplace(entry.code, Stimulus{view, entry.gains,
+                                          engine::RenderingModel(view, rendering, entry.gains)});
     // Made of a field, which is read like any other, so that the servo takes as long.
     if (!flat_) flat_.emplace(view, rendering, engine::Gains{});
-    if (models_.size() == 1) plane_ = view.geometry;
+    if (stimuli_.size() == 1) plane_ = view.geometry;
     plane_.height_px = std::min(plane_.height_px, view.geometry.height_px);
     plane_.width_px = std::min(plane_.width_px, view.geometry.width_px);
   }
-  if (models_.empty()) {
+  if (stimuli_.empty()) {
     throw FileError(one_line(folder_ + ": the pack has no field; run `touchtrial prepare`"));
   }
 }
@@ -52,8 +57,60 @@ void StimulusSource::fetch() const noexcept {
 }
 
 const engine::RenderingModel& StimulusSource::model(const std::string& code) const {
-  const auto found = models_.find(code);
-  if (found == models_.end()) {
+  return stimulus(code).model;
+}
+
+StimulusSource::Mix StimulusSource::mix_of(const design::Interval& interval) noexcept {
+  if (!interval.other || interval.share == 0.0) return {interval.stimulus, interval.stimulus, 0.0};
+  return {interval.stimulus, *interval.other, interval.share};
+}
+
+StimulusSource::StimulusSource(const engine::Pack& pack, const design::StudyCodes& codes)
+    : StimulusSource(pack, codes.study.rendering) {
+  if (!codes.study.protocol->interval_plan(codes.study)) return;
+  for (const auto& [code, index] : codes.stimuli) {
+    const Mix alone{index, index, 0.0};
+    mixes_.emplace(alone, applied(alone, codes));
+  }
+  for (const design::Interval& interval : codes.study.protocol->mixtures(codes.study)) {
+    const Mix mix = mix_of(interval);
+    if (!mixes_.contains(mix)) mixes_.emplace(mix, applied(mix, codes));
+  }
+}
+
+StimulusSource::Applied StimulusSource::applied(const Mix& mix,
+                                                const design::StudyCodes& codes) const {
+  const Stimulus& one = stimulus(codes.code_of(mix.one));
+  const std::array<engine::FieldWithGains, 1> alone = {{{one.field, one.gains}}};
+  if (mix.share == 0.0) return {engine::applied_sum(alone), 1.0};
+  const Stimulus& other = stimulus(codes.code_of(mix.other));
+  const std::array<engine::FieldWithGains, 2> parts = {
+      engine::FieldWithGains{one.field, engine::scaled(one.gains, 1.0 - mix.share)},
+      engine::FieldWithGains{other.field, engine::scaled(other.gains, mix.share)}};
+  Applied sum{engine::applied_sum(parts), 1.0};
+  if (rendering_.equalise != engine::Equalise::rms) return sum;
+  // As strong as the first alone, like every stimulus of the study.
+  const double wanted = engine::lateral_rms(engine::applied_sum(alone).view());
+  const double mixed = engine::lateral_rms(sum.field.view());
+  sum.factor = mixed > 0.0 ? wanted / mixed : 1.0;
+  return sum;
+}
+
+engine::RenderingModel StimulusSource::plane_of(const design::Interval& interval) const {
+  const auto found = mixes_.find(mix_of(interval));
+  if (found == mixes_.end()) {
+    throw std::logic_error("StimulusSource: a plane that the protocol did not name");
+  }
+  const double gain =
+      interval.blank ? 0.0 : found->second.factor * std::pow(10.0, interval.gain_db / 20.0);
+  engine::FieldView field = found->second.field.view();
+  field.geometry.pitch_mm *= interval.pitch_factor;
+  return {field, rendering_, {gain, gain, gain}};
+}
+
+const StimulusSource::Stimulus& StimulusSource::stimulus(const std::string& code) const {
+  const auto found = stimuli_.find(code);
+  if (found == stimuli_.end()) {
     throw FileError(
         one_line(folder_ + ": the pack has no field " + code + "; run `touchtrial prepare`"));
   }

@@ -3,6 +3,7 @@
 
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/rendering_model.hpp"
+#include "protocols/design/study_key.hpp"
 
 #include <map>
 #include <optional>
@@ -20,10 +21,18 @@ class StimulusSource {
   /// \throws FileError if a field is missing, truncated, malformed or of another rendering model,
   ///   or the pack is empty
   StimulusSource(const engine::Pack& pack, const engine::RenderingOptions& rendering);
+  /// The same for sessions, whose trials may have intervals.
+  StimulusSource(const engine::Pack& pack, const design::StudyCodes& codes);
 
   /// The model of a field.
   /// \throws FileError if the pack has no such code
   [[nodiscard]] const engine::RenderingModel& model(const std::string& code) const;
+
+  /// The plane of an interval. Its wall lies where that of the blank one does: a texture's mean
+  /// height is taken out. Gains are applied to forces, which are linear in them up to limits and as
+  /// long as contact lasts.
+  /// \throws std::logic_error if the study has no intervals, or its protocol did not name the mix
+  [[nodiscard]] engine::RenderingModel plane_of(const design::Interval& interval) const;
 
   /// A plane without texture, for catch trials.
   [[nodiscard]] const engine::RenderingModel& flat() const noexcept { return *flat_; }
@@ -40,9 +49,33 @@ class StimulusSource {
  private:
   std::string folder_;
   std::vector<engine::MappedField> fields_;
-  std::map<std::string, engine::RenderingModel, std::less<>> models_;
+  struct Stimulus {
+    engine::FieldView field;
+    engine::Gains gains;
+    engine::RenderingModel model;
+  };
+  [[nodiscard]] const Stimulus& stimulus(const std::string& code) const;
+
+  /// Two stimuli, or one twice, and the share of the second.
+  struct Mix {
+    design::StimulusIndex one;
+    design::StimulusIndex other;
+    double share = 0.0;
+    friend auto operator<=>(const Mix&, const Mix&) = default;
+  };
+  /// A field in memory, and the factor that all gains are 1 with.
+  struct Applied {
+    engine::TextureField field;
+    double factor = 1.0;
+  };
+  [[nodiscard]] static Mix mix_of(const design::Interval& interval) noexcept;
+  [[nodiscard]] Applied applied(const Mix& mix, const design::StudyCodes& codes) const;
+
+  std::map<std::string, Stimulus, std::less<>> stimuli_;
   std::optional<engine::RenderingModel> flat_;
   PlaneGeometry plane_;
+  engine::RenderingOptions rendering_;
+  std::map<Mix, Applied> mixes_;  ///< of studies with intervals
 };
 
 }  // namespace touchtrial::session

@@ -10,17 +10,17 @@
 #include <string_view>
 
 namespace touchtrial::simulation {
+
+double moved(double probability, double log_odds) {
+  if (probability <= 0.0 || probability >= 1.0) return probability;
+  return 1.0 / (1.0 + std::exp(-(std::log(probability / (1.0 - probability)) + log_odds)));
+}
+
 namespace {
 
 /// Standard normal. Each purpose has its own stream, so that one spread does not affect the others.
 double deviation(std::string_view purpose, std::uint64_t seed, std::uint64_t number) {
   return RandomStream(seed, purpose, number).normal();
-}
-
-/// Moves a probability by log odds. 0 and 1 have none, and stay.
-double moved(double probability, double log_odds) {
-  if (probability <= 0.0 || probability >= 1.0) return probability;
-  return 1.0 / (1.0 + std::exp(-(std::log(probability / (1.0 - probability)) + log_odds)));
 }
 
 /// Varies the log odds, so that the result stays a probability. A median of 0 or 1 has none: then

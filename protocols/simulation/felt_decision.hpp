@@ -31,6 +31,9 @@ inline constexpr const char* kExplorationPurpose = "subject: exploration";
 /// Purpose of the stream for a decision.
 inline constexpr const char* kAnswerPurpose = "subject: answer";
 
+/// Moves a probability by log odds. 0 and 1 have none, and stay.
+[[nodiscard]] double moved(double probability, double log_odds);
+
 /// One participant of a population. A function of subject model, seed and number: the same in every
 /// study and thread. Source of the distributions: docs/subject-file.md, "Differences between
 /// participants".

@@ -4,6 +4,7 @@
 #include "core/random.hpp"
 #include "device/simulated/simulated_hand.hpp"
 #include "engine/perception/felt_features.hpp"
+#include "protocols/design/adaptive_order.hpp"
 #include "protocols/session/participant.hpp"
 #include "protocols/simulation/felt_exploration.hpp"
 #include "protocols/simulation/subject_model.hpp"
@@ -11,6 +12,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -39,6 +41,10 @@ class PromptParticipant : public session::Participant {
       reply.answers.resize(asked->questionnaire->questions.size());
     }
     if (std::holds_alternative<session::BreakStep>(step)) rest();
+    if (const auto* const next = std::get_if<session::IntervalStep>(&step)) {
+      reply.took = kBetweenIntervals;
+      interval(*next);
+    }
     return reply;
   }
 
@@ -46,6 +52,11 @@ class PromptParticipant : public session::Participant {
   [[nodiscard]] virtual ParticipantAnswer answer() = 0;
   /// Called at each break.
   virtual void rest() {}
+  /// Called before each plane of a trial with several.
+  virtual void interval(const session::IntervalStep& /*next*/) {}
+
+ private:
+  static constexpr std::chrono::seconds kBetweenIntervals{1};
 };
 
 /// In each trial, strokes the plane on a new path and answers from what was felt. Everything random
@@ -65,6 +76,9 @@ class SimulatedParticipant : public PromptParticipant {
     trials_begun_ = trials_before(visit);
     begin_visit(visit, std::move(course));
   }
+  /// Gets what decides the presentations, for observers who are told the level.
+  /// \param order  of this visit; null: the schedule says all
+  virtual void follow(std::unique_ptr<design::AdaptiveOrder> /*order*/) {}
   /// How many trials a visit counts as coming after: more than any session has.
   [[nodiscard]] static std::uint64_t trials_before(int visit) noexcept {
     constexpr std::uint64_t kTrialsOfVisit = 1'000'000;
@@ -83,7 +97,9 @@ class SimulatedParticipant : public PromptParticipant {
                                                  RandomStream& random) = 0;
   /// Called when the participant comes to a visit.
   virtual void begin_visit(int /*visit*/, TrialCourse /*course*/) {}
-  /// Presentations of this visit that have begun.
+  /// What was felt of the last exploration, without noise.
+  [[nodiscard]] engine::FeltFeatures felt_last() const noexcept { return sense_.features(); }
+  /// Presentations, or intervals, of this visit that have begun.
   [[nodiscard]] int begun() const noexcept {
     return static_cast<int>(trials_begun_ - trials_before(visit_));
   }

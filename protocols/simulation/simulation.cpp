@@ -32,6 +32,7 @@ struct Setting {
   const session::StimulusSource& source;
   const Population& population;
   const device::DeviceModel& held;
+  bool is_given;  ///< answers follow a given function
   std::uint64_t seed;
   Digest seal;
 };
@@ -68,7 +69,7 @@ store::SessionOpening opening_of(const Setting& setting, const Place& place) {
   if (group && groups.open) opening.group = groups.labels[static_cast<std::size_t>(*group)];
   opening.study_id = setting.key.study_id;
   opening.seal = setting.seal;
-  opening.device = device::words_of_simulated(setting.held);
+  opening.device = setting.is_given ? "given-function" : device::words_of_simulated(setting.held);
   opening.simulated = true;
   return opening;
 }
@@ -95,6 +96,7 @@ FinishedSession run_session(const Setting& setting, const Place& place) {
   const std::unique_ptr<SimulatedParticipant> participant =
       setting.population.participant(place.number);
   participant->come_to(place.visit, course_of(setting.key.study, schedule));
+  participant->follow(design::adaptive_order(setting.key.study, draw));
   finished.tally =
       session::run_session_in_virtual_time(session, setting.key, setting.source, *participant);
   finished.keys = store::wrap_participant_key(setting.key.investigator_box, place.session, key);
@@ -179,10 +181,12 @@ SimulationReport simulate_study(const design::StudyKey& key, const engine::Pack&
                                 const SubjectModel& subject, const SimulationOptions& options,
                                 store::StudyStore& store, const design::Progress& progress) {
   check(options);
-  const session::StimulusSource source(pack, key.study.rendering);
+  const session::StimulusSource source(pack, key);
   const std::unique_ptr<const Population> population =
       population_of({key, source, subject, options.seed, options.jobs});
-  const Setting setting{key, source, *population, subject.device, options.seed, key.seal};
+  const Setting setting{
+      key,          source,  *population, subject.device, subject.given_function.has_value(),
+      options.seed, key.seal};
   const int sessions = options.participants * key.study.visits.count;
   Collector collector(store, progress, key.study.visits, sessions);
   run_sessions(setting, options, store.next_session(), sessions, collector);

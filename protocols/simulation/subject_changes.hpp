@@ -49,6 +49,17 @@ struct Fatigue {
   friend bool operator==(const Fatigue&, const Fatigue&) = default;
 };
 
+/// Answers by a psychometric function of the level, of the shape of the study's grid, which no
+/// person could: for checks of procedures and analyses. What is felt does not matter.
+struct GivenFunction {
+  double threshold = 0.0;  ///< median over participants, in units of the level
+  double spread = 0.0;     ///< standard deviation of the threshold between participants, >= 0
+  double slope = 1.0;      ///< > 0
+  double lapse = 0.0;      ///< in [0, 0.5)
+
+  friend bool operator==(const GivenFunction&, const GivenFunction&) = default;
+};
+
 /// Time from the end of the exploration to the answer: a shifted lognormal, whose median above the
 /// shift falls exponentially with the difference between the two strongest supports.
 struct ThoughtTime {

@@ -86,6 +86,16 @@ ThoughtTime thought_from(const JsonValue& value) {
   return thought;
 }
 
+GivenFunction given_function_from(const JsonValue& value) {
+  const JsonObject object = value.object({"threshold", "spread", "slope", "lapse"});
+  GivenFunction given;
+  given.threshold = object.at("threshold").number({-200.0, 200.0});
+  given.slope = object.at("slope").number({0.0, 1000.0, true});
+  read_number(object, "spread", {0.0, 100.0}, given.spread);
+  read_number(object, "lapse", {0.0, 0.5, false, true}, given.lapse);
+  return given;
+}
+
 nlohmann::ordered_json json_of(const Learning& learning) {
   return {{"factor", learning.factor},
           {"trials", learning.trials},
@@ -110,6 +120,13 @@ nlohmann::ordered_json json_of(const ThoughtTime& thought) {
   return {{"shift_s", thought.shift_s}, {"easy_s", thought.easy_s},
           {"hard_s", thought.hard_s},   {"margin", thought.margin},
           {"spread", thought.spread},   {"longest_s", thought.longest_s}};
+}
+
+nlohmann::ordered_json json_of(const GivenFunction& given) {
+  return {{"threshold", given.threshold},
+          {"spread", given.spread},
+          {"slope", given.slope},
+          {"lapse", given.lapse}};
 }
 
 }  // namespace touchtrial::simulation

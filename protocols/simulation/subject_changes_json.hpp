@@ -20,11 +20,13 @@ void read_number(const JsonObject& object, std::string_view key, const NumberRan
 [[nodiscard]] SerialDependence serial_from(const JsonValue& value);
 [[nodiscard]] Fatigue fatigue_from(const JsonValue& value);
 [[nodiscard]] ThoughtTime thought_from(const JsonValue& value);
+[[nodiscard]] GivenFunction given_function_from(const JsonValue& value);
 
 /// With every key.
 [[nodiscard]] nlohmann::ordered_json json_of(const Learning& learning);
 [[nodiscard]] nlohmann::ordered_json json_of(const SerialDependence& serial);
 [[nodiscard]] nlohmann::ordered_json json_of(const Fatigue& fatigue);
 [[nodiscard]] nlohmann::ordered_json json_of(const ThoughtTime& thought);
+[[nodiscard]] nlohmann::ordered_json json_of(const GivenFunction& given);
 
 }  // namespace touchtrial::simulation

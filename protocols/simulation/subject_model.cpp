@@ -111,7 +111,8 @@ SubjectModel read_model(const JsonValue& document, const std::string& source) {
                                              "period_noise_spread",
                                              "serial",
                                              "fatigue",
-                                             "thought"});
+                                             "thought",
+                                             "given_function"});
   SubjectModel model;
   model.source = source;
   if (const auto sense = object.find("sense")) model.sense = sense->choice(kSenses);
@@ -136,6 +137,9 @@ SubjectModel read_model(const JsonValue& document, const std::string& source) {
   if (const auto serial = object.find("serial")) model.serial = serial_from(*serial);
   if (const auto fatigue = object.find("fatigue")) model.fatigue = fatigue_from(*fatigue);
   if (const auto thought = object.find("thought")) model.thought = thought_from(*thought);
+  if (const auto given = object.find("given_function")) {
+    model.given_function = given_function_from(*given);
+  }
   return model;
 }
 
@@ -217,6 +221,7 @@ std::string subject_model_json(const SubjectModel& model) {
                   {"serial", json_of(model.serial)},
                   {"fatigue", json_of(model.fatigue)}};
   if (model.thought) subject["thought"] = json_of(*model.thought);
+  if (model.given_function) subject["given_function"] = json_of(*model.given_function);
   return json_text(subject);
 }
 

@@ -76,6 +76,8 @@ struct SubjectModel {
   Fatigue fatigue;
   /// Nothing: from 0.8 to 4 s, each time equally likely, whatever is felt.
   std::optional<ThoughtTime> thought;
+  /// Nothing: answers follow from what is felt.
+  std::optional<GivenFunction> given_function;
 
   /// What the hand holds; an ideal device unless a command or the study names one. Not in the file.
   device::DeviceModel device;
@@ -102,7 +104,7 @@ struct SubjectModel {
 /// \throws StudyError as load_subject_model
 [[nodiscard]] SubjectModel parse_subject_model(std::string_view text, const std::string& source);
 
-/// The text of a subject file with every key, but for `thought` if there is none.
+/// The text of a subject file with every key, but for `thought` and `given_function` if there is none.
 /// parse_subject_model reads it back as the same model except for the source: numbers have all
 /// their digits. Indented; ends with a line feed.
 [[nodiscard]] std::string subject_model_json(const SubjectModel& model);

@@ -98,6 +98,9 @@ void answer_trial(DerivedRows& rows, const Event& event) {
   row.position = body.position;
   row.first_position = body.first_position;
   row.confidence = body.confidence;
+  row.track = body.track;
+  row.level = body.level;
+  row.target = body.target;
 }
 
 void end_trial(DerivedRows& rows, const Event& event, TrialState state) {

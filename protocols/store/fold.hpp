@@ -79,6 +79,9 @@ struct TrialRow {
   std::optional<int> position;  ///< in the participant's layout; empty: no response
   std::optional<int> first_position;
   std::optional<int> confidence;
+  std::optional<int> track;   ///< that an adaptive order chose, from 1; 0: none of its tracks
+  std::optional<int> level;   ///< index into the track's levels
+  std::optional<int> target;  ///< index of the right choice
   std::int64_t samples = 0;
 
   [[nodiscard]] bool has_trace() const noexcept { return rate_hz > 0.0; }

@@ -115,12 +115,18 @@ const std::vector<Room>& rooms() {
     std::set<std::string> simulation = session;
     simulation.insert("protocols/session");
     std::set<std::string> planning = simulation;
-    planning.insert({"protocols/simulation", "analysis", "protocols/identification/analysis"});
+    planning.insert({"protocols/simulation", "analysis", "protocols/identification/analysis",
+                     "protocols/threshold/design", "protocols/procedures"});
+    std::set<std::string> compared = simulation;
+    compared.insert({"protocols/simulation", "protocols/threshold/design", "protocols/procedures"});
     std::set<std::string> identified = simulation;
     identified.insert({"protocols/simulation", "protocols/identification/design"});
     std::set<std::string> analysed = analysis;
     analysed.insert({"analysis", "protocols/identification/design"});
+    std::set<std::string> measured = analysis;
+    measured.insert({"analysis", "protocols/threshold/design", "protocols/procedures"});
     std::set<std::string> registered = planning;
+    registered.insert({"protocols/threshold/simulation", "protocols/threshold/analysis"});
     registered.insert({"protocols/identification/design", "protocols/identification/simulation",
                        "protocols/identification/analysis"});
     std::set<std::string> app = registered;
@@ -139,12 +145,17 @@ const std::vector<Room>& rooms() {
         {"protocols/identification/design",
          "touchtrial::design::identification",
          {"core", "engine", "protocols/design"}},
+        {"protocols/threshold/design",
+         "touchtrial::design::threshold",
+         {"core", "engine", "protocols/design", "protocols/procedures"}},
         {"protocols/session", "touchtrial::session", session},
         {"protocols/simulation", "touchtrial::simulation", simulation},
         {"protocols/identification/simulation", "touchtrial::simulation::identification",
          identified},
+        {"protocols/threshold/simulation", "touchtrial::simulation::threshold", compared},
         {"analysis", "touchtrial::analysis", analysis},
         {"protocols/identification/analysis", "touchtrial::analysis::identification", analysed},
+        {"protocols/threshold/analysis", "touchtrial::analysis::threshold", measured},
         {"analysis/planning", "touchtrial::planning", planning},
         {"protocols/registration", "touchtrial::registration", registered},
         {"stimuli", "touchtrial::stimuli", {"core", "engine"}},

@@ -122,9 +122,13 @@ class CountedCues final : public app::Cues {
   void tone(app::Cue cue) noexcept override {
     if (cue == app::Cue::too_hard) ++too_hard;
     if (cue == app::Cue::stopped) ++stopped;
+    if (cue == app::Cue::first_begins) marks = 10 * marks + 1;
+    if (cue == app::Cue::second_begins) marks = 10 * marks + 2;
+    if (cue == app::Cue::interval_over) marks = 10 * marks + 9;
   }
   std::atomic<int> too_hard{0};
   std::atomic<int> stopped{0};
+  std::atomic<int> marks{0};  ///< of intervals, a digit each; 9: the end
 };
 
 TEST_CASE("replies to 25 trials hold the choices made by keys, with times after the keys") {
@@ -376,6 +380,158 @@ TEST_CASE("the exploring screen does not depend on what is felt, to the last byt
   });
 }
 
+app::ParticipantWindowOptions with_intervals() {
+  app::ParticipantWindowOptions wanted = options();
+  wanted.intervals = design::IntervalPlan{.question = "threshold_texture"};
+  wanted.stiffness_n_per_mm = 0.4;
+  wanted.interval_pause = milliseconds(300);
+  wanted.least_touch = {.contact_s = 0.5, .path_mm = 25.0};
+  return wanted;
+}
+
+session::IntervalStep interval_step(int interval) {
+  return {.trial = 1, .interval = interval, .of = 2};
+}
+
+TEST_CASE("what is said before a plane can be read for a moment, and goes on by itself") {
+  CountedCues cues;
+  app::ParticipantWindowOptions wanted = with_intervals();
+  wanted.cues = &cues;
+  Sitting sitting(wanted);
+  sitting.run([&] {
+    for (int interval = 1; interval <= 2; ++interval) {
+      const auto begun = steady_clock::now();
+      sitting.show(interval_step(interval));
+      sitting.screen->type("Return 1");
+      CHECK(sitting.reply_to(interval_step(interval)));
+      CHECK(steady_clock::now() - begun >= milliseconds(300));
+      sitting.window.show_exploring(kPlane);
+    }
+    CHECK_FALSE(sitting.window.attend(answer_step()));
+    CHECK(cues.marks == 1929);
+  });
+}
+
+TEST_CASE("Enter ends none of a trial's planes, whatever was felt, and the space bar stops") {
+  Sitting sitting(with_intervals());
+  sitting.run([&] {
+    CHECK(sitting.reply_to(interval_step(1)));
+    sitting.window.show_exploring(kPlane);
+    feel_texture(sitting.window, 0.9);
+    CHECK(sitting.window.wait_until_shown(kPatience));
+    std::this_thread::sleep_for(milliseconds(600));
+    device::ServoControl servo;
+    sitting.screen->type("Return");
+    sitting.settle();
+    for (int i = 0; i < 20; ++i) sitting.window.exploring(servo);
+    CHECK_FALSE(servo.finish_asked());
+    CHECK_FALSE(servo.comfort_stop_asked());
+    sitting.screen->type("space");
+    sitting.settle();
+    sitting.window.exploring(servo);
+    CHECK(servo.comfort_stop_asked());
+    // A trial with one plane ends as ever.
+    CHECK_FALSE(sitting.window.attend(session::ReadyStep{2, 25, false}));
+    sitting.window.show_exploring(kPlane);
+    feel_texture(sitting.window, 0.9);
+    std::this_thread::sleep_for(milliseconds(600));
+    servo.forget_wishes();
+    sitting.screen->type("Return");
+    sitting.settle();
+    sitting.window.exploring(servo);
+    CHECK(servo.finish_asked());
+  });
+}
+
+TEST_CASE("a space bar between two planes stops the second as soon as it is on") {
+  app::ParticipantWindowOptions wanted = with_intervals();
+  wanted.interval_pause = kPatience;
+  Sitting sitting(wanted);
+  sitting.run([&] {
+    app::InputEvent space;
+    space.key = app::Key::space;
+    sitting.show(session::ReadyStep{1, 25, false});
+    const auto begun = steady_clock::now();
+    const auto press_after = [&](int ms) {
+      space.at = begun + milliseconds(ms);
+      sitting.window.inject(space);
+    };
+    const auto is_stopped = [&] {
+      sitting.window.show_exploring(kPlane);
+      device::ServoControl servo;
+      sitting.window.exploring(servo);
+      return servo.comfort_stop_asked();
+    };
+    // Pressed twice to go on: the second press is forgiven.
+    press_after(0);
+    REQUIRE(sitting.reply_to(session::ReadyStep{1, 25, false}));
+    CHECK_FALSE(sitting.window.attend(interval_step(1)));
+    press_after(200);
+    CHECK_FALSE(sitting.window.attend(interval_step(1)));
+    CHECK_FALSE(is_stopped());
+    // The next one is meant.
+    CHECK_FALSE(sitting.window.attend(interval_step(2)));
+    press_after(10'000);
+    CHECK(sitting.window.attend(interval_step(2)));
+    CHECK(is_stopped());
+    // It does not reach another trial.
+    CHECK_FALSE(sitting.window.attend(interval_step(1)));
+    CHECK_FALSE(is_stopped());
+  });
+}
+
+TEST_CASE("a comfort stop has its own tone in place of that of an interval's end") {
+  CountedCues cues;
+  app::ParticipantWindowOptions wanted = with_intervals();
+  wanted.cues = &cues;
+  Sitting sitting(wanted);
+  sitting.run([&] {
+    CHECK(sitting.reply_to(interval_step(1)));
+    sitting.window.show_exploring(kPlane);
+    sitting.show({session::NoticeStep{session::NoticeStep::What::stopped, 1, false}});
+    CHECK(cues.marks == 1);
+    CHECK(cues.stopped == 1);
+  });
+}
+
+/// A hand that has lifted off and strokes at 100 mm/s for so long, and what answers it.
+void stroke(app::ParticipantWindow& window, double seconds, double depth_mm, Vec3 force_n) {
+  for (int tick = 0; tick < static_cast<int>(1000.0 * seconds); ++tick) {
+    device::ServoSample sample;
+    sample.tick = tick;
+    sample.position_mm = {0.1 * tick, 20.0, tick == 0 ? 2.0 : -depth_mm};
+    sample.force_n = force_n;
+    window.feel(sample);
+  }
+}
+
+TEST_CASE("the screen of an interval depends on the hand alone, and so does the tone") {
+  CountedCues cues;
+  app::ParticipantWindowOptions wanted = with_intervals();
+  wanted.cues = &cues;
+  Sitting sitting(wanted);
+  sitting.run([&] {
+    const auto picture_after = [&](double seconds, double depth_mm, Vec3 force_n) {
+      CHECK(sitting.reply_to(interval_step(1)));
+      sitting.window.show_exploring(kPlane);
+      stroke(sitting.window, seconds, depth_mm, force_n);
+      device::ServoControl servo;
+      sitting.window.exploring(servo);
+      CHECK(sitting.window.wait_until_shown(kPatience));
+      return sitting.window.picture();
+    };
+    const engine::ColourImage smooth = picture_after(1.0, 2.0, {0.0, 0.0, 0.8});
+    CHECK(picture_after(1.0, 2.0, {1.5, 1.5, 3.0}) == smooth);
+    CHECK(cues.too_hard == 0);
+    const engine::ColourImage none = picture_after(0.01, 2.0, {});
+    CHECK(none != smooth);
+    CHECK(picture_after(2.0, 2.0, {}) != smooth);  // it grows
+    CHECK(picture_after(1.0, 0.2, {}) == none);    // too lightly: it stands still
+    CHECK(picture_after(1.0, 7.0, {}) == none);    // too hard
+    CHECK(cues.too_hard == 1);
+  });
+}
+
 TEST_CASE("a force above 2 N sounds a tone once, until it has been lower") {
   CountedCues cues;
   app::ParticipantWindowOptions wanted = options();
@@ -441,6 +597,25 @@ TEST_CASE("a simulated participant answers with the window's keys") {
       CHECK(reply.confidence.has_value() == (trial % 2 == 1));
     }
     static_cast<void>(reply_to(session::EndStep{}));
+  });
+}
+
+TEST_CASE("a simulated participant waits between planes in real time only") {
+  app::ParticipantWindowOptions wanted = with_intervals();
+  const bool real_time = GENERATE(false, true);
+  wanted.interval_pause = real_time ? milliseconds(200) : kPatience;
+  Sitting sitting(wanted);
+  Chooser chooser;
+  sitting.run([&] {
+    app::WindowSubject subject(sitting.window, chooser, real_time);
+    const auto begun = steady_clock::now();
+    std::optional<session::StepReply> reply;
+    while (!reply && steady_clock::now() < begun + kPatience) {
+      reply = subject.attend(interval_step(1));
+    }
+    REQUIRE(reply);
+    if (real_time) CHECK(steady_clock::now() - begun >= milliseconds(200));
+    if (!real_time) CHECK(reply->took > std::chrono::nanoseconds(0));
   });
 }
 

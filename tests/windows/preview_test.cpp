@@ -36,22 +36,48 @@ std::vector<std::string> names_of(const std::vector<app::PreviewScreen>& screens
   return names;
 }
 
+std::set<std::size_t> kinds_of(const std::vector<app::PreviewScreen>& screens) {
+  std::set<std::size_t> kinds;
+  for (const app::PreviewScreen& screen : screens) {
+    if (screen.step) kinds.insert(screen.step->index());
+  }
+  return kinds;
+}
+
 TEST_CASE("a preview has every kind of screen, each under a name of its own") {
   const design::Study study = design::parse_study(
       study_with_everything(), fs::path(TOUCHTRIAL_SOURCE_DIR) / "config", "study.json");
   const session::SessionTexts texts = app::session_texts(study);
-  std::set<std::size_t> kinds;
   const std::vector<app::PreviewScreen> screens = app::preview_screens(study, texts);
-  for (const app::PreviewScreen& screen : screens) {
-    if (screen.step) kinds.insert(screen.step->index());
-  }
-  CHECK(kinds.size() == std::variant_size_v<session::Step>);
+  // Only a trial with several planes says which comes next.
+  CHECK(kinds_of(screens).size() == std::variant_size_v<session::Step> - 1);
   const std::vector<std::string> names = names_of(screens);
   CHECK(std::set<std::string>(names.begin(), names.end()).size() == names.size());
   for (const std::string name : {"welcome", "handedness-2", "practice-explore", "ready", "explore",
                                  "answer", "confidence", "break", "closing", "thanks"}) {
     INFO(name);
     CHECK(std::ranges::count(names, name) == 1);
+  }
+}
+
+TEST_CASE("a preview of trials with several planes has every kind of screen") {
+  const design::Study study =
+      design::load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/detection.json");
+  const session::SessionTexts texts = app::session_texts(study);
+  const std::vector<app::PreviewScreen> screens = app::preview_screens(study, texts);
+  CHECK(kinds_of(screens).size() == std::variant_size_v<session::Step>);
+  const std::vector<std::string> names = names_of(screens);
+  CHECK(std::set<std::string>(names.begin(), names.end()).size() == names.size());
+  for (const std::string name :
+       {"practice-interval", "practice-explore", "practice-wrong", "practice-over", "ready",
+        "interval", "explore", "answer", "not-explored", "hand-off", "hand-off-interval", "break",
+        "stopped"}) {
+    INFO(name);
+    CHECK(std::ranges::count(names, name) == 1);
+  }
+  for (const app::PreviewScreen& screen : screens) {
+    CHECK(app::preview_labels(study, screen) == std::vector<std::string>{"first", "second"});
+    if (!screen.step) CHECK(screen.interval);
   }
 }
 

@@ -222,6 +222,109 @@ TEST_CASE("a simulated participant gets past required questions of every kind be
   CHECK(seen.exit_code == 0);
 }
 
+/// A study of six trials with two short planes each, of which the last two are only heard.
+std::string study_with_intervals() {
+  json study = json::parse(
+      text_of(read_file(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/detection.json", 1U << 20U)));
+  study["threshold"]["interval_s"] = 0.4;
+  study["threshold"]["trials"] = 4;
+  study["threshold"]["catch"] = 0;
+  study["threshold"]["control"] = 2;
+  study["threshold"]["practice"] = {{"trials", 1}, {"criterion", 1}, {"rounds", 1}};
+  study["trials"]["validity"] = json::object();
+  study["session"] = {{"handedness", false}, {"closing", false}};
+  study.erase("registration");
+  return study.dump();
+}
+
+TEST_CASE("a simulated participant answers trials with several planes before a window") {
+  const auto screen = VirtualScreen::open("1280x720");
+  const Laboratory lab;
+  replace_file(lab.in("config/intervals.json"), study_with_intervals());
+  std::vector<std::string> arguments = {"run",
+                                        lab.in("config/intervals.json"),
+                                        "--participant",
+                                        "P01",
+                                        "--no-sound",
+                                        "--subject",
+                                        lab.in("quick.json"),
+                                        "--seed",
+                                        "4",
+                                        "--db",
+                                        lab.in("seen.db")};
+  const ProgramResult seen = run_touchtrial(lab.folder.path(), arguments);
+  INFO(seen.errors);
+  REQUIRE(seen.exit_code == 0);
+  CHECK(seen.output.find("trial 6 acknowledged\n") != std::string::npos);
+  arguments.back() = lab.in("headless.db");
+  arguments.push_back("--headless");
+  REQUIRE(run_touchtrial(lab.folder.path(), arguments).exit_code == 0);
+  const auto answers = [&](const char* database) {
+    const auto store =
+        store::StudyStore::open(lab.in(database), store::StudyStore::Access::read_only);
+    return positions_of(analysis::open_trials(
+        store,
+        analysis::person_keys(store, design::load_study_key(lab.in("config/intervals.key")))));
+  };
+  CHECK(answers("seen.db").size() == 6);
+  CHECK(answers("seen.db") == answers("headless.db"));
+}
+
+/// A person with a mouse, who strokes whatever plane is on: lifts off, then holds the button.
+class Stroker {
+ public:
+  Stroker(const Laboratory& lab, const VirtualScreen& screen)
+      : screen_(screen),
+        program_({TOUCHTRIAL_PROGRAM, "run", lab.in("config/intervals.json"), "--participant",
+                  "P01", "--db", lab.in("stroked.db"), "--no-sound", "--device", "mouse", "--pilot",
+                  "--window", "1280x720"},
+                 {}) {}
+
+  /// \return the program's exit code
+  int sit_through() {
+    while (program_.listen(std::chrono::milliseconds(8))) react();
+    return program_.finish();
+  }
+  [[nodiscard]] const std::string& output() const { return program_.output(); }
+
+ private:
+  void react() {
+    const std::size_t last = program_.output().rfind("\nP01  ");
+    const std::string line = last == std::string::npos ? "" : program_.output().substr(last + 1);
+    if (line.find("  exploring  ") != std::string::npos) return stroke();
+    if (pressed_) screen_.release();
+    pressed_ = false;
+    if (line.find("  answering  ") != std::string::npos) screen_.type("1");
+    screen_.type("Return");
+    screen_.wait_until_heard("Touchtrial");
+  }
+  /// To and fro, a few pixels at a time, with the button up for a tenth of the time.
+  void stroke() {
+    const int at = moves_++ % 120;
+    screen_.move_pointer(540 + 4 * (at < 60 ? at : 120 - at), 300);
+    const bool holds = moves_ % 150 > 30;
+    if (holds && !pressed_) screen_.press();
+    if (!holds && pressed_) screen_.release();
+    pressed_ = holds;
+  }
+
+  const VirtualScreen& screen_;
+  testing::ChildProcess program_;
+  int moves_ = 0;
+  bool pressed_ = false;
+};
+
+TEST_CASE("a person pilots a session whose trials have several planes with the mouse") {
+  const auto screen = VirtualScreen::open("1280x720");
+  const Laboratory lab;
+  replace_file(lab.in("config/intervals.json"), study_with_intervals());
+  Stroker person(lab, *screen);
+  const int code = person.sit_through();
+  INFO(person.output());
+  REQUIRE(code == 0);
+  CHECK(person.output().find("trial 6 acknowledged") != std::string::npos);
+}
+
 /// While it lives, the program's configuration is in a folder of its own.
 class OwnConfiguration {
  public:

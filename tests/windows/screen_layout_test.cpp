@@ -16,6 +16,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
@@ -249,6 +250,69 @@ TEST_CASE("everything on every screen can be read, in all languages and at all s
   }
 }
 
+/// The steps of trials with several planes.
+std::vector<session::Step> steps_with_intervals() {
+  using What = session::NoticeStep::What;
+  std::vector<session::Step> steps = {session::PracticeStep{1},
+                                      session::ReadyStep{1, 60, false},
+                                      session::ReadyStep{60, 60, false, true},
+                                      session::IntervalStep{.trial = 1, .interval = 1, .of = 2},
+                                      session::IntervalStep{.trial = 1, .interval = 3, .of = 3},
+                                      session::IntervalStep{.trial = 1, .hand_off = true},
+                                      session::FeedbackStep{0, 1},
+                                      session::FeedbackStep{1, 1},
+                                      session::NoticeStep{What::practice_over},
+                                      session::NoticeStep{What::not_explored},
+                                      session::NoticeStep{What::hand_off}};
+  for (const char* question : {"threshold_texture", "threshold_stronger", "threshold_coarser",
+                               "threshold_odd", "threshold_same"}) {
+    for (const design::Sight sight : {design::Sight::curtain, design::Sight::blindfold}) {
+      steps.push_back(session::AnswerStep{
+          .trial = 2, .of = 60, .confidence_levels = 5, .question = question, .sight = sight});
+    }
+  }
+  return steps;
+}
+
+TEST_CASE("all screens of trials with several planes can be read, in all languages and sizes") {
+  const Vec2 size = GENERATE(Vec2{1280.0, 720.0}, Vec2{1920.0, 1080.0}, Vec2{1280.0, 1024.0},
+                             Vec2{3440.0, 1440.0});
+  const std::string language = GENERATE("en", "de", "es", "fr", "ja", "zh");
+  const double text_scale = GENERATE(1.0, design::kLargestTextScale);
+  const bool feedback = GENERATE(false, true);
+  const bool mouse = GENERATE(false, true);
+  CAPTURE(size.x, language, text_scale, feedback, mouse);
+  const Paper paper(size, text_scale, app::letters_in(all_texts(language)));
+  Squares shelf(50.0);
+  const app::Glass glass = {0.27, true};
+  design::IntervalPlan plan;
+  plan.count = 3;
+  plan.feedback = feedback;
+  const app::ScreenContext context = {.words = &words_in(language),
+                                      .language = language,
+                                      .mouse = mouse,
+                                      .shelf = &shelf,
+                                      .glass = &glass,
+                                      .intervals = &plan};
+  for (const session::Step& step : steps_with_intervals()) {
+    for (const std::vector<std::string>& labels :
+         {std::vector<std::string>{"first", "second", "third"},
+          std::vector<std::string>{"same", "different"}}) {
+      CAPTURE(step.index(), labels.size());
+      check_all_pages(paper, *app::screen_for(step, context, labels));
+    }
+  }
+  design::Study study = design::load_study(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) /
+                                           "config/discrimination-order.json");
+  study.session.language = language;
+  for (const design::Sight sight : {design::Sight::curtain, design::Sight::blindfold}) {
+    study.session.sight = sight;
+    const session::SessionTexts texts = app::session_texts(study);
+    check_all_pages(paper,
+                    *app::screen_for(session::InstructionStep{texts.instructions}, context, {}));
+  }
+}
+
 TEST_CASE("with high contrast, no screen has the design's pale colours") {
   const Paper paper({1280.0, 720.0});
   Squares shelf(51.2);
@@ -362,6 +426,56 @@ TEST_CASE("the mouse's hint is there in practice too, above the bars") {
   }
 }
 
+TEST_CASE("while one of several planes is on, the screen says which and how far its clock is") {
+  const std::string language = GENERATE("en", "de", "es", "fr", "ja", "zh");
+  const Vec2 size = GENERATE(Vec2{1280.0, 720.0}, Vec2{1280.0, 1024.0}, Vec2{3440.0, 1440.0});
+  const bool mouse = GENERATE(true, false);
+  const bool practice = GENERATE(true, false);
+  const bool hand_off = GENERATE(true, false);
+  CAPTURE(language, size.x, mouse, practice, hand_off);
+  const Paper paper(size, 1.0, app::letters_in(all_texts(language)));
+  Squares shelf(50.0);
+  const app::Glass glass = {0.27, true};
+  const app::ScreenContext context = {
+      .words = &words_in(language), .mouse = mouse, .shelf = &shelf, .glass = &glass};
+  app::FeltNow felt;
+  device::PointerExchange pointer;
+  const std::atomic<bool> pressed{false};
+  std::atomic<int> explored{0};
+  const session::IntervalStep interval{.trial = 1, .interval = 2, .of = 3, .hand_off = hand_off};
+  app::ExploringScreen screen({practice ? &felt : nullptr,
+                               mouse ? &pointer : nullptr,
+                               &pressed,
+                               nullptr,
+                               {1.0, 900, 900},
+                               interval,
+                               &explored},
+                              context);
+  const app::Canvas canvas = paper.draw(screen);
+  CHECK(faults_of(canvas) == "");
+  CHECK(shows(canvas,
+              app::with_numbers(words_in(language).interval_of, {{"interval", 2}, {"of", 3}})));
+  CHECK_FALSE(shows(canvas, words_in(language).exploring_mouse));
+  const auto length_of_bar = [&] {
+    static_cast<void>(paper.draw(screen));
+    float left = 1e9F;
+    float right = 0.0F;
+    for (const ImDrawVert& vertex : ImGui::GetBackgroundDrawList()->VtxBuffer) {
+      if (vertex.col != app::tone::kAccent) continue;
+      left = std::min(left, vertex.pos.x);
+      right = std::max(right, vertex.pos.x);
+    }
+    return std::max(0.0F, right - left);
+  };
+  const float none = length_of_bar();
+  explored = app::kExploredSteps / 2;
+  const float half = length_of_bar();
+  explored = 2 * app::kExploredSteps;  // positions told more than the clock
+  const float full = length_of_bar();
+  CHECK(none == 0.0F);
+  CHECK(full == Approx(2.0F * half).epsilon(0.02));
+}
+
 TEST_CASE("after a comfort stop the space bar does nothing, and Enter goes on where it may") {
   const bool may_go_on = GENERATE(true, false);
   const Paper paper({1280.0, 720.0});
@@ -393,9 +507,9 @@ TEST_CASE("a frame that is as large as a bank card gives the scale of the screen
 }
 
 struct Asked {
-  explicit Asked(const session::AnswerStep& step = {.trial = 1, .of = 25}, int count = 5)
-      : screen(step, {.words = &words, .shelf = &shelf, .glass = &glass},
-               std::vector<std::string>(static_cast<std::size_t>(count), "x")) {
+  explicit Asked(const session::AnswerStep& step = {.trial = 1, .of = 25},
+                 const std::vector<std::string>& labels = std::vector<std::string>(5, "x"))
+      : screen(step, {.words = &words, .shelf = &shelf, .glass = &glass}, labels) {
     static_cast<void>(paper.draw(screen));
   }
   std::optional<session::StepReply> press(app::Key which, int digit = 0) {
@@ -419,6 +533,51 @@ TEST_CASE("an answer needs a choice and Next; Enter alone does not answer") {
   REQUIRE(reply);
   CHECK(reply->position == 2);
   CHECK_FALSE(reply->first_position);
+}
+
+TEST_CASE("choices that are words are chosen as pictures are, and changed once") {
+  Asked asked({.trial = 1, .of = 60, .question = "threshold_odd"}, {"first", "second", "third"});
+  const app::Canvas canvas = asked.paper.draw(asked.screen);
+  CHECK(shows(canvas, "Which surface was unlike the others?"));
+  for (const char* word : {"First", "Second", "Third"}) CHECK(shows(canvas, word));
+  CHECK_FALSE(shows(canvas, "10 mm"));
+  CHECK_FALSE(asked.press(app::Key::enter));
+  static_cast<void>(asked.press(app::Key::digit, 4));
+  CHECK_FALSE(asked.press(app::Key::enter));
+  static_cast<void>(asked.press(app::Key::digit, 1));
+  CHECK(shows(asked.paper.draw(asked.screen), "You can change your answer once."));
+  static_cast<void>(asked.press(app::Key::right));
+  static_cast<void>(asked.press(app::Key::digit, 3));
+  static_cast<void>(asked.press(app::Key::digit, 2));
+  CHECK(shows(asked.paper.draw(asked.screen), "Your answer is now fixed."));
+  const auto reply = asked.press(app::Key::enter);
+  REQUIRE(reply);
+  CHECK(reply->position == 2);
+  CHECK(reply->first_position == 0);
+}
+
+TEST_CASE("arrows go along choices that are words, and from them to Next") {
+  Asked asked({.trial = 1, .of = 60, .question = "threshold_same"}, {"same", "different"});
+  static_cast<void>(asked.press(app::Key::right));
+  static_cast<void>(asked.press(app::Key::right));
+  CHECK(asked.screen.attention().focus == 1);
+  static_cast<void>(asked.press(app::Key::enter));
+  const auto reply = asked.press(app::Key::enter);
+  REQUIRE(reply);
+  CHECK(reply->position == 1);
+}
+
+TEST_CASE("what is said before a plane goes away by itself and not by a key") {
+  const Paper paper({1280.0, 720.0});
+  Squares shelf(50.0);
+  const app::Glass glass;
+  const app::ScreenContext context = {.words = &words_in("en"), .shelf = &shelf, .glass = &glass};
+  const auto screen = app::screen_for(session::IntervalStep{.trial = 1}, context, {});
+  CHECK(shows(paper.draw(*screen), "Surface 1 of 2"));
+  for (const app::Key which : {app::Key::enter, app::Key::space, app::Key::tab, app::Key::right}) {
+    CHECK_FALSE(screen->take(key(which)));
+  }
+  CHECK_FALSE(screen->take(key(app::Key::digit, 1)));
 }
 
 TEST_CASE("an answer can be changed once, and the reply holds both choices") {

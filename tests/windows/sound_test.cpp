@@ -16,6 +16,7 @@
 #include <string>
 #include <thread>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace touchtrial {
@@ -112,8 +113,9 @@ TEST_CASE("noise begins and ends in ramps without a step") {
 }
 
 TEST_CASE("tones begin and end without a step, and stop by themselves") {
-  for (const app::Cue cue :
-       {app::Cue::plane_on, app::Cue::plane_off, app::Cue::too_hard, app::Cue::stopped}) {
+  for (const app::Cue cue : {app::Cue::plane_on, app::Cue::plane_off, app::Cue::too_hard,
+                             app::Cue::stopped, app::Cue::first_begins, app::Cue::second_begins,
+                             app::Cue::third_begins, app::Cue::interval_over}) {
     app::SoundMixer mixer(kRateHz, {});
     mixer.tone(cue);
     const std::vector<float> samples = rendered(mixer, 48000);
@@ -124,8 +126,9 @@ TEST_CASE("tones begin and end without a step, and stop by themselves") {
     for (std::size_t i = 1; i < samples.size(); ++i) {
       step = std::max(step, std::abs(samples[i] - samples[i - 1]));
     }
-    // The steepest slope of a 1 kHz sine with this amplitude.
-    CHECK(step < 0.06F * 2.0F * 3.1416F * 1000.0F / 48000.0F + 1e-4F);
+    // The steepest slope of a 1 kHz sine with its amplitude.
+    const float amplitude = peak_of(samples) > 0.07F ? 0.12F : 0.06F;
+    CHECK(step < amplitude * 2.0F * 3.1416F * 1000.0F / 48000.0F + 1e-4F);
   }
 }
 
@@ -138,6 +141,86 @@ TEST_CASE("a tone that still sounds is not restarted, and can be played again la
   CHECK(peak_of({rest.begin() + 6000, rest.end()}) == 0.0F);
   mixer.tone(app::Cue::too_hard);
   CHECK(peak_of(rendered(mixer, 6000)) > 0.05F);
+}
+
+std::vector<float> samples_of(app::Cue cue) {
+  app::SoundMixer mixer(kRateHz, {});
+  mixer.tone(cue);
+  return rendered(mixer, 48000);
+}
+
+/// Sounds between silences of at least 50 ms, in seconds.
+std::vector<double> lengths_of_sounds(const std::vector<float>& samples) {
+  std::vector<double> lengths;
+  std::size_t begin = 0;
+  std::size_t last = 0;
+  bool sounds = false;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i] != 0.0F) {
+      if (!sounds) begin = i;
+      sounds = true;
+      last = i;
+    } else if (sounds && i - last > 2400) {
+      lengths.push_back(static_cast<double>(last - begin) / kRateHz);
+      sounds = false;
+    }
+  }
+  return lengths;
+}
+
+TEST_CASE("the number of an interval is as many short tones, and its end is one long tone") {
+  const std::vector<std::pair<app::Cue, std::size_t>> begins = {
+      {app::Cue::first_begins, 1}, {app::Cue::second_begins, 2}, {app::Cue::third_begins, 3}};
+  for (const auto& [cue, number] : begins) {
+    const std::vector<double> lengths = lengths_of_sounds(samples_of(cue));
+    CHECK(lengths.size() == number);
+    for (const double length : lengths) CHECK(length == Approx(0.12).margin(0.002));
+  }
+  const std::vector<double> end = lengths_of_sounds(samples_of(app::Cue::interval_over));
+  REQUIRE(end.size() == 1);
+  CHECK(end.front() > 3.0 * 0.12);
+}
+
+double db_of(double mean_square) {
+  return 10.0 * std::log10(mean_square);
+}
+
+/// The level of a tone between its ramps, dBFS.
+double level_of(app::Cue cue) {
+  const std::vector<float> samples = samples_of(cue);
+  const double rms = rms_of({samples.begin() + 480, samples.begin() + 480 + 4320});  // 90 ms
+  return db_of(rms * rms);
+}
+
+TEST_CASE("the marks of intervals stand out from the masking noise") {
+  // The third of an octave around 1 kHz: 891 to 1122 Hz are these harmonics of the loop.
+  constexpr int kFirst = 4866;
+  constexpr int kLast = 6127;
+  const auto third_of_octave = [](const std::vector<float>& noise) {
+    const auto count = static_cast<double>(noise.size());
+    return db_of(2.0 * density_at(noise, kFirst, kLast) * (kLast - kFirst) / (count * count));
+  };
+  const std::vector<float> usual = app::masking_noise(design::MaskingPlan{}.level_dbfs, 3);
+  const std::vector<float> loudest = app::masking_noise(app::kHighestMaskingDbfs, 3);
+  for (const app::Cue mark : {app::Cue::first_begins, app::Cue::second_begins,
+                              app::Cue::third_begins, app::Cue::interval_over}) {
+    const double level = level_of(mark);
+    CHECK(level == Approx(-21.4).margin(0.1));
+    CHECK(level - db_of(std::pow(rms_of(usual), 2)) == Approx(8.6).margin(0.2));
+    CHECK(level - third_of_octave(usual) == Approx(25.0).margin(2.0));
+    CHECK(level - third_of_octave(loudest) == Approx(13.0).margin(2.0));
+    CHECK(level - level_of(app::Cue::too_hard) == Approx(6.0).margin(0.1));
+  }
+}
+
+TEST_CASE("an interval's mark and the tone for too much force over the loudest noise do not clip") {
+  app::SoundMixer mixer(kRateHz, app::masking_noise(0.0, 5));
+  mixer.mask(true);
+  for (int i = 0; i < 20; ++i) {
+    mixer.tone(app::Cue::third_begins);
+    mixer.tone(app::Cue::too_hard);
+    CHECK(peak_of(rendered(mixer, 36000)) < 1.0F);
+  }
 }
 
 TEST_CASE("all tones over the loudest noise stay within full scale") {

@@ -3,9 +3,11 @@
 #include "app/participant/words.hpp"
 #include "protocols/design/deviation_codes.hpp"
 #include "protocols/design/languages.hpp"
+#include "protocols/design/protocol.hpp"
 #include "protocols/identification/design/identification.hpp"
 #include "support/catch.hpp"
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -87,6 +89,63 @@ TEST_CASE("instructions of every study hold its numbers and no word in braces") 
       CHECK(text.find(design::has_decimal_comma(code) ? "0,5" : "0.5") != std::string::npos);
     }
   }
+}
+
+/// One study for each combination of options that change texts of trials with several planes.
+std::vector<design::Study> every_kind_with_intervals(const std::string& language) {
+  std::vector<design::Study> studies;
+  for (const char* name : {"detection", "discrimination", "discrimination-order"}) {
+    for (int bits = 0; bits < 4; ++bits) {
+      design::Study study = design::load_study(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) /
+                                               "config" / (std::string(name) + ".json"));
+      study.session.language = language;
+      if ((bits & 1) != 0) study.session.sight = design::Sight::blindfold;
+      if ((bits & 2) != 0) study.session.confidence_levels = 5;
+      studies.push_back(study);
+    }
+  }
+  return studies;
+}
+
+TEST_CASE("instructions of trials with several planes hold their numbers and their question") {
+  for (const std::string_view code : design::language_codes()) {
+    const std::string language(code);
+    CAPTURE(language);
+    const app::Words words = app::words_of(design::language_of(code).texts);
+    for (const design::Study& study : every_kind_with_intervals(language)) {
+      const design::IntervalPlan plan = study.protocol->interval_plan(study).value();
+      const session::SessionTexts texts = app::session_texts(study);
+      CHECK(texts.instructions.size() == 7);
+      const std::string text = all_of(texts.instructions);
+      CHECK(text.find_first_of("{}") == std::string::npos);
+      CHECK(text.find(app::title_of(words, plan.question)) != std::string::npos);
+      CHECK(app::title_of(words, plan.question) != words.answer_title);
+      for (const std::string& number :
+           {std::to_string(plan.count), std::string("15"),
+            std::string(design::has_decimal_comma(code) ? "2,5" : "2.5")}) {
+        CHECK(text.find(number) != std::string::npos);
+      }
+    }
+  }
+}
+
+TEST_CASE("where a trial has several planes, no text speaks of pictures or of names of textures") {
+  for (const design::Study& study : every_kind_with_intervals("en")) {
+    const session::SessionTexts texts = app::session_texts(study);
+    const std::string text = all_of(texts.instructions);
+    CHECK(text.find("picture") == std::string::npos);
+    CHECK(text.find("name of the texture") == std::string::npos);
+    CHECK_FALSE(has(texts.day_sheet, "no-labels-learnt"));
+  }
+}
+
+TEST_CASE("choices that are words are in the words' language, and others stay as they are") {
+  const app::Words german = app::words_of(design::language_of("de").texts);
+  CHECK(app::choice_text(german, "third") == "Die dritte");
+  CHECK(app::choice_text(german, "different") == "Verschieden");
+  CHECK(app::choice_text(german, "bark") == "bark");
+  CHECK(app::title_of(german, "threshold_coarser") == "Welche Oberfläche war gröber?");
+  CHECK(app::title_of(german, "") == german.answer_title);
 }
 
 TEST_CASE("a study's own instructions replace the program's in their language only") {

@@ -92,7 +92,9 @@ bool is_shown(const TrialColumn& column, bool unblinded) {
 }
 
 DataCell stimulus_file(const TrialView& trial) {
-  if (trial.outcome->kind == design::PresentationKind::catch_trial) return std::monostate{};
+  if (trial.outcome->kind == design::PresentationKind::catch_trial || trial.outcome->chosen) {
+    return std::monostate{};
+  }
   const design::StimulusIndex& shown = trial.outcome->stimulus;
   return stimulus_name(trial.study->design, shown.class_index, shown.exemplar);
 }
@@ -127,8 +129,9 @@ struct BidsTrials {
 /// \param stimuli  whether the dataset includes the images, so that stim_file can name them
 BidsTrials bids_trials(const DatasetSource& study, bool stimuli) {
   const bool unblinded = study.outcomes != nullptr;
+  const std::vector<TrialColumn> columns = trial_columns_of(study.outcomes);
   BidsTrials trials;
-  for (const TrialColumn& column : trial_columns()) {
+  for (const TrialColumn& column : columns) {
     if (is_shown(column, unblinded)) trials.columns.push_back(bids_name(column.name));
   }
   if (stimuli) trials.columns.emplace_back("stim_file");
@@ -141,7 +144,7 @@ BidsTrials bids_trials(const DatasetSource& study, bool stimuli) {
     const auto table = trials.by_session.find(trial.row.session);
     if (table == trials.by_session.end()) continue;
     std::vector<DataCell>& row = table->second.rows.emplace_back();
-    for (const TrialColumn& column : trial_columns()) {
+    for (const TrialColumn& column : columns) {
       if (is_shown(column, unblinded)) row.push_back(column.value(trial));
     }
     if (stimuli) row.push_back(stimulus_file(trial));

@@ -52,7 +52,7 @@ class BlockOrder final : public design::AdaptiveOrder {
     presentation.chosen = {next->track ? static_cast<int>(*next->track) + 1 : 0,
                            static_cast<int>(next->level), target_};
   }
-  void answer(int choice) override {
+  void answer(const design::Presentation&, int choice) override {
     block_.answer(choice == target_);
     target_ = static_cast<int>(targets_.below(2));
   }

@@ -24,9 +24,14 @@ json schema() {
   return json::parse(text_of(read_file(root / "config/schema/study.schema.json")));
 }
 
-/// The schema, combined with its rules for one rendering model.
+/// The schema, combined with its rules for one rendering model, and for every protocol but
+/// thresholds, whose section has tests of its own (tests/protocols/threshold).
 json schema_for(const std::string& model) {
   json whole = schema();
+  for (const json& rule : whole["allOf"]) {
+    if (rule["if"]["properties"]["protocol"]["const"] != "threshold") continue;
+    whole["properties"]["classes"].update(rule["else"]["properties"]["classes"]);
+  }
   json& rendering = whole["properties"]["rendering"];
   const bool of_surface = model == rendering["if"]["properties"]["model"]["const"];
   const json branch = rendering[of_surface ? "then" : "else"];
@@ -122,11 +127,19 @@ json full_study(const json& method, const json& model = kPaper) {
                         {"neighbourhood", 3},
                         {"max_force_n", 3.3}};
   study["rendering"].update(model);
-  study["trials"] = {
-      {"repeats", 2},         {"order", "shuffled"},   {"explore_limit_s", 60},
-      {"on_timeout", "fade"}, {"practice", 0},         {"break_every", 0},
-      {"catch", 0},           {"lead_in", 0},          {"blocks", "by-method"},
-      {"max_run", 0},         {"resume_within_h", 24}, {"on_interruption", "repeat"}};
+  study["trials"] = {{"repeats", 2},
+                     {"order", "shuffled"},
+                     {"explore_limit_s", 60},
+                     {"on_timeout", "fade"},
+                     {"practice", 0},
+                     {"break_every", 0},
+                     {"break_after_min", 0},
+                     {"catch", 0},
+                     {"lead_in", 0},
+                     {"blocks", "by-method"},
+                     {"max_run", 0},
+                     {"resume_within_h", 24},
+                     {"on_interruption", "repeat"}};
   study["trials"]["validity"] = {{"exploring_s", 5},      {"contact_s", 5},
                                  {"path_mm", 300},        {"least_median_n", 0.2},
                                  {"largest_median_n", 2}, {"saturated_share", 0.01}};
@@ -265,7 +278,7 @@ double step_of(const json& property) {
 TEST_CASE("the schema describes every section of the study file") {
   std::set<std::string> places;
   for (const Property& property : all_properties()) places.insert(property.place.to_string());
-  CHECK(places.size() == 13 + 2 + 18 + 15 + (12 + 2 + 6 + 2) + (3 + 2) +
+  CHECK(places.size() == 13 + 2 + 18 + 15 + (13 + 2 + 6 + 2) + (3 + 2) +
                              (14 + 6 + 1 + 2 + 5 + 2 * 6) + 4 + 2 + (15 + 3));
   for (const char* place :
        {"/seed", "/rendering/gains/normal_n", "/rendering/gains/height_mm", "/trials/catch",
@@ -321,7 +334,11 @@ TEST_CASE("the reader accepts exactly the schema's words") {
     INFO(property.place.to_string());
     std::set<std::string> expected;
     for (const json& word : words) {
-      CHECK(property.refusal_with(word).empty());
+      if (word == "threshold") {
+        CHECK_THAT(property.refusal_with(word), holds_text("/threshold: is missing"));
+      } else {
+        CHECK(property.refusal_with(word).empty());
+      }
       expected.insert(word.get<std::string>());
     }
     CHECK(listed_after(property.refusal_with("qqqqqqqq"), "possible: ") == expected);
@@ -433,7 +450,7 @@ TEST_CASE("the schema's defaults are the reader's") {
     CHECK(written.registration == bare.registration);
     CHECK(written.seed == bare.seed);
   }
-  CHECK(defaults == (23 + 8 + 3 + 2 + 13 + 2 + 1 + 10) * (static_cast<int>(kMethods.size()) + 1));
+  CHECK(defaults == (23 + 9 + 3 + 2 + 13 + 2 + 1 + 10) * (static_cast<int>(kMethods.size()) + 1));
 }
 
 TEST_CASE("the schema's defaults of the methods' keys are the reader's") {

@@ -31,10 +31,11 @@ TEST_CASE("on a flat texture the contact force is steady to 0.02 N from 0.5 s af
   const engine::RenderingOptions rendering;
   const engine::TextureField field = engine::make_texture_field(Plane<double>(120, 120), rendering);
   const engine::RenderingModel model(field.view(), rendering, {0.01, 0.01});
+  session::ModelForce force(model);
   Stroker explorer = stroker(subject);
   store::Trace trace;
   const session::Exploration done =
-      session::VirtualExplorer().explore(model, field.view().geometry, explorer, {}, trace);
+      session::VirtualExplorer().explore(force, field.view().geometry, explorer, {}, trace);
   REQUIRE(done.servo.end == device::ServoEnd::hand_stopped);
   REQUIRE(trace.samples.size() == 3000);
   std::size_t landed = 0;
@@ -51,8 +52,8 @@ TEST_CASE("the trace and the participant get the same samples") {
   subject.explore_s = 0.5;
   Stroker explorer = stroker(subject);
   store::Trace trace;
-  const engine::RenderingModel& model = source.model(study.key().stimuli.front().code);
-  static_cast<void>(session::VirtualExplorer().explore(model, source.plane(), explorer, {}, trace));
+  session::ModelForce force(source.model(study.key().stimuli.front().code));
+  static_cast<void>(session::VirtualExplorer().explore(force, source.plane(), explorer, {}, trace));
   REQUIRE(trace.samples.size() == explorer.felt.size());
   for (std::size_t i = 0; i < trace.samples.size(); ++i) {
     REQUIRE(trace.samples[i].position_mm == explorer.felt[i].position_mm);
@@ -70,8 +71,9 @@ TEST_CASE("the time of landing is the same on every texture") {
   for (const design::KeyedStimulus& keyed : study.key().stimuli) {
     Stroker explorer = stroker(subject);
     store::Trace trace;
-    const session::Exploration done = session::VirtualExplorer().explore(
-        source.model(keyed.code), source.plane(), explorer, {}, trace);
+    session::ModelForce force(source.model(keyed.code));
+    const session::Exploration done =
+        session::VirtualExplorer().explore(force, source.plane(), explorer, {}, trace);
     REQUIRE(done.landed_at);
     landings.push_back(*done.landed_at);
   }
@@ -85,11 +87,12 @@ TEST_CASE("when time is up the plane fades under the hand") {
   const engine::RenderingOptions rendering;
   const engine::TextureField field = engine::make_texture_field(Plane<double>(120, 120), rendering);
   const engine::RenderingModel model(field.view(), rendering, {});
+  session::ModelForce force(model);
   Stroker explorer = stroker(subject);
   store::Trace trace;
   const device::ServoOptions options{.limit_ticks = 2000, .fade_ticks = 100};
   const session::Exploration done =
-      session::VirtualExplorer().explore(model, field.view().geometry, explorer, options, trace);
+      session::VirtualExplorer().explore(force, field.view().geometry, explorer, options, trace);
   CHECK(done.servo.end == device::ServoEnd::time_limit);
   REQUIRE(trace.samples.size() == 2100);
   CHECK(trace.samples[1999].force_n.z == Approx(0.7).margin(0.02));

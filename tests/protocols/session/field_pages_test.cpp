@@ -57,7 +57,8 @@ std::set<std::size_t> pages_under(const store::Trace& trace, const PlaneGeometry
 store::Trace explored(const engine::RenderingModel& model, const PlaneGeometry& plane) {
   Stroker explorer(RandomStream(1, "field_pages_test"));
   store::Trace trace;
-  REQUIRE(session::VirtualExplorer().explore(model, plane, explorer, {}, trace).servo.end ==
+  session::ModelForce force(model);
+  REQUIRE(session::VirtualExplorer().explore(force, plane, explorer, {}, trace).servo.end ==
           device::ServoEnd::hand_stopped);
   return trace;
 }

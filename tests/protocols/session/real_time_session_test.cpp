@@ -339,8 +339,7 @@ class SeenExplorer final : public session::Explorer {
       : inner_(inner), is_seen_(std::move(is_seen)) {}
 
   [[nodiscard]] bool in_real_time() const noexcept override { return true; }
-  [[nodiscard]] session::Exploration explore(const engine::RenderingModel& model,
-                                             const PlaneGeometry& plane,
+  [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                              session::Participant& participant,
                                              const device::ServoOptions& options,
                                              store::Trace& trace) override {
@@ -354,7 +353,7 @@ class SeenExplorer final : public session::Explorer {
       participant.exploring(control);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    return inner_.explore(model, plane, participant, options, trace);
+    return inner_.explore(force, plane, participant, options, trace);
   }
 
  private:

@@ -97,20 +97,18 @@ class PageCountingExplorer final : public session::Explorer {
   explicit PageCountingExplorer(bool in_real_time) : in_real_time_(in_real_time) {}
 
   [[nodiscard]] bool in_real_time() const noexcept override { return in_real_time_; }
-  [[nodiscard]] session::Exploration explore(const engine::RenderingModel& model,
-                                             const PlaneGeometry& plane,
+  [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                              session::Participant& participant,
                                              const device::ServoOptions& options,
                                              store::Trace& trace) override {
     const long before = fetched_so_far();
-    engine::Bristle touch;
     for (double y_mm = 0.1; y_mm < plane.height_mm(); y_mm += plane.pitch_mm) {
       for (double x_mm = 0.1; x_mm < plane.width_mm(); x_mm += plane.pitch_mm) {
-        felt_n_ += model.force_n({x_mm, y_mm, -1.0}, {}, touch).z;
+        felt_n_ += force.force_n({.position_mm = {x_mm, y_mm, -1.0}, .velocity_mm_s = {}}).z;
       }
     }
     fetched += fetched_so_far() - before;
-    return usual_.explore(model, plane, participant, options, trace);
+    return usual_.explore(force, plane, participant, options, trace);
   }
 
   long fetched = 0;
@@ -131,8 +129,7 @@ class PageCountingExplorer final : public session::Explorer {
 class AttendedExplorer final : public session::Explorer {
  public:
   [[nodiscard]] bool in_real_time() const noexcept override { return false; }
-  [[nodiscard]] session::Exploration explore(const engine::RenderingModel& model,
-                                             const PlaneGeometry& plane,
+  [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                              session::Participant& participant,
                                              const device::ServoOptions& options,
                                              store::Trace& trace) override {
@@ -140,7 +137,7 @@ class AttendedExplorer final : public session::Explorer {
     participant.exploring(control);
     participant.exploring(control);
     was_stopped = control.comfort_stop_asked();
-    return usual_.explore(model, plane, participant, options, trace);
+    return usual_.explore(force, plane, participant, options, trace);
   }
 
   bool was_stopped = false;
@@ -223,12 +220,11 @@ class EndingExplorer final : public session::Explorer {
  public:
   EndingExplorer(device::ServoEnd end, int which) : end_(end), which_(which) {}
 
-  [[nodiscard]] session::Exploration explore(const engine::RenderingModel& model,
-                                             const PlaneGeometry& plane,
+  [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                              session::Participant& participant,
                                              const device::ServoOptions& options,
                                              store::Trace& trace) override {
-    session::Exploration done = usual_.explore(model, plane, participant, options, trace);
+    session::Exploration done = usual_.explore(force, plane, participant, options, trace);
     ++count_;
     if (which_ == 0 || which_ == count_) done.servo.end = end_;
     return done;
@@ -266,7 +262,7 @@ Ran run_diary(Diary& diary, session::Explorer& explorer, session::DeviceSupply& 
         key.study.practice.criterion = practice;
         key.study.practice.rounds = 1;
         const session::PracticeTextures textures{
-            source.plane(), [&](int) {
+            source.plane(), practice, key.study.practice, [&](int) {
               return session::PracticeRound{
                   {"sand", "cork"}, {&source.flat(), &source.flat()}, {0, 0}};
             }};

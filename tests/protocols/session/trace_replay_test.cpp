@@ -38,8 +38,9 @@ TEST_CASE("a stored trial, replayed through its model, gives the same forces") {
     const engine::RenderingModel& model = source.model(keyed.code);
     Stroker stroker(RandomStream(3, "trace_replay_test"), subject);
     store::Trace recorded;
+    session::ModelForce first(model);
     static_cast<void>(
-        session::VirtualExplorer().explore(model, source.plane(), stroker, {}, recorded));
+        session::VirtualExplorer().explore(first, source.plane(), stroker, {}, recorded));
     const store::Trace stored = store::decode_trace(store::encode_trace(recorded));
 
     device::ReplayDevice replay(motion_of(stored));

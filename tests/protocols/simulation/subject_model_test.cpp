@@ -261,6 +261,7 @@ TEST_CASE("a subject model that is written is read back as the same one, to the 
   model.serial = {.answer = 0.4, .answer_spread = 0.2, .stimulus = -0.3, .stimulus_spread = 0.05};
   model.fatigue = {.noise_per_min = 0.02, .lapse_per_min = 0.1, .recovered = 0.6};
   model.thought = simulation::ThoughtTime{.shift_s = 0.2, .easy_s = 0.7};
+  model.given_function = simulation::GivenFunction{-18.0, 2.0, 3.5, 0.02};
   const std::string written = simulation::subject_model_json(model);
   const simulation::SubjectModel read = simulation::parse_subject_model(written, "written");
   CHECK(simulation::subject_model_json(read) == written);
@@ -278,6 +279,7 @@ TEST_CASE("a subject model that is written is read back as the same one, to the 
   CHECK(read.serial == model.serial);
   CHECK(read.fatigue == model.fatigue);
   CHECK(read.thought == model.thought);
+  CHECK(read.given_function == model.given_function);
 }
 
 }  // namespace

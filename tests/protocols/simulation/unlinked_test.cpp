@@ -93,12 +93,11 @@ class LateExplorer final : public session::Explorer {
  public:
   explicit LateExplorer(int number) : random_(21, "servo", static_cast<std::uint64_t>(number)) {}
 
-  [[nodiscard]] session::Exploration explore(const engine::RenderingModel& model,
-                                             const PlaneGeometry& plane,
+  [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                              session::Participant& participant,
                                              const device::ServoOptions& options,
                                              store::Trace& trace) override {
-    session::Exploration done = virtual_.explore(model, plane, participant, options, trace);
+    session::Exploration done = virtual_.explore(force, plane, participant, options, trace);
     const auto ticks = static_cast<double>(done.servo.ticks);
     const auto quantile_us = [&](double p) {
       const double error = std::sqrt(p / (ticks * (1.0 - p))) * random_.normal();

@@ -100,6 +100,9 @@ TEST_CASE("sessions and trials are derived from the events") {
                         .position = {},
                         .first_position = {},
                         .confidence = {},
+                        .track = {},
+                        .level = {},
+                        .target = {},
                         .samples = 0};
   REQUIRE(trials[1] == second);
   TrialRow opened = second;

@@ -1,0 +1,191 @@
+#include "analysis/planning/threshold_pool.hpp"
+
+#include "core/errors.hpp"
+#include "core/parallel.hpp"
+#include "protocols/procedures/estimates.hpp"
+#include "protocols/session/session_runner.hpp"
+#include "protocols/simulation/population.hpp"
+#include "protocols/simulation/trial_course.hpp"
+#include "protocols/store/session_recorder.hpp"
+#include "protocols/threshold/design/threshold.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace touchtrial::planning {
+namespace {
+
+using design::threshold::ThresholdOptions;
+using procedures::Censored;
+using procedures::Threshold;
+using procedures::TrackTrial;
+
+/// The trials of each track.
+using TracksOfPerson = std::vector<std::vector<TrackTrial>>;
+
+/// An order that keeps what its tracks heard.
+class NotedOrder final : public design::AdaptiveOrder {
+ public:
+  NotedOrder(std::unique_ptr<design::AdaptiveOrder> order, TracksOfPerson& tracks)
+      : order_(std::move(order)), tracks_(tracks) {}
+
+  void choose(design::Presentation& presentation) const override { order_->choose(presentation); }
+  void answer(const design::Presentation& shown, int choice) override {
+    order_->answer(shown, choice);
+    if (!shown.chosen || shown.chosen->track < 1) return;
+    tracks_[static_cast<std::size_t>(shown.chosen->track - 1)].push_back(
+        {static_cast<std::size_t>(shown.chosen->level), choice == shown.chosen->target});
+  }
+
+ private:
+  std::unique_ptr<design::AdaptiveOrder> order_;
+  TracksOfPerson& tracks_;
+};
+
+design::Study with_trials(const design::Study& study, int trials) {
+  auto options = std::make_shared<ThresholdOptions>(design::threshold::options_of(study));
+  options->track.trials = trials;
+  options->control_trials = 0;
+  design::Study changed = study;
+  changed.options = options;
+  try {
+    static_cast<void>(procedures::Block(design::threshold::block_settings(changed), Digest{}));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(
+        fmt::format("--trials: {} are impossible for this study: {}; give another number", trials,
+                    error.what()));
+  }
+  return changed;
+}
+
+/// What the sessions of a pool share.
+struct PoolSetting {
+  const design::StudyKey& key;
+  const session::StimulusSource& source;
+  const simulation::SubjectModel& subject;
+  const simulation::Population& population;
+};
+
+/// \return whether the session reached its end
+bool hold_session(const PoolSetting& setting, int number, int visit,
+                  simulation::SimulatedParticipant& participant, TracksOfPerson& tracks) {
+  const design::StudyKey& key = setting.key;
+  const design::ScheduleDraw draw = key.draw_of(number, design::Draws::rehearsal, visit);
+  const design::Schedule schedule = design::make_schedule(key.study, draw);
+  store::BufferedEvents unread;
+  session::Session session(
+      schedule, key.study.trials, store::SessionRecorder(number, SecretKey{}, unread), {},
+      std::make_unique<NotedOrder>(design::adaptive_order(key.study, draw), tracks));
+  store::SessionOpening opening;
+  opening.participant = fmt::format("P{:03}", number);
+  opening.enrolment = number;
+  opening.visit = visit;
+  opening.study_id = key.study_id;
+  opening.seal = key.seal;
+  opening.device = device::words_of_simulated(setting.subject.device);
+  opening.simulated = true;
+  session.open({}, opening, design::schedule_to_json(schedule, key));
+  participant.come_to(visit, simulation::course_of(key.study, schedule));
+  static_cast<void>(
+      session::run_session_in_virtual_time(session, key, setting.source, participant));
+  return session.presentations_left() == 0;
+}
+
+/// \return nothing if a session ended early
+std::optional<TracksOfPerson> tracks_of_person(const PoolSetting& setting, int number) {
+  const design::Study& study = setting.key.study;
+  TracksOfPerson tracks(design::threshold::block_settings(study).tracks.size());
+  const auto participant = setting.population.participant(number);
+  for (int visit = 1; visit <= study.visits.count; ++visit) {
+    if (!hold_session(setting, number, visit, *participant, tracks)) return std::nullopt;
+  }
+  return tracks;
+}
+
+Threshold threshold_of(const std::vector<TrackTrial>& trials,
+                       const procedures::TrackSettings& track) {
+  if (track.procedure == "constant-stimuli") {
+    return procedures::likelihood_threshold(procedures::counts_of(track.levels, trials),
+                                            {.shape = track.grid.shape, .guess = track.grid.guess});
+  }
+  return procedures::posterior_threshold(procedures::posterior_of(track.levels, track.grid, trials),
+                                         track.levels);
+}
+
+std::vector<Threshold> thresholds_of(const TracksOfPerson& tracks,
+                                     const procedures::TrackSettings& settings) {
+  std::vector<Threshold> thresholds;
+  for (const std::vector<TrackTrial>& trials : tracks) {
+    thresholds.push_back(threshold_of(trials, settings));
+  }
+  return thresholds;
+}
+
+/// Adds a participant.
+void add_person(ThresholdPool& pool, const std::vector<Threshold>& thresholds, std::size_t tracks_each) {
+  std::vector<std::optional<double>>& person = pool.people.emplace_back(pool.standards.size());
+  for (std::size_t standard = 0; standard < person.size(); ++standard) {
+    double sum = 0.0;
+    int n = 0;
+    for (std::size_t i = 0; i < tracks_each; ++i) {
+      const Threshold& threshold = thresholds[standard * tracks_each + i];
+      ++pool.tracks;
+      pool.censored_below += threshold.censored == Censored::below ? 1 : 0;
+      pool.censored_above += threshold.censored == Censored::above ? 1 : 0;
+      if (!threshold.level) continue;
+      sum += *threshold.level;
+      ++n;
+    }
+    if (n > 0) person[standard] = sum / n;
+  }
+}
+
+}  // namespace
+
+ThresholdPool simulated_thresholds(const design::StudyKey& key,
+                                   const session::StimulusSource& source,
+                                   const simulation::SubjectModel& subject, int trials,
+                                   const ThresholdPoolOptions& options,
+                                   const design::Progress& progress) {
+  const ThresholdOptions& registered = design::threshold::options_of(key.study);
+  if (registered.question == design::threshold::Question::same_different) {
+    throw UsageError(one_line(key.study.source +
+                              ": asks for same or different, which gives a d' at each level and no "
+                              "threshold; power needs another question"));
+  }
+  design::StudyKey changed = key;
+  changed.study = with_trials(key.study, trials);
+  const std::unique_ptr<const simulation::Population> population =
+      simulation::population_of({changed, source, subject, options.seed, options.jobs});
+  const PoolSetting setting{changed, source, subject, *population};
+  std::vector<std::optional<std::vector<Threshold>>> found(
+      static_cast<std::size_t>(options.people));
+  std::mutex counting;
+  int done = 0;
+  in_parallel(options.jobs, found.size(), [&](std::size_t i) {
+    const auto tracks = tracks_of_person(setting, static_cast<int>(i) + 1);
+    const auto& track = design::threshold::options_of(changed.study).track;
+    if (tracks) found[i] = thresholds_of(*tracks, track);
+    const std::lock_guard lock(counting);
+    if (progress) progress(++done, options.people);
+  });
+  ThresholdPool pool{.trials = trials, .standards = {}, .people = {}};
+  for (const auto& standard : design::threshold::standards_of(key.study)) {
+    pool.standards.push_back(design::threshold::words_of(key.study, standard));
+  }
+  for (const auto& thresholds : found) {
+    if (thresholds) {
+      add_person(pool, *thresholds, static_cast<std::size_t>(registered.tracks_each));
+    } else {
+      ++pool.unfinished;
+    }
+  }
+  return pool;
+}
+
+}  // namespace touchtrial::planning

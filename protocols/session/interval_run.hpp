@@ -1,0 +1,83 @@
+/// \file The planes of a trial that presents several, one after the other, each with a clock that
+/// runs while the hand explores as asked for. Source: docs/thresholds.md, "Intervals". Private to
+/// protocols/session.
+#pragma once
+
+#include "device/servo/servo.hpp"
+#include "engine/rendering/rendering_model.hpp"
+#include "protocols/design/interval_plan.hpp"
+#include "protocols/session/session_desk.hpp"
+
+#include <cstdint>
+#include <functional>
+
+namespace touchtrial::session {
+
+/// One plane, until its clock has run down. It comes on once the hand has been above it, so that
+/// no interval begins inside the wall.
+class IntervalForce final : public device::ForceSource {
+ public:
+  /// \param stiffness_n_per_mm  of the wall
+  /// \param ticks  of exploration, >= 1
+  IntervalForce(const engine::RenderingModel& model, double stiffness_n_per_mm,
+                const design::IntervalWindows& windows, std::int64_t ticks) noexcept
+      : model_(model), stiffness_n_per_mm_(stiffness_n_per_mm), windows_(windows), left_(ticks) {}
+
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override;
+  [[nodiscard]] bool is_done() const noexcept override { return left_ <= 0; }
+
+ private:
+  engine::RenderingModel model_;
+  engine::Bristle touch_;
+  double stiffness_n_per_mm_;
+  design::IntervalWindows windows_;
+  std::int64_t left_;
+  bool has_lifted_ = false;
+};
+
+/// The lateral forces of a stroke in circles, whatever the device does: what motors sound like in
+/// an interval, with the hand off. Stops by itself.
+class PlayedForce final : public device::ForceSource {
+ public:
+  PlayedForce(const engine::RenderingModel& model, const PlaneGeometry& plane,
+              double stiffness_n_per_mm, std::int64_t ticks, double rate_hz) noexcept
+      : model_(model),
+        plane_(plane),
+        stiffness_n_per_mm_(stiffness_n_per_mm),
+        left_(ticks),
+        rate_hz_(rate_hz) {}
+
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override;
+  [[nodiscard]] bool is_done() const noexcept override { return left_ <= 0; }
+
+ private:
+  engine::RenderingModel model_;
+  engine::Bristle touch_;
+  PlaneGeometry plane_;
+  double stiffness_n_per_mm_;
+  std::int64_t left_;
+  double rate_hz_;
+  std::int64_t tick_ = 0;
+};
+
+/// How the planes of a trial ended.
+enum class IntervalsEnd {
+  explored,      ///< all as asked for
+  not_explored,  ///< an interval's time was up before its clock had run down
+  interrupted,   ///< by a fault or a comfort stop, in an exploration
+  broken_off     ///< between two explorations: the session was stopped or left, or interrupted
+};
+
+/// What is told of each exploration.
+struct IntervalListener {
+  /// Before a plane comes on; gives the trace that the exploration fills.
+  std::function<store::Trace&()> plane_on;
+  std::function<void(const Exploration&)> explored;
+};
+
+/// Presents the intervals of a presentation.
+/// \pre the presentation has intervals
+[[nodiscard]] IntervalsEnd run_intervals(SessionDesk& desk, const design::Presentation& shown,
+                                         bool practice, const IntervalListener& listener);
+
+}  // namespace touchtrial::session

@@ -1,0 +1,42 @@
+/// \file The page of a threshold study and its sections, as its results use them.
+#pragma once
+
+#include "analysis/page/document.hpp"
+#include "analysis/page/study_document.hpp"
+#include "protocols/threshold/analysis/report.hpp"
+
+#include <string>
+
+namespace touchtrial::analysis::threshold {
+
+/// A threshold with its interval, in dB: "−21.3 [−23.0, −19.6]". A censored one: "below −40.0"; an
+/// end that was not found: "open".
+[[nodiscard]] std::string threshold_text(const procedures::Threshold& threshold,
+                                         const design::threshold::ThresholdOptions& options);
+/// "11.5% [9.8, 13.4]", or the change of an order: "0.120 [0.101, 0.140]"
+[[nodiscard]] std::string quantity_text(const Quantity& quantity,
+                                        const design::threshold::ThresholdOptions& options);
+/// What quantity_text shows: "Weber fraction", "change of order"; empty for detection.
+[[nodiscard]] std::string quantity_name(const design::threshold::ThresholdOptions& options);
+
+/// Adds what was asked, each standard's threshold, and what the control block says of it.
+void add_headline(const ThresholdReport& report, Section& section);
+/// Thresholds by standard, and their differences.
+[[nodiscard]] Section thresholds_section(const ThresholdReport& report);
+/// Every participant's tracks.
+[[nodiscard]] Section tracks_section(const ThresholdReport& report);
+/// \return a section without blocks if the question is another one
+[[nodiscard]] Section same_different_section(const ThresholdReport& report);
+/// The control block with the hand off the device, and the catch trials.
+[[nodiscard]] Section control_section(const ThresholdReport& report);
+/// Preferred choices, repeated answers and learning.
+[[nodiscard]] Section habits_section(const ThresholdReport& report);
+[[nodiscard]] Section methods_section(const ThresholdReport& report);
+
+/// The report after unblinding.
+/// \param pictures  in the order in which they appear
+[[nodiscard]] Document threshold_document(const ThresholdReport& report,
+                                          const Provenance& provenance,
+                                          const Pictures& pictures = {});
+
+}  // namespace touchtrial::analysis::threshold

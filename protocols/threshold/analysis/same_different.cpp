@@ -1,0 +1,131 @@
+#include "protocols/threshold/analysis/report_parts.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace touchtrial::analysis::threshold {
+namespace {
+
+constexpr int kSaidDifferent = 1;  ///< index into the choices of "same or different"
+
+/// Answers "different" at the levels of one standard.
+struct LevelAnswers {
+  std::vector<Proportion> different;  ///< trials with two that differ, by level
+  std::vector<Proportion> same;       ///< trials with two alike
+};
+
+void add_answer(LevelAnswers& answers, const TrialOutcome& trial) {
+  const auto level = static_cast<std::size_t>(trial.chosen->level);
+  if (level >= answers.same.size()) return;
+  Proportion& of = *trial.right == kSaidDifferent ? answers.different[level] : answers.same[level];
+  ++of.n;
+  of.correct += *trial.response == kSaidDifferent ? 1 : 0;
+}
+
+/// The answers of each standard.
+using StandardAnswers = std::vector<LevelAnswers>;
+
+StandardAnswers answers_by_standard(const Person& person, std::size_t standards,
+                                    const design::threshold::ThresholdOptions& options) {
+  const std::size_t levels = options.track.levels.size();
+  const auto each = static_cast<std::size_t>(std::max(options.tracks_each, 1));
+  StandardAnswers all(standards,
+                      {std::vector<Proportion>(levels), std::vector<Proportion>(levels)});
+  for (const TrialOutcome* trial : person.trials) {
+    if (!in_track(*trial)) continue;
+    const std::size_t standard = static_cast<std::size_t>(trial->chosen->track - 1) / each;
+    if (standard < standards) add_answer(all[standard], *trial);
+  }
+  return all;
+}
+
+/// A share of which neither none nor all are: half an answer stands for none, and is taken from
+/// all.
+std::optional<double> inner_share(const Proportion& of) {
+  if (of.n == 0) return std::nullopt;
+  const double correct = std::clamp(static_cast<double>(of.correct), 0.5, of.n - 0.5);
+  return correct / of.n;
+}
+
+/// Fewer hits than false alarms are most likely with d' = 0.
+double d_of(const std::optional<SameDifferentFit>& fit) {
+  return fit ? fit->d_prime : 0.0;
+}
+
+void add_d_prime(SameDifferentLevel& level) {
+  const std::optional<double> hits = inner_share(level.different);
+  const std::optional<double> false_alarms = inner_share(level.same_at_all);
+  if (!hits || !false_alarms) return;
+  level.d_differencing = d_of(differencing_d_prime({*hits, *false_alarms}));
+  level.d_independent = d_of(independent_d_prime({*hits, *false_alarms}));
+}
+
+void add_to(Proportion& sum, const Proportion& of) {
+  sum.n += of.n;
+  sum.correct += of.correct;
+}
+
+void add_levels(std::vector<SameDifferentLevel>& all, const std::string& participant,
+                const StandardAnswers& answers, const std::vector<double>& levels) {
+  for (std::size_t standard = 0; standard < answers.size(); ++standard) {
+    const LevelAnswers& own = answers[standard];
+    Proportion same_at_all;
+    for (const Proportion& same : own.same) add_to(same_at_all, same);
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      if (own.different[i].n + own.same[i].n == 0) continue;
+      SameDifferentLevel& level = all.emplace_back(SameDifferentLevel{
+          participant, standard, levels[i], own.different[i], own.same[i], same_at_all});
+      add_d_prime(level);
+    }
+  }
+}
+
+void add_to(StandardAnswers& sum, const StandardAnswers& own) {
+  for (std::size_t standard = 0; standard < own.size(); ++standard) {
+    for (std::size_t i = 0; i < own[standard].same.size(); ++i) {
+      add_to(sum[standard].different[i], own[standard].different[i]);
+      add_to(sum[standard].same[i], own[standard].same[i]);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<SameDifferentLevel> same_different_levels(const design::Study& study,
+                                                      std::span<const Person> people) {
+  const design::threshold::ThresholdOptions& options = design::threshold::options_of(study);
+  std::vector<SameDifferentLevel> all;
+  if (options.question != design::threshold::Question::same_different) return all;
+  const std::size_t standards = design::threshold::standards_of(study).size();
+  StandardAnswers pooled = answers_by_standard({}, standards, options);
+  for (const Person& person : people) {
+    const StandardAnswers own = answers_by_standard(person, standards, options);
+    add_levels(all, person.name, own, options.track.levels);
+    add_to(pooled, own);
+  }
+  add_levels(all, "", pooled, options.track.levels);
+  return all;
+}
+
+std::vector<SameDifferentGroup> same_different_groups(std::span<const SameDifferentLevel> levels) {
+  struct Values {
+    std::vector<double> differencing;
+    std::vector<double> independent;
+  };
+  std::map<std::pair<std::size_t, double>, Values> values;
+  for (const SameDifferentLevel& one : levels) {
+    if (one.participant.empty() || !one.d_differencing || !one.d_independent) continue;
+    Values& of = values[{one.standard, one.level}];
+    of.differencing.push_back(*one.d_differencing);
+    of.independent.push_back(*one.d_independent);
+  }
+  std::vector<SameDifferentGroup> groups;
+  for (const auto& [place, of] : values) {
+    groups.push_back({place.first, place.second, unbounded_mean(of.differencing),
+                      unbounded_mean(of.independent)});
+  }
+  return groups;
+}
+
+}  // namespace touchtrial::analysis::threshold

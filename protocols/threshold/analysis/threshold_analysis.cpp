@@ -1,0 +1,71 @@
+#include "protocols/threshold/analysis/threshold_analysis.hpp"
+
+#include "core/errors.hpp"
+#include "protocols/threshold/analysis/figures/figures.hpp"
+#include "protocols/threshold/analysis/page/sections.hpp"
+#include "protocols/threshold/analysis/report.hpp"
+#include "protocols/threshold/analysis/tables.hpp"
+#include "protocols/threshold/analysis/threshold_model.hpp"
+
+#include <utility>
+
+namespace touchtrial::analysis::threshold {
+namespace {
+
+class ThresholdResults final : public Results {
+ public:
+  explicit ThresholdResults(ThresholdReport report) : report_(std::move(report)) {}
+
+  const StudyHead& head() const override { return report_; }
+  std::string json() const override { return report_json(report_); }
+  std::vector<Figure> figures(const std::string& stamp) const override {
+    return report_figures(report_, stamp);
+  }
+  Document document(const Provenance& provenance, const Pictures& pictures) const override {
+    return threshold_document(report_, provenance, pictures);
+  }
+
+ private:
+  ThresholdReport report_;
+};
+
+void require_possible_wishes(const ReportWishes& wishes) {
+  if (!wishes.trial.empty()) {
+    throw UsageError(
+        "--trial: a trial of a threshold has several planes, and its exploration is not drawn; "
+        "leave the option out");
+  }
+  if (wishes.traces == ReportWishes::Traces::yes) {
+    throw UsageError(
+        "--cues yes: ideal observers are of studies whose participants choose between textures; "
+        "leave the option out");
+  }
+}
+
+class ThresholdAnalysis final : public ProtocolAnalysis {
+ public:
+  std::unique_ptr<const Results> results(const Outcomes& outcomes,
+                                         const ReportWishes& wishes) const override {
+    require_possible_wishes(wishes);
+    return std::make_unique<ThresholdResults>(make_report(outcomes));
+  }
+  std::vector<ResultTable> tables(const Outcomes& outcomes) const override {
+    return {{"thresholds.csv", thresholds_table(make_report(outcomes), outcomes.simulated)},
+            {"tracks.csv", track_trials_table(outcomes)}};
+  }
+  std::vector<TrialColumn> trial_columns() const override { return threshold_trial_columns(); }
+  std::vector<std::filesystem::path> export_model(
+      const store::StudyStore& store, const Outcomes& outcomes,
+      const std::filesystem::path& folder) const override {
+    return export_threshold_model(store, outcomes, folder);
+  }
+};
+
+}  // namespace
+
+const ProtocolAnalysis& threshold_analysis() {
+  static const ThresholdAnalysis analysis;
+  return analysis;
+}
+
+}  // namespace touchtrial::analysis::threshold

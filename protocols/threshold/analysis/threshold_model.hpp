@@ -1,0 +1,29 @@
+/// \file Exports a long table of trials and the R script that fits a probit model with a guess rate
+/// to it, participants being random. Sources: Moscatelli, Mezzetti, Lacquaniti 2012, Journal of
+/// Vision 12(11):26; docs/thresholds.md.
+#pragma once
+
+#include "protocols/threshold/analysis/report.hpp"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial::analysis::threshold {
+
+/// The part of the script that is the same for every study: threshold_model_functions.R, built in.
+[[nodiscard]] std::string_view threshold_model_functions() noexcept;
+
+/// The text of threshold_model.R.
+[[nodiscard]] std::string threshold_model_script(const Outcomes& outcomes);
+
+/// Writes threshold_model.csv, threshold_model.R and threshold_model.md.
+/// \return the files, in the order written
+/// \throws UsageError for same or different, which has no guess rate
+/// \throws FileError as write_export does
+std::vector<std::filesystem::path> export_threshold_model(const store::StudyStore& store,
+                                                          const Outcomes& outcomes,
+                                                          const std::filesystem::path& folder);
+
+}  // namespace touchtrial::analysis::threshold

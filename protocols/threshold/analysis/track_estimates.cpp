@@ -1,0 +1,193 @@
+#include "core/parallel.hpp"
+#include "protocols/threshold/analysis/report_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace touchtrial::analysis::threshold {
+namespace {
+
+using design::threshold::ThresholdOptions;
+using procedures::Censored;
+using procedures::LevelCounts;
+using procedures::Observer;
+using procedures::TrackTrial;
+
+/// Draws of one track's goodness of fit.
+constexpr int kFitDraws = 399;
+
+/// The trials of every track of one participant.
+std::vector<TrackReport> tracks_of(const Person& person, const ThresholdOptions& options,
+                                   std::size_t standards) {
+  const auto each = static_cast<std::size_t>(std::max(options.tracks_each, 1));
+  std::vector<TrackReport> tracks(standards * each);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    tracks[i].participant = person.name;
+    tracks[i].track = static_cast<int>(i) + 1;
+    tracks[i].standard = i / each;
+  }
+  for (const TrialOutcome* trial : person.trials) {
+    if (!in_track(*trial)) continue;
+    const auto track = static_cast<std::size_t>(trial->chosen->track - 1);
+    const auto level = static_cast<std::size_t>(trial->chosen->level);
+    if (track >= tracks.size() || level >= options.track.levels.size()) continue;
+    tracks[track].trials.push_back({level, trial->correct()});
+    ++tracks[track].answers.n;
+    tracks[track].answers.correct += trial->correct() ? 1 : 0;
+  }
+  std::erase_if(tracks, [](const TrackReport& track) { return track.trials.empty(); });
+  return tracks;
+}
+
+bool is_constant(const ThresholdOptions& options) {
+  return options.track.procedure == "constant-stimuli";
+}
+
+bool is_staircase(const ThresholdOptions& options) {
+  return options.track.procedure.ends_with("up-down");
+}
+
+procedures::FitOptions fit_options(const ThresholdOptions& options) {
+  return {.shape = options.track.grid.shape, .guess = options.track.grid.guess};
+}
+
+/// The estimate, and the observer that it describes.
+struct Estimated {
+  TrackEstimate estimate;
+  std::optional<Observer> observer;
+};
+
+Estimated with_observer(const procedures::Threshold& threshold, const Observer& observer) {
+  Estimated found{{threshold}, {}};
+  if (threshold.censored != Censored::no) return found;
+  found.estimate.slope = observer.slope;
+  found.estimate.lapse = observer.lapse;
+  found.observer = observer;
+  return found;
+}
+
+Estimated posterior_estimate(const TrackReport& track, const ThresholdOptions& options) {
+  const procedures::TrackSettings& settings = options.track;
+  const procedures::Posterior posterior =
+      procedures::posterior_of(settings.levels, settings.grid, track.trials);
+  const Observer mean{settings.grid.shape, procedures::mean_of(posterior.threshold()),
+                      procedures::mean_of(posterior.slope()), settings.grid.guess,
+                      procedures::mean_of(posterior.lapse())};
+  return with_observer(procedures::posterior_threshold(posterior, settings.levels), mean);
+}
+
+Estimated likelihood_estimate(std::span<const LevelCounts> counts,
+                              const ThresholdOptions& options) {
+  const procedures::FitOptions fit = fit_options(options);
+  return with_observer(procedures::likelihood_threshold(counts, fit),
+                       procedures::fit_observer(counts, fit).observer);
+}
+
+/// What one trial tells of a change of the threshold, p being the share right at its level.
+struct TrialWeight {
+  double score = 0.0;        ///< p' / (p (1 - p)), by which a residual counts
+  double information = 0.0;  ///< p'^2 / (p (1 - p))
+};
+
+TrialWeight weight_at(Observer observer, double level) {
+  constexpr double kStep_db = 0.01;
+  // Without lapses one mistake far above the threshold would count more than all else.
+  observer.lapse = std::max(observer.lapse, 0.02);
+  const procedures::AnswerShares at = procedures::shares_at(observer, level);
+  const double rise = (procedures::shares_at(observer, level + kStep_db).correct -
+                       procedures::shares_at(observer, level - kStep_db).correct) /
+                      (2.0 * kStep_db);
+  const double variance = at.correct * at.wrong;
+  return {rise / variance, rise * rise / variance};
+}
+
+/// The change of the threshold over a track, in one step of Fisher scoring from the fit without a
+/// change. Given the observer, each residual has a mean of 0 whatever the answers before it, so a
+/// procedure that follows answers does not look like learning.
+/// \return nothing if its standard error is more than a quarter of the range of levels
+std::optional<double> learning_of(std::span<const TrackTrial> trials, const Observer& observer,
+                                  std::span<const double> levels) {
+  const double last = std::max(static_cast<double>(trials.size()) - 1.0, 1.0);
+  std::vector<TrialWeight> weights;
+  double information = 0.0;
+  double middle = 0.0;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    weights.push_back(weight_at(observer, levels[trials[i].level]));
+    information += weights[i].information;
+    middle += weights[i].information * static_cast<double>(i) / last;
+  }
+  if (!(information > 0.0)) return std::nullopt;
+  middle /= information;
+  double score = 0.0;
+  double spread = 0.0;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const double expected = procedures::shares_at(observer, levels[trials[i].level]).correct;
+    const double place = static_cast<double>(i) / last - middle;
+    score += place * weights[i].score * ((trials[i].correct ? 1.0 : 0.0) - expected);
+    spread += place * place * weights[i].information;
+  }
+  const double most_error = 0.25 * (levels.back() - levels.front());
+  if (!(spread * most_error * most_error >= 1.0)) return std::nullopt;
+  return -score / spread;
+}
+
+/// \param index  chooses the stream of random numbers
+void estimate(TrackReport& track, const ThresholdOptions& options, bool quotes_posterior,
+              std::size_t index) {
+  const std::vector<double>& levels = options.track.levels;
+  const std::vector<LevelCounts> counts = procedures::counts_of(levels, track.trials);
+  const Estimated posterior = posterior_estimate(track, options);
+  track.posterior = posterior.estimate;
+  if (quotes_posterior) track.observer = posterior.observer;
+  if (counts.size() >= 2) {
+    const Estimated likely = likelihood_estimate(counts, options);
+    track.likelihood = likely.estimate;
+    if (!quotes_posterior) track.observer = likely.observer;
+    if (is_constant(options)) {
+      RandomStream random(1, "threshold analysis: goodness of fit", index);
+      track.fit = procedures::goodness_of_fit(counts, fit_options(options), kFitDraws, random);
+    }
+  }
+  if (is_staircase(options)) {
+    track.reversals = procedures::reversal_threshold(levels, track.trials);
+  }
+  // Not the most likely observer, whose slope has no bound.
+  if (posterior.observer) {
+    track.learning_db = learning_of(track.trials, *posterior.observer, levels);
+  }
+}
+
+}  // namespace
+
+std::vector<TrackReport> track_reports(const design::Study& study, std::span<const Person> people,
+                                       bool by_posterior, int jobs) {
+  const ThresholdOptions& options = design::threshold::options_of(study);
+  const std::size_t standards = design::threshold::standards_of(study).size();
+  std::vector<TrackReport> all;
+  for (const Person& person : people) {
+    for (TrackReport& track : tracks_of(person, options, standards)) {
+      all.push_back(std::move(track));
+    }
+  }
+  if (options.question == design::threshold::Question::same_different) return all;
+  in_parallel(jobs, all.size(), [&](std::size_t i) { estimate(all[i], options, by_posterior, i); });
+  return all;
+}
+
+std::optional<double> quantity_at(const ThresholdOptions& options,
+                                  const design::threshold::Standard& standard,
+                                  const std::optional<double>& level) {
+  if (!level || options.task == design::threshold::Task::detection) return std::nullopt;
+  const double fraction = procedures::weber_fraction(*level);
+  return options.along == design::threshold::Along::order ? fraction * standard.value : fraction;
+}
+
+Quantity quantity_of(const ThresholdOptions& options, const design::threshold::Standard& standard,
+                     const procedures::Threshold& threshold) {
+  return {quantity_at(options, standard, threshold.level),
+          quantity_at(options, standard, threshold.low),
+          quantity_at(options, standard, threshold.high)};
+}
+
+}  // namespace touchtrial::analysis::threshold

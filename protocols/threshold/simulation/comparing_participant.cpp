@@ -1,0 +1,221 @@
+#include "protocols/threshold/simulation/comparing_participant.hpp"
+
+#include "core/errors.hpp"
+#include "protocols/procedures/psychometric_function.hpp"
+#include "protocols/session/exploration.hpp"
+#include "protocols/simulation/felt_exploration.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+namespace touchtrial::simulation::threshold {
+namespace {
+
+using design::threshold::Question;
+using design::threshold::ThresholdOptions;
+
+constexpr double kQuickestThoughtS = 0.8;
+constexpr double kSlowestThoughtS = 4.0;
+
+engine::FeltFeatures perceived(engine::FeltFeatures felt, const Individual& person) {
+  if (person.floor()) person.floor()->apply_to(felt);
+  return felt;
+}
+
+/// Which of three is farthest from the other two.
+int odd_of(const std::vector<double>& strengths) {
+  int odd = 0;
+  double farthest = -1.0;
+  for (std::size_t i = 0; i < strengths.size(); ++i) {
+    double nearest = 1e300;
+    for (std::size_t j = 0; j < strengths.size(); ++j) {
+      if (j != i) nearest = std::min(nearest, std::abs(strengths[i] - strengths[j]));
+    }
+    if (nearest <= farthest) continue;
+    farthest = nearest;
+    odd = static_cast<int>(i);
+  }
+  return odd;
+}
+
+/// As explorations of trials: long enough for any interval.
+SubjectModel with_intervals(SubjectModel subject, const design::Study& study) {
+  constexpr double kMoreS = 1.0;
+  subject.explore_s = study.trials.explore_limit_s + kMoreS;
+  return subject;
+}
+
+class ComparingPopulation final : public Population {
+ public:
+  explicit ComparingPopulation(const PopulationSetting& setting)
+      : study_(setting.key.study),
+        subject_(with_intervals(setting.subject, study_)),
+        seed_(setting.seed),
+        expected_(learnt(setting)) {}
+
+  std::unique_ptr<SimulatedParticipant> participant(int number) const override {
+    return std::make_unique<ComparingParticipant>(subject_, study_, expected_, seed_, number);
+  }
+
+ private:
+  /// The mean over standards and passes; each pass strokes both planes on the same way.
+  [[nodiscard]] static ExpectedChange learnt(const PopulationSetting& setting);
+
+  const design::Study& study_;
+  SubjectModel subject_;
+  std::uint64_t seed_;
+  ExpectedChange expected_;
+};
+
+ExpectedChange ComparingPopulation::learnt(const PopulationSetting& setting) {
+  const design::Study& study = setting.key.study;
+  const ThresholdOptions& options = design::threshold::options_of(study);
+  SubjectModel learner = setting.subject;
+  learner.explore_s = options.interval_s + device::SimulatedHand::kPushBuildUpS;
+  const device::ServoOptions servo = session::trial_servo_options(study, device::kServoRateHz, {});
+  const std::size_t standards = design::threshold::standards_of(study).size();
+  const int passes = setting.subject.training_passes;
+  const double share = 1.0 / (static_cast<double>(standards) * passes);
+  ExpectedChange expected;
+  for (std::size_t standard = 0; standard < standards; ++standard) {
+    for (int pass = 0; pass < passes; ++pass) {
+      const auto felt = [&](std::optional<std::size_t> level) {
+        const design::Interval interval = design::threshold::interval_at(study, standard, level);
+        return feel_exploration(setting.source.plane_of(interval), setting.source.plane(), learner,
+                                servo,
+                                RandomStream(setting.seed, "subject: interval practice",
+                                             (standard << 16U) + static_cast<std::uint64_t>(pass)));
+      };
+      const engine::FeltFeatures lower = felt(std::nullopt);
+      const engine::FeltFeatures higher = felt(options.track.levels.size() - 1);
+      for (std::size_t i = 0; i < lower.size(); ++i) {
+        expected.lower[i] += share * lower[i];
+        expected.higher[i] += share * higher[i];
+      }
+    }
+  }
+  return expected;
+}
+
+}  // namespace
+
+ComparingParticipant::ComparingParticipant(const SubjectModel& subject, const design::Study& study,
+                                           const ExpectedChange& expected, std::uint64_t seed,
+                                           int number)
+    : SimulatedParticipant(subject, seed, number),
+      subject_(subject),
+      options_(design::threshold::options_of(study)),
+      seed_(seed),
+      number_(number),
+      individual_(subject, seed, number),
+      condition_(subject, seed, number) {
+  const engine::FeltFeatures lower = perceived(expected.lower, individual_);
+  const engine::FeltFeatures higher = perceived(expected.higher, individual_);
+  for (std::size_t i = 0; i < weights_.size(); ++i) weights_[i] = higher[i] - lower[i];
+  const auto sum = [this] { return std::accumulate(weights_.begin(), weights_.end(), 0.0); };
+  if (options_.rove_db > 0.0) {
+    // Strength as a whole says nothing where gains are roved.
+    const double mean = sum() / static_cast<double>(weights_.size());
+    for (double& weight : weights_) weight -= mean;
+  }
+  const double squares =
+      std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 0.0);
+  const engine::FeltNoise noise = individual_.noise();
+  noise_ = std::sqrt(noise.own * noise.own * squares + noise.common * noise.common * sum() * sum());
+  // Two that differ by more than their noise usually makes them are called different.
+  criterion_ = std::sqrt(2.0) * noise_;
+}
+
+void ComparingParticipant::begin_visit(int visit, TrialCourse course) {
+  condition_ = Condition(subject_, seed_, number_, visit, static_cast<int>(course.size()));
+  trials_ = 0;
+}
+
+void ComparingParticipant::interval(const session::IntervalStep& next) {
+  if (next.interval == 1) {
+    felt_.clear();
+    ++trials_;
+  } else {
+    felt_.push_back(felt_last());
+  }
+  hears_only_ = next.hand_off;
+  trial_ = next.trial;
+}
+
+double ComparingParticipant::strength(engine::FeltFeatures felt, double noise_factor,
+                                      RandomStream& random) const {
+  felt = perceived(felt, individual_);
+  const engine::FeltNoise noise = individual_.noise();
+  const double shared = noise_factor * noise.common * random.normal();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < weights_.size(); ++i) {
+    sum += weights_[i] * (felt[i] + shared + noise_factor * noise.own * random.normal());
+  }
+  return sum;
+}
+
+int ComparingParticipant::named(const std::vector<double>& strengths) const {
+  switch (options_.question) {
+    case Question::odd_one_out:
+      return odd_of(strengths);
+    case Question::same_different:
+      return std::abs(strengths[0] - strengths[1]) > criterion_ ? 1 : 0;
+    case Question::which_interval:
+      break;
+  }
+  return static_cast<int>(std::ranges::max_element(strengths) - strengths.begin());
+}
+
+int ComparingParticipant::given_answer(RandomStream& random) {
+  if (!order_) {
+    throw UsageError(
+        "an observer of a given function is told levels by `simulate` alone; remove "
+        "given_function from the subject file, or simulate");
+  }
+  design::Presentation shown{.trial = trial_, .stimulus = {}};
+  order_->choose(shown);
+  const design::ChosenLevel chosen = shown.chosen.value();
+  const GivenFunction& given = *subject_.given_function;
+  const procedures::ParameterGrid& grid = options_.track.grid;
+  const double own =
+      RandomStream(seed_, "subject: given threshold", static_cast<std::uint64_t>(number_)).normal();
+  const procedures::Observer observer{grid.shape, given.threshold + given.spread * own, given.slope,
+                                      grid.guess, given.lapse};
+  const double level = options_.track.levels[static_cast<std::size_t>(chosen.level)];
+  const bool right = random.uniform() < procedures::shares_at(observer, level).correct;
+  const auto others = static_cast<std::uint64_t>(labels_.size() - 1);
+  const auto wrong = static_cast<int>(random.below(others));
+  const int position = right ? chosen.target : wrong + (wrong >= chosen.target ? 1 : 0);
+  order_->answer(shown, position);
+  return position;
+}
+
+ParticipantAnswer ComparingParticipant::choose(const engine::FeltFeatures& felt,
+                                               RandomStream& random) {
+  felt_.push_back(felt);
+  const Moment moment = condition_.before(trials_, 0);
+  const bool lapses = random.uniform() < moved(individual_.lapse(), moment.lapse_log_odds);
+  const auto anything = static_cast<int>(random.below(labels_.size()));
+  const double thought_s = random.uniform(kQuickestThoughtS, kSlowestThoughtS);
+  std::vector<double> strengths;
+  for (const engine::FeltFeatures& one : felt_) {
+    strengths.push_back(strength(one, moment.noise_factor, random));
+  }
+  if (options_.question == Question::which_interval) {
+    // A preference for a position, in standard deviations of the noise.
+    const std::vector<double> bias = individual_.bias(labels_);
+    for (std::size_t i = 0; i < strengths.size(); ++i) strengths[i] += noise_ * bias[i];
+  }
+  int position = lapses || hears_only_ ? anything : named(strengths);
+  if (subject_.given_function && !hears_only_) position = given_answer(random);
+  condition_.after(static_cast<std::size_t>(position), std::nullopt);
+  return {position, std::chrono::milliseconds(std::llround(thought_s * 1000.0))};
+}
+
+std::unique_ptr<const Population> make_population(const PopulationSetting& setting) {
+  return std::make_unique<ComparingPopulation>(setting);
+}
+
+}  // namespace touchtrial::simulation::threshold

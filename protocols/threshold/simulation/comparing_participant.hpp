@@ -1,0 +1,76 @@
+/// \file A simulated participant who compares how the planes of a trial feel. No psychometric
+/// function is put in: the threshold follows from sense and noise. Source: docs/thresholds.md,
+/// "Simulated participants".
+#pragma once
+
+#include "protocols/simulation/condition.hpp"
+#include "protocols/simulation/felt_decision.hpp"
+#include "protocols/simulation/population.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
+#include "protocols/threshold/design/threshold.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace touchtrial::simulation::threshold {
+
+/// What all participants of a study know before the first trial: which way the felt intensities
+/// change where there is more of what is asked for, and by how much at the highest level.
+struct ExpectedChange {
+  engine::FeltFeatures lower{};   ///< typical, of standards or blank planes
+  engine::FeltFeatures higher{};  ///< typical, of the highest levels
+};
+
+/// Feels every interval with noise of its own and names the strongest, the odd one, or whether two
+/// differ by more than a criterion; or lapses, and names any. With SubjectModel::given_function it
+/// answers by that instead, as nobody could. Refers to subject and study, which must outlive it.
+class ComparingParticipant final : public SimulatedParticipant {
+ public:
+  /// \param subject  explores for as long as an interval may last
+  /// \param number  from 1
+  ComparingParticipant(const SubjectModel& subject, const design::Study& study,
+                       const ExpectedChange& expected, std::uint64_t seed, int number);
+
+  void see_pictures(const std::vector<std::string>& labels) override { labels_ = labels; }
+  void interval(const session::IntervalStep& next) override;
+  void rest() override { condition_.rest(trials_); }
+  void follow(std::unique_ptr<design::AdaptiveOrder> order) override { order_ = std::move(order); }
+
+ protected:
+  [[nodiscard]] ParticipantAnswer choose(const engine::FeltFeatures& felt,
+                                         RandomStream& random) override;
+  void begin_visit(int visit, TrialCourse course) override;
+
+ private:
+  /// How strong a plane felt, along the expected change.
+  [[nodiscard]] double strength(engine::FeltFeatures felt, double noise_factor,
+                                RandomStream& random) const;
+  [[nodiscard]] int named(const std::vector<double>& strengths) const;
+  /// \throws UsageError if nothing tells the level
+  [[nodiscard]] int given_answer(RandomStream& random);
+
+  const SubjectModel& subject_;
+  const design::threshold::ThresholdOptions& options_;
+  std::uint64_t seed_;
+  int number_;
+  Individual individual_;
+  engine::FeltFeatures weights_{};
+  double noise_ = 0.0;      ///< standard deviation of a strength
+  double criterion_ = 0.0;  ///< of a difference
+  Condition condition_;
+  std::vector<std::string> labels_;
+  std::vector<engine::FeltFeatures> felt_;  ///< of the trial's earlier intervals
+  bool hears_only_ = false;
+  std::unique_ptr<design::AdaptiveOrder> order_;
+  int trial_ = 0;  ///< number in the schedule
+  int trials_ = 0;
+};
+
+/// Strokes standards and highest levels, as before a first trial, and learns what changes.
+/// \throws FileError if the pack lacks a stimulus
+[[nodiscard]] std::unique_ptr<const Population> make_population(const PopulationSetting& setting);
+
+}  // namespace touchtrial::simulation::threshold

@@ -1,0 +1,118 @@
+// The commands for studies of thresholds: procedure, and power.
+#include "app/study_folder.hpp"
+#include "support/catch.hpp"
+
+#include <string>
+#include <vector>
+
+using namespace touchtrial;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// A study of one or two thresholds, short enough to be simulated in a test.
+struct ThresholdFolder : StudyFolder {
+  explicit ThresholdFolder(int classes = 1) {
+    json study = study_of("classification");
+    study["protocol"] = "threshold";
+    study["classes"].erase(study["classes"].begin() + classes, study["classes"].end());
+    study["trials"] = {{"explore_limit_s", 6.0},
+                       {"validity", {{"exploring_s", 1.0}, {"contact_s", 1.0}, {"path_mm", 20.0}}}};
+    study["threshold"] = {{"task", "detection"},
+                          {"interval_s", 0.4},
+                          {"trials", 6},
+                          {"levels", {{"from", -40}, {"to", 0}, {"step", 4}}}};
+    replace_file(path() / "detection.json", study.dump());
+    replace_file(path() / "quick.json", R"({"feature_noise": 0.05, "training_passes": 2})");
+  }
+
+  [[nodiscard]] ProgramResult procedure(const Words& more) const {
+    Words words = {"procedure", in("detection.json")};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+  [[nodiscard]] ProgramResult power(const Words& more) const {
+    Words words = {"power", in("detection.json"), "--subject", in("quick.json"), "--runs", "50"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+};
+
+void check_line(const ProgramResult& result, const Words& says) {
+  INFO(result.errors);
+  CHECK(result.exit_code == 2);
+  CHECK(result.output.empty());
+  CHECK(line_count(result.errors) == 1);
+  for (const std::string& word : says) CHECK_THAT(result.errors, Catch::Contains(word));
+}
+
+}  // namespace
+
+TEST_CASE("procedure shows the levels for a list of answers") {
+  const ThresholdFolder study;
+  const ProgramResult first = study.procedure({"--answers", ""});
+  INFO(first.errors);
+  REQUIRE(first.exit_code == 0);
+  CHECK(json::parse(first.output).at("levels").size() == 1);
+  const ProgramResult more = study.procedure({"--answers", "1,0,1", "--json"});
+  REQUIRE(more.exit_code == 0);
+  const json walk = json::parse(more.output);
+  CHECK(walk.at("track") == "granite");
+  CHECK(walk.at("answers") == json::array({1, 0, 1}));
+  CHECK(walk.at("levels").size() == 4);
+  CHECK(walk.at("posterior").size() == 4);
+  CHECK(walk.at("levels").at(0) == json::parse(first.output).at("levels").at(0));
+}
+
+TEST_CASE("procedure refuses what is no answer, too many of them, and other studies") {
+  const ThresholdFolder study;
+  check_line(study.procedure({"--answers", "1,2"}), {"--answers", "\"2\"", "1 for right"});
+  check_line(study.procedure({"--answers", "1,"}), {"--answers", "is not an answer"});
+  check_line(study.procedure({"--answers", "1,1,1,1,1,1,1"}), {"7 answers", "6 trials"});
+  check_line(study.procedure({"--answers", "1", "--track", "2"}), {"--track", "has 1 track"});
+  check_line(study.procedure({}), {"--answers"});
+  check_line(study.run({"procedure", study.in("cloths.json"), "--answers", "1"}),
+             {"cloths.json", "classification", "protocol threshold"});
+}
+
+TEST_CASE("power plans the thresholds of a study, the same with any number of threads") {
+  const ThresholdFolder study(2);
+  const Words plan = {"--pool",  "10", "--participants", "4,6", "--trials", "4,6",
+                      "--width", "3",  "--json"};
+  Words two = plan;
+  two.insert(two.end(), {"--jobs", "2"});
+  Words one = plan;
+  one.insert(one.end(), {"--jobs", "1"});
+  const ProgramResult result = study.power(two);
+  INFO(result.errors);
+  REQUIRE(result.exit_code == 0);
+  CHECK(study.power(one).output == result.output);
+  const json report = json::parse(result.output);
+  CHECK(report.at("simulated") == true);
+  REQUIRE(report.at("trials").size() == 2);
+  const json& last = report.at("trials").at(1);
+  CHECK(last.at("trials") == 6);
+  CHECK(last.at("tracks") == 20);
+  REQUIRE(last.at("sizes").size() == 2);
+  const json& size = last.at("sizes").at(1);
+  CHECK(size.at("participants") == 6);
+  CHECK(size.at("thresholds").at(0).at("within").at("samples") == 50);
+  CHECK(size.at("difference").at("power").at("samples") == 50);
+  const ProgramResult text = study.power({"--pool", "10", "--participants", "4"});
+  CHECK_THAT(text.output,
+             Catch::StartsWith("SIMULATED") && Catch::Contains("Difference: granite less linen"));
+}
+
+TEST_CASE("power refuses options of other protocols, and impossible ones of thresholds") {
+  const ThresholdFolder study;
+  check_line(study.power({"--margin", "0.1"}), {"--margin", "not for studies of the protocol"});
+  check_line(study.power({"--explorations", "10"}), {"--explorations"});
+  check_line(study.power({"--difference", "1,2"}), {"--difference", "1 threshold"});
+  check_line(study.power({"--difference", "1"}), {"--difference"});
+  check_line(study.power({"--trials", "6,6"}), {"--trials"});
+  check_line(study.power({"--trials", "6,x"}), {"--trials", "'x'"});
+  check_line(study.power({"--width", "0"}), {"--width"});
+  check_line(study.run({"power", study.in("cloths.json"), "--width", "1"}),
+             {"--width", "is for studies of the protocol threshold"});
+}

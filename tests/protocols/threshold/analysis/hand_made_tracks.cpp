@@ -1,0 +1,150 @@
+#include "protocols/threshold/analysis/hand_made_tracks.hpp"
+
+#include "protocols/procedures/procedure.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace touchtrial {
+namespace {
+
+using design::threshold::ThresholdOptions;
+
+void add_grid(ThresholdOptions& options) {
+  procedures::ParameterGrid& grid = options.track.grid;
+  grid.thresholds = options.track.levels;
+  grid.slopes = {1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0};
+  grid.lapses = {0.0, 0.01, 0.02, 0.03, 0.04, 0.05};
+  grid.guess = 1.0 / options.intervals;
+  options.track.up_down.first_level = options.track.levels.size() - 1;
+}
+
+}  // namespace
+
+std::vector<double> levels_from(double low, double high, double step) {
+  std::vector<double> levels;
+  for (double level = low; level <= high + 1e-9; level += step) levels.push_back(level);
+  return levels;
+}
+
+ThresholdOptions detection_options() {
+  ThresholdOptions options;
+  options.standards = {0.0};
+  options.track.levels = levels_from(-40.0, 0.0, 1.0);
+  add_grid(options);
+  return options;
+}
+
+ThresholdOptions constant_options(std::vector<double> standards) {
+  ThresholdOptions options;
+  options.task = design::threshold::Task::discrimination;
+  options.standards = std::move(standards);
+  options.track.procedure = "constant-stimuli";
+  options.track.levels = levels_from(-30.0, 0.0, 5.0);
+  options.track.trials = 140;
+  add_grid(options);
+  options.track.grid.thresholds = levels_from(-30.0, 0.0, 1.0);
+  return options;
+}
+
+ThresholdOptions same_different_options() {
+  ThresholdOptions options;
+  options.task = design::threshold::Task::discrimination;
+  options.question = design::threshold::Question::same_different;
+  options.along = design::threshold::Along::blend;
+  options.standards = {0.0};
+  options.track.procedure = "constant-stimuli";
+  options.track.levels = {-20.0, -10.0, 0.0};
+  options.track.trials = 30;
+  add_grid(options);
+  return options;
+}
+
+HandMadeTracks::HandMadeTracks(const ThresholdOptions& options,
+                               const std::vector<std::string>& classes) {
+  outcomes.study = "weak";
+  outcomes.design.name = "weak";
+  outcomes.design.protocol = &design::threshold::protocol();
+  outcomes.design.options = std::make_shared<ThresholdOptions>(options);
+  for (const std::string& label : classes) {
+    design::StudyClass& added = outcomes.design.classes.emplace_back();
+    added.label = label;
+    added.images.emplace_back(label + ".png");
+    outcomes.exemplars.push_back({label + ".png"});
+  }
+  outcomes.classes = classes;
+  outcomes.methods = {"adaptive"};
+  for (const design::Choice& choice : design::threshold::protocol().choices(outcomes.design)) {
+    outcomes.choices.push_back(choice.label);
+  }
+  outcomes.state.closed = true;
+  outcomes.state.unblinded = true;
+}
+
+const ThresholdOptions& HandMadeTracks::options() const {
+  return design::threshold::options_of(outcomes.design);
+}
+
+void HandMadeTracks::session(bool counted) {
+  const int number = static_cast<int>(outcomes.sessions.size()) + 1;
+  analysis::SessionOutcome& added = outcomes.sessions.emplace_back();
+  added.row.session = number;
+  added.row.participant = "P" + std::to_string(number);
+  added.row.enrolment = number;
+  added.row.state = store::SessionState::completed;
+  added.counted = counted;
+}
+
+void HandMadeTracks::answer(const HandMadeAnswer& of) {
+  const auto place = static_cast<int>(outcomes.trials.size()) + 1;
+  const bool is_control = of.kind == design::PresentationKind::lead_in;
+  analysis::TrialOutcome& trial = outcomes.trials.emplace_back();
+  trial.participant = "P" + std::to_string(of.session);
+  trial.row.session = of.session;
+  trial.row.trial = place;
+  trial.row.block = is_control ? 1 : 0;
+  trial.row.state = store::TrialState::answered;
+  trial.row.presented_at = std::chrono::seconds(20 * place);
+  trial.row.answered_at = trial.row.presented_at + std::chrono::seconds(8);
+  trial.kind = of.kind;
+  trial.chosen = {of.track, of.level, of.target};
+  trial.scored = of.kind == design::PresentationKind::scored;
+  trial.counted =
+      trial.scored && outcomes.sessions.at(static_cast<std::size_t>(of.session - 1)).counted;
+  trial.response = of.response;
+  trial.right = of.target;
+}
+
+void HandMadeTracks::missed(int session, int track, int level) {
+  answer({session, track, level});
+  outcomes.trials.back().response.reset();
+  outcomes.trials.back().row.state = store::TrialState::timed_out;
+  outcomes.trials.back().row.answered_at.reset();
+}
+
+void HandMadeTracks::track(int session, int number, const procedures::Observer& observer,
+                           RandomStream& random) {
+  const procedures::TrackSettings& settings = options().track;
+  const auto procedure = procedures::make_procedure(settings, random);
+  const auto choices = static_cast<std::uint64_t>(outcomes.choices.size());
+  for (int i = 0; i < settings.trials; ++i) {
+    const std::size_t level = procedure->next();
+    const double share = procedures::shares_at(observer, settings.levels[level]).correct;
+    const bool right = random.uniform() < share;
+    const auto target = static_cast<int>(random.below(choices));
+    const int other = (target + 1) % static_cast<int>(choices);
+    answer({session, number, static_cast<int>(level), target, right ? target : other});
+    procedure->answer(right);
+  }
+}
+
+void HandMadeTracks::outside(int session, design::PresentationKind kind, int right, int wrong) {
+  const auto top = static_cast<int>(options().track.levels.size()) - 1;
+  for (int i = 0; i < right + wrong; ++i) {
+    const int target = i % 2;
+    answer({session, 0, top, target, i < right ? target : 1 - target, kind});
+  }
+}
+
+}  // namespace touchtrial

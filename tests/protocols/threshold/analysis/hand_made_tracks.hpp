@@ -1,0 +1,58 @@
+/// \file Outcomes of a threshold study for which a test gives every trial, or the observer who
+/// answers.
+#pragma once
+
+#include "analysis/outcomes.hpp"
+#include "core/random.hpp"
+#include "protocols/procedures/psychometric_function.hpp"
+#include "protocols/threshold/design/threshold.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// From `low` to `high`, in steps.
+[[nodiscard]] std::vector<double> levels_from(double low, double high, double step);
+
+/// Detection in two intervals with QUEST+: levels of -40 to 0 dB.
+[[nodiscard]] design::threshold::ThresholdOptions detection_options();
+/// Discrimination of gains with constant stimuli, about these standards in dB.
+[[nodiscard]] design::threshold::ThresholdOptions constant_options(std::vector<double> standards);
+/// Same or different along a blend of two textures at three levels.
+[[nodiscard]] design::threshold::ThresholdOptions same_different_options();
+
+/// One answered trial.
+struct HandMadeAnswer {
+  int session = 1;
+  int track = 1;  ///< 0: none
+  int level = 0;
+  int target = 0;
+  int response = 0;
+  design::PresentationKind kind = design::PresentationKind::scored;
+};
+
+/// Sessions are of P1, P2 and so on.
+class HandMadeTracks {
+ public:
+  explicit HandMadeTracks(const design::threshold::ThresholdOptions& options,
+                          const std::vector<std::string>& classes = {"bark"});
+
+  void session(bool counted = true);
+  void answer(const HandMadeAnswer& of);
+  /// A trial of a track in which the time ran out.
+  void missed(int session, int track, int level);
+  /// The whole track of an observer, whose answers `random` draws.
+  void track(int session, int number, const procedures::Observer& observer, RandomStream& random);
+  /// Trials outside the tracks, at the highest level; targets alternate.
+  void outside(int session, design::PresentationKind kind, int right, int wrong);
+
+  analysis::Outcomes outcomes;
+
+ private:
+  [[nodiscard]] const design::threshold::ThresholdOptions& options() const;
+};
+
+}  // namespace touchtrial

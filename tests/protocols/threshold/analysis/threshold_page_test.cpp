@@ -1,0 +1,175 @@
+#include "analysis/exports/dataset.hpp"
+#include "analysis/figures/figure.hpp"
+#include "analysis/page/page_checker.hpp"
+#include "analysis/results.hpp"
+#include "protocols/threshold/analysis/figures/figures.hpp"
+#include "protocols/threshold/analysis/hand_made_tracks.hpp"
+#include "protocols/threshold/analysis/page/sections.hpp"
+#include "protocols/threshold/analysis/tables.hpp"
+#include "protocols/threshold/analysis/threshold_analysis.hpp"
+#include "protocols/threshold/analysis/threshold_model.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+namespace touchtrial {
+namespace {
+
+namespace own = analysis::threshold;
+
+/// Three participants, one of whom feels nothing, with a control block and catch trials.
+HandMadeTracks small_study(const design::threshold::ThresholdOptions& options) {
+  HandMadeTracks made(options, {"bark", "cloth"});
+  const double thresholds[] = {-18.0, -14.0, 60.0};
+  for (int person = 1; person <= 3; ++person) {
+    made.session();
+    const bool is_blend = options.along == design::threshold::Along::blend;
+    const int tracks = (is_blend ? 1 : 2) * static_cast<int>(options.standards.size());
+    for (int track = 1; track <= tracks; ++track) {
+      RandomStream random(5, "page", static_cast<std::uint64_t>(10 * person + track));
+      made.track(person, track,
+                 {procedures::Shape::weibull, thresholds[person - 1], 3.0, 0.5, 0.02}, random);
+    }
+    made.outside(person, design::PresentationKind::catch_trial, 3, 1);
+    made.outside(person, design::PresentationKind::lead_in, 6, 4);
+  }
+  return made;
+}
+
+std::vector<design::threshold::ThresholdOptions> kinds_of_studies() {
+  return {detection_options(), constant_options({-12.0, -6.0}), same_different_options()};
+}
+
+std::size_t column_of(const analysis::DataTable& table, const std::string& name) {
+  const auto found = std::ranges::find(table.columns, name);
+  REQUIRE(found != table.columns.end());
+  return static_cast<std::size_t>(found - table.columns.begin());
+}
+
+}  // namespace
+
+TEST_CASE("every page of thresholds is whole, with figures described in words") {
+  for (const auto& options : kinds_of_studies()) {
+    HandMadeTracks made = small_study(options);
+    made.outcomes.simulated = true;
+    const auto results = own::threshold_analysis().results(made.outcomes, {});
+    analysis::Pictures pictures;
+    for (const analysis::Figure& figure : results->figures("PILOT")) {
+      CHECK(figure.alt.starts_with("PILOT. "));
+      CHECK(figure.alt.size() > 40);
+      CHECK_FALSE(figure.caption.empty());
+      pictures.push_back({figure.id, figure.caption, figure.alt, {}});
+    }
+    REQUIRE_FALSE(pictures.empty());
+    const analysis::Document document = results->document({}, pictures);
+    CHECK(faults_of_page(analysis::page_html(document)).empty());
+    CHECK(document.stamp.find("SIMULATED") != std::string::npos);
+    CHECK_THAT(analysis::document_text(document), holds_text("SIMULATED"));
+    std::size_t shown = 0;
+    for (const analysis::Section& section : document.sections) {
+      shown += static_cast<std::size_t>(
+          std::ranges::count_if(section.blocks, [](const analysis::Block& block) {
+            return std::holds_alternative<analysis::Picture>(block);
+          }));
+    }
+    const bool has_flow = pictures.front().id == "participant-flow";
+    CHECK(shown == pictures.size() - (has_flow ? 1 : 0));
+  }
+}
+
+TEST_CASE("gnuplot draws every figure of thresholds") {
+  for (const auto& options : kinds_of_studies()) {
+    const own::ThresholdReport report = own::make_report(small_study(options).outcomes);
+    const std::vector<analysis::Figure> figures = own::report_figures(report, "");
+    for (const std::string& svg : analysis::all_drawn(figures, analysis::FigureFormat::svg)) {
+      CHECK(svg.size() > 1000);
+    }
+  }
+}
+
+TEST_CASE("studies without trials have no figures of thresholds") {
+  for (const auto& options : kinds_of_studies()) {
+    const own::ThresholdReport report =
+        own::make_report(HandMadeTracks(options, {"bark", "cloth"}).outcomes);
+    CHECK_FALSE(own::thresholds_figure(report));
+    CHECK_FALSE(own::functions_figure(report));
+    CHECK_FALSE(own::tracks_figure(report));
+    CHECK_FALSE(own::d_prime_figure(report));
+  }
+}
+
+TEST_CASE("thresholds and their intervals read as text, censored ones without a number") {
+  const design::threshold::ThresholdOptions options = detection_options();
+  CHECK(own::threshold_text({-21.25, -23.0, -19.5}, options) == "−21.2 [−23.0, −19.5]");
+  CHECK(own::threshold_text({-21.0, {}, -19.5}, options) == "−21.0 [open, −19.5]");
+  CHECK(own::threshold_text({-21.0, {}, {}}, options) == "−21.0");
+  CHECK(own::threshold_text({{}, {}, {}, procedures::Censored::below}, options) == "below −40.0");
+  CHECK(own::threshold_text({{}, {}, {}, procedures::Censored::above}, options) == "above 0.0");
+  design::threshold::ThresholdOptions order = constant_options({0.5});
+  CHECK(own::quantity_text({0.1, 0.05, {}}, order) == "10.0% [5.0, open]");
+  order.along = design::threshold::Along::order;
+  CHECK(own::quantity_at(order, {0, 0.5}, -20.0).value() == Approx(0.05));
+  CHECK(own::quantity_text({0.05, 0.04, 0.06}, order) == "0.050 [0.040, 0.060]");
+  CHECK_FALSE(own::quantity_at(options, {0, 0.0}, -20.0));
+}
+
+TEST_CASE("thresholds.csv has a row for each track, and tracks.csv one for each answered trial") {
+  const HandMadeTracks made = small_study(constant_options({-12.0, -6.0}));
+  const std::vector<analysis::ResultTable> tables = own::threshold_analysis().tables(made.outcomes);
+  REQUIRE(tables.size() == 2);
+  CHECK(tables[0].file == "thresholds.csv");
+  CHECK(tables[0].table.rows.size() == 12);
+  CHECK(tables[1].file == "tracks.csv");
+  CHECK(tables[1].table.rows.size() == made.outcomes.trials.size());
+  for (const analysis::ResultTable& one : tables) CHECK_NOTHROW(analysis::csv_text(one.table));
+  const analysis::DataTable& trials = tables[1].table;
+  const auto& row = trials.rows.front();
+  const double level = std::get<double>(row[column_of(trials, "level_db")]);
+  CHECK(std::get<double>(row[column_of(trials, "comparison")]) ==
+        Approx(-12.0 + 20.0 * std::log10(1.0 + std::pow(10.0, level / 20.0))));
+  CHECK(std::get<std::string>(row[column_of(trials, "standard")]) == "bark, standard -12 dB");
+  CHECK(std::get<std::string>(row[column_of(trials, "kind")]) == "track");
+  const auto& last = trials.rows.back();
+  CHECK(std::get<std::string>(last[column_of(trials, "kind")]) == "control");
+  CHECK(std::holds_alternative<std::monostate>(last[column_of(trials, "track")]));
+  CHECK(std::get<double>(last[column_of(trials, "level_db")]) == 0.0);
+}
+
+TEST_CASE("wishes that a report of thresholds cannot fulfil are refused by their names") {
+  const HandMadeTracks made(detection_options());
+  const auto& room = own::threshold_analysis();
+  using analysis::ReportWishes;
+  CHECK_THROWS_WITH(room.results(made.outcomes, {.trial = "P1:3"}), holds_text("--trial"));
+  CHECK_THROWS_WITH(room.results(made.outcomes, {.traces = ReportWishes::Traces::yes}),
+                    holds_text("--cues"));
+}
+
+TEST_CASE("tables of trials have the track and the level where an order chose them") {
+  const HandMadeTracks made = small_study(constant_options({-12.0, -6.0}));
+  const std::vector<analysis::TrialColumn> own_columns = own::threshold_analysis().trial_columns();
+  REQUIRE(own_columns.size() == 3);
+  const analysis::TrialOutcome& trial = made.outcomes.trials.front();
+  const analysis::TrialView view{trial.participant, trial.row, false, &made.outcomes, &trial};
+  CHECK(std::string(own_columns[0].name) == "track");
+  CHECK(own_columns[0].value(view) == analysis::DataCell(std::int64_t{1}));
+  CHECK(own_columns[1].value(view) == analysis::DataCell(std::string("bark, standard -12 dB")));
+  CHECK(own_columns[2].value(view) ==
+        analysis::DataCell(
+            levels_from(-30.0, 0.0, 5.0)[static_cast<std::size_t>(trial.chosen->level)]));
+  for (const analysis::TrialColumn& column : own_columns) {
+    CHECK(column.after_unblinding);
+    CHECK_FALSE(analysis::meaning_of(column.name).description.empty());
+  }
+}
+
+TEST_CASE("the model's script has the study's guess rate, its criterion and all functions") {
+  const std::string script = own::threshold_model_script(small_study(detection_options()).outcomes);
+  CHECK_THAT(script, holds_text("guess <- 0.5\n") && holds_text("lapse <- 0.025") &&
+                         holds_text("share_at_threshold <- 0.632"));
+  CHECK_THAT(script, holds_text("centre_db <- -20\n"));
+  CHECK(script.ends_with(std::string(own::threshold_model_functions())));
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,349 @@
+#include "analysis/results.hpp"
+#include "protocols/threshold/analysis/hand_made_tracks.hpp"
+#include "protocols/threshold/analysis/report.hpp"
+#include "protocols/threshold/analysis/threshold_analysis.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+namespace own = analysis::threshold;
+using design::PresentationKind;
+using procedures::Censored;
+using procedures::Observer;
+using procedures::Shape;
+
+Observer observer_at(double threshold) {
+  return {Shape::weibull, threshold, 3.5, 0.5, 0.01};
+}
+
+/// Participants with these thresholds, each with every track of the study.
+HandMadeTracks tracks_of(const design::threshold::ThresholdOptions& options, int tracks,
+                         const std::vector<double>& thresholds) {
+  HandMadeTracks made(options);
+  for (std::size_t i = 0; i < thresholds.size(); ++i) {
+    made.session();
+    for (int track = 1; track <= tracks; ++track) {
+      RandomStream random(7, "threshold report test", 10 * i + static_cast<std::size_t>(track));
+      made.track(static_cast<int>(i) + 1, track, observer_at(thresholds[i]), random);
+    }
+  }
+  return made;
+}
+
+nlohmann::json json_of(const HandMadeTracks& made) {
+  return nlohmann::json::parse(
+      analysis::threshold::threshold_analysis().results(made.outcomes, {})->json());
+}
+
+void check_holds(const procedures::Threshold& threshold, double truth) {
+  REQUIRE(threshold.censored == Censored::no);
+  CHECK(threshold.low.value_or(-1e9) < truth);
+  CHECK(threshold.high.value_or(1e9) > truth);
+  CHECK(threshold.level.value() == Approx(truth).margin(4.0));
+}
+
+}  // namespace
+
+TEST_CASE("the intervals of an adaptive track hold the known threshold") {
+  const own::ThresholdReport report =
+      own::make_report(tracks_of(detection_options(), 1, {-25.0, -15.0}).outcomes);
+  REQUIRE(report.tracks.size() == 2);
+  CHECK(report.by_posterior);
+  CHECK(report.criterion.value() == Approx(1.0 - 0.5 * std::exp(-1.0)));
+  check_holds(report.tracks[0].posterior->threshold, -25.0);
+  check_holds(report.tracks[0].likelihood->threshold, -25.0);
+  check_holds(report.tracks[1].posterior->threshold, -15.0);
+  CHECK(report.tracks[0].answers.n == 60);
+  CHECK(report.tracks[0].posterior->slope.value() > 1.0);
+  CHECK_FALSE(report.tracks[0].reversals);
+  CHECK_FALSE(report.tracks[0].fit);
+  const own::StandardReport& bark = report.standards.at(0);
+  CHECK(bark.words == "bark");
+  CHECK(bark.mean.mean.value() == Approx(0.5 * (*report.tracks[0].posterior->threshold.level +
+                                                *report.tracks[1].posterior->threshold.level)));
+  CHECK(bark.mean.sd.value() == Approx(std::abs(*report.tracks[0].posterior->threshold.level -
+                                                *report.tracks[1].posterior->threshold.level) /
+                                       std::sqrt(2.0)));
+}
+
+TEST_CASE("constant stimuli quote the likelihood, and say how well the function fits") {
+  const own::ThresholdReport report =
+      own::make_report(tracks_of(constant_options({-12.0}), 1, {-14.0, -16.0, -15.0}).outcomes);
+  CHECK_FALSE(report.by_posterior);
+  for (const own::TrackReport& track : report.tracks) {
+    REQUIRE(track.fit);
+    CHECK(track.fit->p > 0.001);
+    CHECK(track.observer->threshold == Approx(*track.likelihood->threshold.level).margin(1e-6));
+  }
+  const double mean = report.standards.at(0).mean.mean.value();
+  const auto json = json_of(tracks_of(constant_options({-12.0}), 1, {-14.0, -16.0, -15.0}));
+  CHECK(json.at("quoted") == "likelihood");
+  CHECK(json.at("standards").at(0).at("mean") == Approx(mean));
+  CHECK(json.at("standards").at(0).at("weber").at("fraction") ==
+        Approx(std::pow(10.0, mean / 20.0)));
+  CHECK(json.at("standards").at(0).at("value") == -12.0);
+}
+
+TEST_CASE("a staircase also has the mean of its reversals") {
+  design::threshold::ThresholdOptions options = detection_options();
+  options.track.procedure = "up-down";
+  const own::ThresholdReport report = own::make_report(tracks_of(options, 1, {-20.0}).outcomes);
+  REQUIRE(report.tracks.at(0).reversals);
+  CHECK(report.tracks[0].reversals->level.value() == Approx(-21.0).margin(4.0));
+  const std::string text =
+      analysis::document_text(own::threshold_analysis()
+                                  .results(tracks_of(options, 1, {-20.0}).outcomes, {})
+                                  ->document({}, {}));
+  CHECK_THAT(text, holds_text("70.7%") && holds_text("81.6%"));
+}
+
+TEST_CASE("a censored track has no number anywhere, and its mean says how many there are") {
+  const auto json = json_of(tracks_of(detection_options(), 1, {-20.0, 30.0, -90.0}));
+  const auto& above = json.at("tracks").at(1);
+  CHECK(above.at("posterior").at("censored") == "above");
+  CHECK(json.at("tracks").at(2).at("posterior").at("censored") == "below");
+  for (const char* number : {"threshold", "low", "high", "slope", "lapse"}) {
+    CHECK(above.at("posterior").at(number).is_null());
+  }
+  CHECK(above.at("weber").is_null());
+  CHECK(above.at("learning_db").is_null());
+  const auto& bark = json.at("standards").at(0);
+  CHECK(bark.at("n") == 1);
+  CHECK(bark.at("tracks") == 3);
+  CHECK(bark.at("censored_above") == 1);
+  CHECK(bark.at("censored_below") == 1);
+  CHECK(bark.at("interval").is_null());
+  CHECK(bark.at("mean") == Approx(json.at("tracks").at(0).at("posterior").at("threshold")));
+}
+
+TEST_CASE("if every track is censored there is no threshold, and no comparison fails") {
+  design::threshold::ThresholdOptions options = detection_options();
+  options.tracks_each = 2;
+  const HandMadeTracks made = tracks_of(options, 2, {40.0, 40.0});
+  const auto json = json_of(made);
+  CHECK(json.at("standards").at(0).at("mean").is_null());
+  CHECK(json.at("standards").at(0).at("n") == 0);
+  CHECK_NOTHROW(analysis::document_text(
+      own::threshold_analysis().results(made.outcomes, {})->document({}, {})));
+}
+
+TEST_CASE("differences of standards are paired and adjusted by Holm") {
+  HandMadeTracks made(constant_options({-18.0, -12.0, -6.0}));
+  for (int person = 1; person <= 5; ++person) {
+    made.session();
+    for (int track = 1; track <= 3; ++track) {
+      RandomStream random(3, "differences", static_cast<std::uint64_t>(10 * person + track));
+      made.track(person, track, observer_at(-20.0 + 4.0 * track), random);
+    }
+  }
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  REQUIRE(report.differences.size() == 3);
+  const own::DifferenceReport& first = report.differences[0];
+  CHECK(first.difference.mean.mean.value() ==
+        Approx(*report.standards[0].mean.mean - *report.standards[1].mean.mean));
+  std::vector<double> p;
+  for (const auto& one : report.differences) p.push_back(*one.difference.p);
+  const double least = *std::min_element(p.begin(), p.end());
+  for (const auto& one : report.differences) {
+    CHECK(*one.p_holm >= *one.difference.p);
+    if (*one.difference.p == least) CHECK(*one.p_holm == Approx(std::min(1.0, 3.0 * least)));
+  }
+  CHECK(report.standards[2].words == "bark, standard -6 dB");
+}
+
+TEST_CASE("the control block's p is the exact tail of guessing") {
+  HandMadeTracks made(detection_options());
+  made.session();
+  made.session();
+  made.outside(1, PresentationKind::lead_in, 9, 1);
+  made.outside(2, PresentationKind::lead_in, 5, 5);
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  REQUIRE(report.control);
+  CHECK(report.control->pooled.answers == analysis::Proportion{20, 14});
+  CHECK(report.control->people[0].p.value() == Approx(11.0 / 1024.0).epsilon(1e-12));
+  CHECK(report.control->people[0].p_holm.value() == Approx(22.0 / 1024.0).epsilon(1e-12));
+  CHECK(report.control->people[1].p.value() == Approx(638.0 / 1024.0).epsilon(1e-12));
+  CHECK(report.control->pooled.p.value() == Approx(60460.0 / 1048576.0).epsilon(1e-12));
+  CHECK_FALSE(report.catches);
+  CHECK(json_of(made).at("control").at("participants").at(0).at("right") == 9);
+  CHECK(json_of(made).at("catch").is_null());
+}
+
+TEST_CASE("sound that is heard stands beside the thresholds, in the result") {
+  HandMadeTracks made = tracks_of(detection_options(), 1, {-20.0});
+  made.outside(1, PresentationKind::lead_in, 20, 0);
+  const analysis::Document page =
+      own::threshold_analysis().results(made.outcomes, {})->document({}, {});
+  REQUIRE(page.sections.front().id == "result");
+  std::string said;
+  for (const analysis::Block& block : page.sections.front().blocks) {
+    if (const auto* text = std::get_if<analysis::Cited>(&block)) said += text->text;
+  }
+  CHECK_THAT(said, holds_text("20 of 20") && holds_text("of the ear") && holds_text("bark: −"));
+}
+
+TEST_CASE("catch trials are counted by participant, and poor ones are warned of") {
+  HandMadeTracks made = tracks_of(detection_options(), 1, {-20.0, -20.0});
+  made.outside(1, PresentationKind::catch_trial, 4, 0);
+  made.outside(2, PresentationKind::catch_trial, 2, 2);
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  REQUIRE(report.catches);
+  CHECK(report.catches->pooled.answers == analysis::Proportion{8, 6});
+  const std::string warnings = json_of(made).at("warnings").dump();
+  CHECK_THAT(warnings, holds_text("answered right by P2:"));
+}
+
+TEST_CASE("a preferred interval is its share named less its share of targets") {
+  HandMadeTracks made(detection_options());
+  for (int person = 1; person <= 3; ++person) {
+    made.session();
+    for (int i = 0; i < 10; ++i) made.answer({person, 1, 20, i % 2, i < 7 + person ? 0 : 1});
+  }
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  REQUIRE(report.choice_use.size() == 2);
+  CHECK(report.choice_use[0].named == 8 + 9 + 10);
+  CHECK(report.choice_use[0].targets == 15);
+  CHECK(report.choice_use[0].excess.mean.mean.value() == Approx(0.4));
+  CHECK(report.choice_use[1].excess.mean.mean.value() == Approx(-0.4));
+  // t = 0.4 / (0.1 / sqrt 3) = 6.928 with two degrees of freedom.
+  CHECK(report.choice_use[0].excess.p.value() == Approx(0.0202).margin(1e-4));
+}
+
+TEST_CASE("repeated answers are counted after right and after wrong ones, within sessions") {
+  HandMadeTracks made(detection_options());
+  made.session();
+  // Answers 0 0 1 1 0; the first and the fourth are right.
+  const int answers[] = {0, 0, 1, 1, 0};
+  const int targets[] = {0, 1, 0, 1, 1};
+  for (int i = 0; i < 5; ++i) made.answer({1, 1, 20, targets[i], answers[i]});
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  CHECK(report.after_right.repeats == analysis::Proportion{2, 1});
+  CHECK(report.after_wrong.repeats == analysis::Proportion{2, 1});
+  // After right: once 0, of which two of the other four are, and once 1, of which one is.
+  CHECK(report.after_right.expected.value() == Approx((2.0 / 4.0 + 1.0 / 4.0) / 2.0));
+  CHECK_FALSE(report.after_right.excess.p);
+}
+
+TEST_CASE("a participant who becomes better has a threshold that falls") {
+  // In the first half levels from the fifth on are felt, then from the third on.
+  const auto learning = [](bool backwards) {
+    HandMadeTracks made(constant_options({-12.0}));
+    made.session();
+    for (int n = 0; n < 140; ++n) {
+      const int i = backwards ? 139 - n : n;
+      const bool felt = i % 7 >= (i < 70 ? 4 : 2);
+      made.answer({1, 1, i % 7, 0, felt || i / 7 % 2 == 0 ? 0 : 1});
+    }
+    return own::make_report(made.outcomes);
+  };
+  const own::ThresholdReport better = learning(false);
+  CHECK(better.tracks.at(0).learning_db.value() < -5.0);
+  CHECK(learning(true).tracks.at(0).learning_db.value() ==
+        Approx(-*better.tracks[0].learning_db).epsilon(1e-6));
+  CHECK(better.learning_db.mean.mean == better.tracks[0].learning_db);
+}
+
+TEST_CASE("an adaptive track of an observer who does not change looks like no learning") {
+  for (const char* procedure : {"quest-plus", "up-down"}) {
+    design::threshold::ThresholdOptions options = detection_options();
+    options.track.procedure = procedure;
+    const own::ThresholdReport report =
+        own::make_report(tracks_of(options, 1, std::vector<double>(30, -20.0)).outcomes);
+    INFO(procedure);
+    CHECK(report.learning_db.mean.participants > 25);
+    CHECK(*report.learning_db.p > 0.01);
+  }
+}
+
+TEST_CASE("d' of same or different takes hits of a level and false alarms of all levels") {
+  HandMadeTracks made(same_different_options(), {"bark", "cloth"});
+  made.session();
+  const auto add = [&](int level, int target, int different, int n) {
+    for (int i = 0; i < n; ++i) made.answer({1, 1, level, target, i < different ? 1 : 0});
+  };
+  for (int level = 0; level < 3; ++level) add(level, 0, level, 10);  // 3 false alarms of 30
+  add(0, 1, 1, 10);
+  add(1, 1, 5, 10);
+  add(2, 1, 10, 10);
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  CHECK_FALSE(report.has_thresholds());
+  REQUIRE(report.same_different.size() == 6);
+  const own::SameDifferentLevel& middle = report.same_different[1];
+  CHECK(middle.participant == "P1");
+  CHECK(middle.different == analysis::Proportion{10, 5});
+  CHECK(middle.same == analysis::Proportion{10, 1});
+  CHECK(middle.same_at_all == analysis::Proportion{30, 3});
+  CHECK(*middle.d_differencing ==
+        Approx(analysis::differencing_d_prime({0.5, 0.1})->d_prime).epsilon(1e-12));
+  CHECK(*middle.d_independent ==
+        Approx(analysis::independent_d_prime({0.5, 0.1})->d_prime).epsilon(1e-12));
+  CHECK(*report.same_different[0].d_differencing == Approx(0.0).margin(1e-9));
+  CHECK(*report.same_different[2].d_differencing ==
+        Approx(analysis::differencing_d_prime({0.95, 0.1})->d_prime).epsilon(1e-12));
+  CHECK(report.same_different[3].participant.empty());
+  const auto json = json_of(made);
+  CHECK(json.at("criterion").is_null());
+  CHECK(json.at("tracks").at(0).at("posterior").is_null());
+  CHECK(json.at("same_different").at("levels").size() == 6);
+  CHECK(json.at("same_different").at("groups").at(1).at("differencing").at("mean") ==
+        Approx(*middle.d_differencing));
+}
+
+TEST_CASE("trials without an answer belong to no track") {
+  HandMadeTracks made = tracks_of(detection_options(), 1, {-20.0});
+  const int n = own::make_report(made.outcomes).tracks.at(0).answers.n;
+  made.missed(1, 1, 40);
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  CHECK(report.tracks.at(0).answers.n == n);
+  CHECK(report.without_answer == 1);
+}
+
+TEST_CASE("sessions that do not count are left out of everything") {
+  HandMadeTracks made(detection_options());
+  made.session(false);
+  made.answer({1, 1, 20, 0, 0});
+  made.outside(1, PresentationKind::lead_in, 3, 3);
+  made.outside(1, PresentationKind::catch_trial, 3, 3);
+  const auto json = json_of(made);
+  CHECK(json.at("tracks").empty());
+  CHECK(json.at("control").is_null());
+  CHECK(json.at("catch").is_null());
+  CHECK(json.at("standards").at(0).at("n") == 0);
+}
+
+TEST_CASE("a study without trials, and tracks of one or two trials, have a report") {
+  for (int trials = 0; trials < 4; ++trials) {
+    for (const auto& options : {detection_options(), constant_options({-12.0, -6.0})}) {
+      HandMadeTracks made(options);
+      if (trials > 0) made.session();
+      for (int i = 0; i < trials; ++i) made.answer({1, 1, 3 + i / 2, i % 2, 0});
+      const auto results = own::threshold_analysis().results(made.outcomes, {});
+      CHECK_NOTHROW(analysis::document_text(results->document({}, {})));
+      const auto json = nlohmann::json::parse(results->json());
+      CHECK(json.at("tracks").size() == (trials > 0 ? 1 : 0));
+      CHECK(json.at("levels").size() == options.track.levels.size());
+    }
+  }
+  HandMadeTracks same(same_different_options(), {"bark", "cloth"});
+  same.session();
+  same.answer({1, 1, 0, 1, 1});
+  const auto levels = json_of(same).at("same_different").at("levels");
+  CHECK(levels.at(0).at("d_prime_differencing").is_null());
+}
+
+TEST_CASE("the task, the criterion and the units are in the report") {
+  const auto json = json_of(HandMadeTracks(detection_options()));
+  CHECK(json.at("task") == "detection");
+  CHECK(json.at("question") == "which-interval");
+  CHECK(json.at("along") == "gain");
+  CHECK(json.at("unit") == "dB re the pack's gain");
+  CHECK(json.at("protocol") == "threshold");
+}
+
+}  // namespace touchtrial

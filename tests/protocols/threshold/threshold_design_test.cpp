@@ -1,0 +1,305 @@
+// What a study file says of a threshold, and what its participants are presented.
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/design/protocol.hpp"
+#include "protocols/threshold/design/threshold.hpp"
+#include "protocols/threshold/threshold_study.hpp"
+#include "support/catch.hpp"
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using nlohmann::json;
+
+json detection_file() {
+  return json::parse(R"({"study": "s", "protocol": "threshold",
+    "classes": [{"label": "a", "images": ["a.png"]}], "methods": [{"name": "adaptive"}],
+    "threshold": {"task": "detection", "levels": {"from": -40, "to": 0, "step": 1}}})");
+}
+
+json gain_file() {
+  json file = detection_file();
+  file["threshold"] = json::parse(R"({"task": "discrimination", "standards": [-18, -6],
+    "levels": {"from": -30, "to": -4, "step": 2}})");
+  return file;
+}
+
+json order_file() {
+  json file = detection_file();
+  file["methods"] = {{{"name", "fixed"}, {"radius", 3}}};
+  file["threshold"] = json::parse(R"({"task": "discrimination", "along": "order",
+    "question": "odd-one-out", "standards": [0.1], "levels": [0, 6, 12], "rove_db": 3})");
+  return file;
+}
+
+design::Study study_of(const json& file) {
+  return design::parse_study(file.dump(), ".", "s.json");
+}
+
+std::string refusal_of(const json& file) {
+  try {
+    static_cast<void>(study_of(file));
+  } catch (const StudyError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+design::ScheduleDraw draw_of(std::uint64_t seed) {
+  return {.secret = SeededEntropy(seed).secret("threshold_design_test")};
+}
+
+/// All presentations of a participant whose answers are right where `is_right` says so.
+template <typename IsRight>
+std::vector<design::Presentation> presented(const design::Study& study,
+                                            const design::ScheduleDraw& draw, IsRight is_right) {
+  const auto order = design::adaptive_order(study, draw);
+  std::vector<design::Presentation> all;
+  for (design::Presentation place : design::make_schedule(study, draw).presentations) {
+    order->choose(place);
+    all.push_back(place);
+    const int target = place.chosen->target;
+    order->answer(place, is_right(place) ? target : (target == 0 ? 1 : 0));
+  }
+  return all;
+}
+
+const auto kAlwaysRight = [](const design::Presentation&) { return true; };
+
+}  // namespace
+
+TEST_CASE("a threshold study has one class at least, and the section that it needs") {
+  CHECK(refusal_of(detection_file()).empty());
+  json file = detection_file();
+  file.erase("threshold");
+  CHECK_THAT(refusal_of(file), holds_text("/threshold: is missing"));
+  file = detection_file();
+  file["protocol"] = "classification";
+  file.erase("threshold");
+  CHECK_THAT(refusal_of(file), holds_text("/classes: has 1 entries, must have from 2"));
+}
+
+TEST_CASE("what cannot be presented or answered is refused with its place and a remedy") {
+  const auto refused = [](json file, const std::string& pointer, const json& value,
+                          const std::string& text) {
+    file[json::json_pointer(pointer)] = value;
+    INFO(pointer << " = " << value.dump());
+    CHECK_THAT(refusal_of(file), holds_text(text));
+  };
+  refused(detection_file(), "/threshold/along", "pitch", "/threshold/along: must be \"gain\"");
+  refused(detection_file(), "/threshold/levels", {-3, 3}, "3.00 dB above the pack's gain");
+  refused(detection_file(), "/threshold/levels", {-3, -3}, "must ascend");
+  refused(detection_file(), "/threshold/levels", {{"from", -40}, {"to", 0}, {"step", 1e-9}},
+          "more than 200 values");
+  refused(detection_file(), "/threshold/levels", {{"from", 0}, {"to", -40}, {"step", 1}},
+          "must not end below");
+  refused(detection_file(), "/threshold/standards", {-6}, "belongs to discrimination");
+  refused(detection_file(), "/threshold/procedure", "questplus", "quest-plus");
+  refused(detection_file(), "/threshold/tracks", 9, "/threshold/tracks");
+  refused(detection_file(), "/threshold/rove_db", 3, "above the pack's gain");
+  refused(detection_file(), "/threshold/question", "same-different", "no fixed guess rate");
+  refused(detection_file(), "/threshold/catch", 50, "catch trials are at most");
+  refused(detection_file(), "/threshold/windows", {{"slowest_mm_s", 300}}, "no speed between");
+  refused(detection_file(), "/trials/on_interruption", "leave-out", "must be \"repeat\"");
+  refused(detection_file(), "/trials/explore_limit_s", 1, "shorter than an interval");
+  refused(detection_file(), "/trials/practice", 3, "/threshold/practice");
+  refused(detection_file(), "/rendering/reference_grey", 0, "reference_grey: must be 128");
+  refused(detection_file(), "/methods", {{{"name", "adaptive"}}, {{"name", "edge"}}},
+          "has 2 entries; a threshold is of one method");
+  refused(gain_file(), "/threshold/levels", {-6, 6},
+          "above the pack's gain, the stiffness ceiling");
+  refused(gain_file(), "/threshold/procedure", "constant-stimuli", "equally often");
+  refused(gain_file(), "/threshold/up_down", {{"first_level", -5}}, "is none of the levels");
+  refused(order_file(), "/threshold/levels", {0, 20}, "orders are below 1");
+  refused(order_file(), "/threshold/question", "which-interval", "odd-one-out or same-different");
+  refused(order_file(), "/methods/0", {{"name", "adaptive"}}, "must be \"fixed\"");
+  const json huge = {{"slopes", {{"from", 1}, {"to", 200}, {"step", 1}}},
+                     {"lapses", {{"from", 0}, {"to", 0.4}, {"step", 0.0021}}}};
+  refused(detection_file(), "/threshold/grid", huge, "million numbers");
+}
+
+TEST_CASE("of two intervals the target alone has the texture, each equally often") {
+  const design::Study study = study_of(detection_file());
+  std::map<int, int> targets;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    for (const design::Presentation& shown : presented(study, draw_of(seed), kAlwaysRight)) {
+      REQUIRE(shown.intervals.size() == 2);
+      const auto target = static_cast<std::size_t>(shown.chosen->target);
+      CHECK_FALSE(shown.intervals[target].blank);
+      CHECK(shown.intervals[1 - target].blank);
+      CHECK(shown.intervals[target].gain_db == -40.0 + shown.chosen->level);
+      ++targets[shown.chosen->target];
+    }
+  }
+  CHECK(targets[0] + targets[1] == 600);
+  CHECK(std::abs(targets[0] - 300) < 60);
+}
+
+TEST_CASE("the comparison is stronger by the level's share of the standard, up to the ceiling") {
+  const design::Study study = study_of(gain_file());
+  const auto& options = design::threshold::options_of(study);
+  CHECK(design::threshold::comparison_at(options, {0, -6.0}, 0.0) ==
+        Approx(-6.0 + 20.0 * std::log10(2.0)));
+  for (const design::Presentation& shown : presented(study, draw_of(3), kAlwaysRight)) {
+    const auto target = static_cast<std::size_t>(shown.chosen->target);
+    const double standard = shown.chosen->track == 1 ? -18.0 : -6.0;
+    const double level = -30.0 + 2.0 * shown.chosen->level;
+    CHECK(shown.intervals[1 - target].gain_db == standard);
+    CHECK(shown.intervals[target].gain_db ==
+          Approx(standard + 20.0 * std::log10(1.0 + std::pow(10.0, level / 20.0))));
+  }
+}
+
+TEST_CASE("along the order every level has a method, and either kind is odd equally often") {
+  const design::Study study = study_of(order_file());
+  REQUIRE(study.methods.size() == 4);
+  const std::vector<double> orders = {0.1, 0.2, 0.1 * (1.0 + std::pow(10.0, 0.3)),
+                                      0.1 * (1.0 + std::pow(10.0, 0.6))};
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    CHECK(study.methods[i].order == Approx(orders[i]));
+    CHECK(study.methods[i].radius == 3);
+  }
+  int standards_odd = 0;
+  int all = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    for (const design::Presentation& shown : presented(study, draw_of(seed), kAlwaysRight)) {
+      std::map<int, int> methods;
+      for (const design::Interval& one : shown.intervals) ++methods[one.stimulus.method];
+      REQUIRE(methods.size() == 2);
+      const auto target = static_cast<std::size_t>(shown.chosen->target);
+      CHECK(methods[shown.intervals[target].stimulus.method] == 1);
+      standards_odd += shown.intervals[target].stimulus.method == 0 ? 1 : 0;
+      ++all;
+      std::set<double> gains;
+      for (const design::Interval& one : shown.intervals) {
+        CHECK(one.gain_db <= 0.0);
+        CHECK(one.gain_db >= -3.0);
+        gains.insert(one.gain_db);
+      }
+      CHECK(gains.size() == 3);
+    }
+  }
+  CHECK(std::abs(standards_odd - all / 2) < all / 8);
+}
+
+TEST_CASE("same or different: half of the trials differ, and both kinds of pairs are the same") {
+  json file = gain_file();
+  file["threshold"]["question"] = "same-different";
+  file["threshold"]["procedure"] = "constant-stimuli";
+  file["threshold"]["trials"] = 140;
+  const design::Study study = study_of(file);
+  std::map<std::pair<int, bool>, int> seen;
+  for (const design::Presentation& shown : presented(study, draw_of(5), kAlwaysRight)) {
+    const double standard = shown.chosen->track == 1 ? -18.0 : -6.0;
+    const bool first = shown.intervals[0].gain_db > standard;
+    const bool second = shown.intervals[1].gain_db > standard;
+    CHECK((first != second) == (shown.chosen->target == 1));
+    ++seen[{shown.chosen->target, first}];
+  }
+  for (const auto& [kind, count] : seen) CHECK(std::abs(count - 70) < 30);
+  CHECK(seen.size() == 4);
+}
+
+TEST_CASE("levels follow the answers, and a trial that comes again has the same level") {
+  const design::Study study = study_of(detection_file());
+  const auto low = presented(study, draw_of(1), kAlwaysRight);
+  const auto high =
+      presented(study, draw_of(1), [](const design::Presentation& p) { return p.trial % 2 == 0; });
+  CHECK(low.front().chosen->level == high.front().chosen->level);
+  CHECK(low.back().chosen->level < high.back().chosen->level);
+
+  const auto order = design::adaptive_order(study, draw_of(1));
+  design::Presentation fifth{.trial = 5, .stimulus = {}};
+  design::Presentation again{.trial = 6, .stimulus = {}};
+  std::set<int> differing;
+  for (int trial = 6; trial < 40; ++trial) {
+    order->choose(fifth);
+    again.trial = trial;
+    order->choose(again);
+    CHECK(again.chosen->level == fifth.chosen->level);
+    differing.insert(again.chosen->target);
+  }
+  CHECK(differing.size() == 2);  // what was felt before the interruption tells nothing
+}
+
+TEST_CASE("catch trials are at the highest level, and control trials come last without the hand") {
+  json file = detection_file();
+  file["threshold"]["catch"] = 6;
+  file["threshold"]["control"] = 9;
+  const design::Study study = study_of(file);
+  CHECK(study.scored_trials() == 60);
+  const auto all = presented(study, draw_of(2), kAlwaysRight);
+  REQUIRE(all.size() == 75);
+  int caught = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CHECK(all[i].hand_off == (i >= 66));
+    CHECK(all[i].block == (i >= 66 ? 1 : 0));
+    if (all[i].kind == design::PresentationKind::catch_trial) ++caught;
+    if (all[i].kind != design::PresentationKind::scored) CHECK(all[i].chosen->level == 40);
+  }
+  CHECK(caught == 6);
+}
+
+TEST_CASE("the section's schema and its reader have the same keys, words and bounds") {
+  const std::filesystem::path root = TOUCHTRIAL_SOURCE_DIR;
+  const json schema = json::parse(text_of(read_file(root / "config/schema/study.schema.json")))
+                          .at("properties")
+                          .at("threshold");
+  const auto with = [](const json::json_pointer& at, const json& value) {
+    json file = detection_file();
+    // Staircases read every key; the practice needs its number.
+    file["threshold"]["procedure"] = "up-down";
+    file["threshold"]["practice"] = {{"trials", 10}};
+    file[json::json_pointer("/threshold") / at] = value;
+    return refusal_of(file);
+  };
+  const std::function<void(const json&, const json::json_pointer&)> walk =
+      [&](const json& object, const json::json_pointer& at) {
+        std::string known;
+        if (at.empty()) {
+          json file = detection_file();
+          file["threshold"]["zzzzzzzzz"] = 1;
+          known = refusal_of(file);
+        } else {
+          known = with(at, {{"zzzzzzzzz", 1}});
+        }
+        for (const auto& [key, property] : object.at("properties").items()) {
+          INFO((at / key).to_string());
+          CHECK_THAT(known, holds_text(key));
+          if (property.contains("properties")) walk(property, at / key);
+          if (property.contains("enum")) {
+            for (const json& word : property.at("enum")) {
+              CHECK_THAT(with(at / key, "zzzzzzz"), holds_text(word.get<std::string>()));
+            }
+          }
+          if (!property.contains("maximum")) continue;
+          const double step = property.at("type") == "integer" ? 1.0 : 1e-6;
+          const std::string above = with(at / key, property.at("maximum").get<double>() + step);
+          CHECK_THAT(above, holds_text((at / key).to_string() + ": ") && holds_text("must be"));
+          if (property.contains("minimum")) {
+            const std::string below = with(at / key, property.at("minimum").get<double>() - step);
+            CHECK_THAT(below, holds_text((at / key).to_string() + ": ") && holds_text("must be"));
+          }
+        }
+      };
+  walk(schema, json::json_pointer());
+}
+
+TEST_CASE("the studies of thresholds that ship can be read, and say what they present") {
+  const std::filesystem::path config = std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config";
+  for (const char* name : {"detection", "discrimination", "discrimination-order"}) {
+    const design::Study study = design::load_study(config / (std::string(name) + ".json"));
+    CHECK(study.trials.break_after_min == 8.0);
+    CHECK(design::threshold::options_of(study).control_trials > 0);
+    CHECK(design::threshold::options_of(study).practice_trials > 0);
+    CHECK(json::parse(study.protocol->options_in_clear(study)).size() == 19);
+  }
+}
+
+}  // namespace touchtrial
