@@ -138,6 +138,7 @@ struct Prescription {
   std::optional<double> most_days{};  ///< likewise
   std::vector<std::string> groups{};
   std::string draft{};  ///< design::draft_notice of the participants' language
+  int intervals = 0;    ///< planes of a trial whose levels a procedure chooses; 0: one plane
 };
 
 struct Collection {

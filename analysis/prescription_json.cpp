@@ -27,7 +27,9 @@ int method_orders_of(const json& configuration) {
   const design::Protocol* protocol = design::find_protocol(configuration.value("protocol", ""));
   const bool several = protocol != nullptr && protocol->presents_all_methods();
   const json trials = configuration.at("trials");
-  if (!several || trials.value("blocks", "by-method") != "by-method") return 1;
+  if (!several || configuration.contains("intervals") ||
+      trials.value("blocks", "by-method") != "by-method")
+    return 1;
   return design::williams_rows(static_cast<int>(configuration.at("methods").size()));
 }
 
@@ -51,6 +53,8 @@ Prescription prescription_of(const json& configuration) {
   prescription.on_timeout = trials.at("on_timeout").get<std::string>();
   prescription.order = trials.at("order").get<std::string>();
   prescription.repeats = trials.at("repeats").get<int>();
+  prescription.intervals = configuration.value("intervals", 0);
+  if (prescription.intervals > 0) prescription.order = "by the procedure";
   prescription.method_orders = method_orders_of(configuration);
   if (trials.contains("validity")) prescription.validity = validity_rule_of(trials["validity"]);
   if (configuration.contains("session")) read_session(configuration["session"], prescription);

@@ -4,6 +4,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/design/prepare.hpp"
+#include "protocols/design/protocol.hpp"
 #include "protocols/session/commitment.hpp"
 
 #include <filesystem>
@@ -42,6 +43,8 @@ int preregister(const PreregArguments& arguments) {
   const engine::Pack pack(place.pack);
   session::require_prepared(study, key, place.key, pack);
   for (const std::string& unsaid : session::unstated(study.registration)) {
+    // What the program holds a study against are accuracies.
+    if (unsaid == "/registration/estimand" && !design::chooses_classes(study)) continue;
     spdlog::warn("{}: {} is not stated; add it before depositing the page",
                  arguments.study.string(), unsaid);
   }

@@ -48,7 +48,8 @@ Meanings of_trials() {
                       {"presented", "had not ended when the session did"}};
   const Levels kinds{{"scored", "may enter the report"},
                      {"lead-in", "starts a block and is not scored"},
-                     {"catch", "a plane without texture, not scored"}};
+                     {"catch", "a plane without texture, or a trial of no track; not scored"},
+                     {"control", "with the hand off the device; not scored"}};
   return {
       {"trial", {"Number of the trial in its session, from 1"}},
       {"block", {"Number of the trial's block, from 0"}},
@@ -57,8 +58,8 @@ Meanings of_trials() {
       {"trial_type", {"Texture that was presented"}},
       {"exemplar", {"Image that the presented texture was taken from"}},
       {"stim_file", {"Image that the presented texture was taken from, below stimuli/"}},
-      {"response", {"Texture that the participant named"}},
-      {"correct", yes_or_no("Whether the response is the texture presented; a trial without a "
+      {"response", {"Texture or other choice that the participant named"}},
+      {"correct", yes_or_no("Whether the response is the right one; a trial without a "
                             "response is wrong")},
       {"confidence", {"Confidence in the response, from 1 (a guess) upwards"}},
       {"reaction_time_s", {"From the moment the plane can be felt to the response", "s"}},

@@ -29,13 +29,18 @@ DataCell correctness_of(const TrialView& trial) {
   return flag(trial.outcome->correct());
 }
 
+/// A trial with several planes: of which class and method its track is.
+bool is_of_track(const TrialView& trial) {
+  return trial.outcome->chosen && trial.outcome->kind == design::PresentationKind::scored;
+}
+
 DataCell method_of(const TrialView& trial) {
-  if (!has_stimulus(trial)) return std::monostate{};
+  if (!has_stimulus(trial) && !is_of_track(trial)) return std::monostate{};
   return trial.study->methods[trial.outcome->stimulus.method];
 }
 
 DataCell class_of(const TrialView& trial) {
-  if (!has_stimulus(trial)) return std::monostate{};
+  if (!has_stimulus(trial) && !is_of_track(trial)) return std::monostate{};
   return trial.study->classes[trial.outcome->stimulus.class_index];
 }
 
@@ -47,7 +52,7 @@ DataCell exemplar_of(const TrialView& trial) {
 DataCell kind_of(const TrialView& trial) {
   switch (trial.outcome->kind) {
     case design::PresentationKind::lead_in:
-      return std::string("lead-in");
+      return std::string(trial.outcome->chosen ? "control" : "lead-in");
     case design::PresentationKind::catch_trial:
       return std::string("catch");
     case design::PresentationKind::scored:

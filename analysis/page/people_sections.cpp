@@ -111,13 +111,16 @@ Definitions conditions_of(const Collection& collection) {
   entries.emplace_back("dates", dates_text(collection.sessions));
   if (rule.visits > 1) entries.emplace_back("visits", std::to_string(rule.visits));
   if (!rule.groups.empty()) entries.emplace_back("groups", listed(rule.groups));
-  entries.emplace_back("order", fmt::format("{}, {} of each stimulus", rule.order,
-                                            counted(rule.repeats, "presentation")));
-  entries.emplace_back("exploration",
-                       rule.explore_limit_s > 0.0
-                           ? fmt::format("at most {} s{}", plain_figure(rule.explore_limit_s, 0),
-                                         timeout_words(rule.on_timeout))
-                           : "without a limit");
+  entries.emplace_back(
+      "order", rule.intervals > 0 ? fmt::format("{}, {} planes a trial", rule.order, rule.intervals)
+                                  : fmt::format("{}, {} of each stimulus", rule.order,
+                                                counted(rule.repeats, "presentation")));
+  entries.emplace_back(
+      "exploration",
+      rule.explore_limit_s > 0.0
+          ? fmt::format("at most {} s{}{}", plain_figure(rule.explore_limit_s, 0),
+                        rule.intervals > 0 ? " a plane" : "", timeout_words(rule.on_timeout))
+          : "without a limit");
   if (!rule.sight.empty()) entries.emplace_back("vision kept out by", rule.sight);
   entries.emplace_back("masking noise", rule.masking_wanted
                                             ? plain_figure(rule.masking_dbfs, 0) + " dBFS"

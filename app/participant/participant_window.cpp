@@ -379,7 +379,7 @@ struct ParticipantWindow::State {
   /// Counts how long the hand has explored an interval as asked for.
   void count_explored(double press_n, double seconds, Vec2 way_mm) noexcept {
     if (!has_lifted && !interval->hand_off) return;
-    constexpr double kSmoothS = 0.02;  ///< positions have steps
+    constexpr double kSmoothS = 0.005;  ///< positions have steps
     const double share = std::min(1.0, seconds / kSmoothS);
     velocity_mm_s = velocity_mm_s + share * ((1.0 / seconds) * way_mm - velocity_mm_s);
     const design::IntervalWindows& windows = options.intervals->windows;

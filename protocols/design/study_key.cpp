@@ -213,6 +213,9 @@ std::string blinded_configuration(const StudyKey& key) {
                                   {"rendering", to_json(study.rendering)},
                                   {"trials", to_json(study.trials)},
                                   {"blinding", study.double_blind ? "double" : "participant"}};
+  if (const auto plan = study.protocol->interval_plan(study)) {
+    configuration["intervals"] = plan->count;
+  }
   const std::string options = study.protocol->options_in_clear(study);
   if (!options.empty()) {
     configuration[std::string(study.protocol->section())] = nlohmann::json::parse(options);

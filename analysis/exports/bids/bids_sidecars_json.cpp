@@ -1,5 +1,6 @@
 #include "analysis/exports/bids/bids_sidecars_json.hpp"
 
+#include "analysis/collection.hpp"
 #include "analysis/exports/bids/bids_traces.hpp"
 #include "analysis/json_figures.hpp"
 #include "protocols/design/languages.hpp"
@@ -39,6 +40,13 @@ void put_columns(Json& object, const std::vector<std::string>& columns) {
 
 std::string task_description(const DatasetSource& study) {
   const store::StudyCommitment& commitment = study.store.commitment();
+  if (const int planes = prescription_from_json(commitment.configuration).intervals; planes > 0) {
+    return fmt::format(
+        "Each trial presents {} planes through a force-feedback device, one after the other and "
+        "without anything to see of them; the participant explores each and then gives one of {} "
+        "answers about them. A procedure chooses the level of each trial. Protocol: {}.",
+        planes, commitment.positions, commitment.protocol);
+  }
   return fmt::format(
       "Each trial presents a texture through a force-feedback device, without anything to see of "
       "it; the participant explores it and then says which of {} textures it was. Protocol: {}.",

@@ -91,6 +91,7 @@ std::vector<StandardReport> standard_reports(const ThresholdReport& report) {
   for (const design::threshold::Standard& of : design::threshold::standards_of(report.design)) {
     StandardReport& added = all.emplace_back(standard_report(report, all.size()));
     added.of = of;
+    added.levels = design::threshold::levels_of(report.options(), of);
     added.words = design::threshold::words_of(report.design, of);
   }
   return all;

@@ -58,9 +58,10 @@ struct GroupTest {
 /// is the mean of the own tracks that are not censored.
 struct StandardReport {
   design::threshold::Standard of;
-  std::string words;       ///< design::threshold::words_of
-  int tracks = 0;          ///< with a trial
-  int censored_below = 0;  ///< tracks
+  std::string words;           ///< design::threshold::words_of
+  std::vector<double> levels;  ///< of its tracks
+  int tracks = 0;              ///< with a trial
+  int censored_below = 0;      ///< tracks
   int censored_above = 0;
   std::vector<std::string> people;  ///< those with a threshold
   std::vector<double> thresholds;   ///< theirs

@@ -73,6 +73,7 @@ Json standards_json(const ThresholdReport& report) {
         {{"standard", one.words},
          {"class", label < report.classes.size() ? Json(report.classes[label]) : Json(nullptr)},
          {"value", figure_json(one.of.value)},
+         {"highest_level", one.levels.empty() ? Json(nullptr) : figure_json(one.levels.back())},
          {"tracks", one.tracks},
          {"n", one.mean.participants},
          {"censored_below", one.censored_below},

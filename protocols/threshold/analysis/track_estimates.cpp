@@ -18,10 +18,12 @@ using procedures::TrackTrial;
 constexpr int kFitDraws = 399;
 
 /// The trials of every track of one participant.
-std::vector<TrackReport> tracks_of(const Person& person, const ThresholdOptions& options,
-                                   std::size_t standards) {
-  const auto each = static_cast<std::size_t>(std::max(options.tracks_each, 1));
-  std::vector<TrackReport> tracks(standards * each);
+/// \param standards  the study with the levels of each standard
+std::vector<TrackReport> tracks_of(const Person& person,
+                                   std::span<const ThresholdOptions> standards) {
+  if (standards.empty()) return {};
+  const auto each = static_cast<std::size_t>(std::max(standards.front().tracks_each, 1));
+  std::vector<TrackReport> tracks(standards.size() * each);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     tracks[i].participant = person.name;
     tracks[i].track = static_cast<int>(i) + 1;
@@ -31,7 +33,8 @@ std::vector<TrackReport> tracks_of(const Person& person, const ThresholdOptions&
     if (!in_track(*trial)) continue;
     const auto track = static_cast<std::size_t>(trial->chosen->track - 1);
     const auto level = static_cast<std::size_t>(trial->chosen->level);
-    if (track >= tracks.size() || level >= options.track.levels.size()) continue;
+    if (track >= tracks.size()) continue;
+    if (level >= standards[track / each].track.levels.size()) continue;
     tracks[track].trials.push_back({level, trial->correct()});
     ++tracks[track].answers.n;
     tracks[track].answers.correct += trial->correct() ? 1 : 0;
@@ -163,15 +166,21 @@ void estimate(TrackReport& track, const ThresholdOptions& options, bool quotes_p
 std::vector<TrackReport> track_reports(const design::Study& study, std::span<const Person> people,
                                        bool by_posterior, int jobs) {
   const ThresholdOptions& options = design::threshold::options_of(study);
-  const std::size_t standards = design::threshold::standards_of(study).size();
+  std::vector<ThresholdOptions> standards;
+  for (const design::threshold::Standard& of : design::threshold::standards_of(study)) {
+    standards.push_back(options);
+    standards.back().track.levels = design::threshold::levels_of(options, of);
+  }
   std::vector<TrackReport> all;
   for (const Person& person : people) {
-    for (TrackReport& track : tracks_of(person, options, standards)) {
+    for (TrackReport& track : tracks_of(person, standards)) {
       all.push_back(std::move(track));
     }
   }
   if (options.question == design::threshold::Question::same_different) return all;
-  in_parallel(jobs, all.size(), [&](std::size_t i) { estimate(all[i], options, by_posterior, i); });
+  in_parallel(jobs, all.size(), [&](std::size_t i) {
+    estimate(all[i], standards[all[i].standard], by_posterior, i);
+  });
   return all;
 }
 

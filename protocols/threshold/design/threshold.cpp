@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -26,6 +27,16 @@ int fields_of_standard(const ThresholdOptions& options) {
 class TrialDraw {
  public:
   TrialDraw(const Study& study, const Digest& secret) : study_(study), secret_(secret) {}
+
+  /// Fills a trial at the highest level of a standard that is drawn.
+  void fill_easily(Presentation& place, std::string_view purpose, std::uint64_t index,
+                   RandomStream& random) const {
+    const std::vector<Standard> standards = standards_of(study_);
+    const auto nth = static_cast<std::size_t>(random.below(standards.size()));
+    const std::size_t top = levels_of(options_of(study_), standards[nth]).size() - 1;
+    place.chosen = {0, static_cast<int>(top), 0};
+    fill(place, purpose, index, nth, top);
+  }
 
   /// Fills the intervals, and sets the target.
   void fill(Presentation& place, std::string_view purpose, std::uint64_t index,
@@ -88,7 +99,6 @@ class ThresholdOrder final : public AdaptiveOrder {
 
   void choose(Presentation& place) const override {
     const ThresholdOptions& options = options_of(study_);
-    const std::size_t top = options.track.levels.size() - 1;
     const auto tracks_each = static_cast<std::size_t>(options.tracks_each);
     const auto index = static_cast<std::uint64_t>(place.trial);
     const std::optional<procedures::Presentation> next = block_.next();
@@ -101,10 +111,8 @@ class ThresholdOrder final : public AdaptiveOrder {
                           next->level);
     }
     place.kind = next ? PresentationKind::catch_trial : PresentationKind::lead_in;
-    place.chosen = {0, static_cast<int>(top), 0};
     RandomStream random(catches_, "threshold: standard", index);
-    const auto standard = static_cast<std::size_t>(random.below(standards_of(study_).size()));
-    trials_.fill(place, "threshold: trial", index, standard, top);
+    trials_.fill_easily(place, "threshold: trial", index, random);
   }
 
   void answer(const Presentation& shown, int choice) override {
@@ -255,10 +263,8 @@ class Threshold final : public Protocol {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto index = static_cast<std::uint64_t>(round) * 1000 + i;
       RandomStream random(block_secret(draw), "threshold: practice standard", index);
-      const auto standard = static_cast<std::size_t>(random.below(standards_of(study).size()));
       all[i].trial = static_cast<int>(i) + 1;
-      all[i].chosen = {0, static_cast<int>(options.track.levels.size()) - 1, 0};
-      trials.fill(all[i], "threshold: practice", index, standard, options.track.levels.size() - 1);
+      trials.fill_easily(all[i], "threshold: practice", index, random);
     }
     return all;
   }
@@ -331,11 +337,27 @@ Interval interval_at(const Study& study, std::size_t nth_standard,
   return interval;
 }
 
+std::vector<double> levels_of(const ThresholdOptions& options, const Standard& standard) {
+  constexpr double kRounding = 1e-9;
+  std::vector<double> own = options.track.levels;
+  if (options.along != Along::gain) return own;
+  std::erase_if(own, [&](double level) {
+    return comparison_at(options, standard, level) + options.rove_db / 2.0 > kRounding;
+  });
+  return own;
+}
+
 procedures::BlockSettings block_settings(const Study& study) {
   const ThresholdOptions& options = options_of(study);
-  const std::size_t tracks =
-      standards_of(study).size() * static_cast<std::size_t>(options.tracks_each);
-  return {std::vector<procedures::TrackSettings>(tracks, options.track), options.catch_trials};
+  procedures::BlockSettings block{{}, options.catch_trials};
+  for (const Standard& standard : standards_of(study)) {
+    procedures::TrackSettings track = options.track;
+    track.levels = levels_of(options, standard);
+    if (track.levels.empty()) throw std::invalid_argument("a standard has no level");
+    track.up_down.first_level = std::min(track.up_down.first_level, track.levels.size() - 1);
+    block.tracks.insert(block.tracks.end(), static_cast<std::size_t>(options.tracks_each), track);
+  }
+  return block;
 }
 
 Digest block_secret(const ScheduleDraw& draw) {

@@ -48,8 +48,9 @@ struct ThresholdOptions final : ProtocolOptions {
   int intervals = 2;        ///< 2 or 3; odd_one_out 3, same_different 2
   double interval_s = 2.5;  ///< IntervalPlan::seconds
   IntervalWindows windows{};
-  /// Of every track. Detection: dB re the pack's gain, at most 0. Discrimination: 20 log10(dA / A),
-  /// A being the standard's amplitude, pitch or order; of a blend, dA the share and A = 1.
+  /// Of every track, with the levels of all. Detection: dB re the pack's gain, at most 0.
+  /// Discrimination: 20 log10(dA / A), A being the standard's amplitude, pitch or order; of a
+  /// blend, dA the share and A = 1.
   procedures::TrackSettings track{};
   std::vector<double> standards{};  ///< of discrimination along gain and order, else {0}
   int tracks_each = 1;              ///< of each class and standard, 1 to 8 in all
@@ -83,7 +84,12 @@ struct ThresholdOptions final : ProtocolOptions {
 [[nodiscard]] Interval interval_at(const Study& study, std::size_t nth_standard,
                                    std::optional<std::size_t> level);
 
-/// All tracks of a participant, interleaved.
+/// The levels of a standard's tracks: of all levels, from the lowest, those whose comparisons do
+/// not exceed the pack's gain.
+[[nodiscard]] std::vector<double> levels_of(const ThresholdOptions& options,
+                                            const Standard& standard);
+
+/// All tracks of a participant, interleaved. Each has its standard's levels.
 [[nodiscard]] procedures::BlockSettings block_settings(const Study& study);
 /// Of one participant: what Block is made from.
 [[nodiscard]] Digest block_secret(const ScheduleDraw& draw);

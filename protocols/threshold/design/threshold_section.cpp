@@ -282,12 +282,6 @@ std::string section_json(const ThresholdOptions& o) {
   return whole.dump();
 }
 
-double highest_gain_db(const ThresholdOptions& options, const Standard& standard) {
-  const double rove = options.rove_db / 2.0;
-  if (options.along != Along::gain) return 0.0;  // the rove's middle lies below
-  return comparison_at(options, standard, options.track.levels.back()) + rove;
-}
-
 void check_section(const JsonValue& file, const Study& study) {
   const ThresholdOptions& options = options_of(study);
   const auto refuse = [&](const std::string& key, const std::string& what) {
@@ -301,13 +295,14 @@ void check_section(const JsonValue& file, const Study& study) {
                                   tracks, procedures::kMostTracks));
   }
   for (const Standard& standard : standards) {
-    const double highest = highest_gain_db(options, standard);
-    if (highest > 1e-9) {
+    const std::size_t own = levels_of(options, standard).size();
+    const bool may_clip = options.task == Task::discrimination;
+    if (own < (may_clip ? 2 : options.track.levels.size())) {
       refuse("/levels",
-             fmt::format("reach {:.2f} dB above the pack's gain, the stiffness ceiling, for {}; "
-                         "lower the highest level{}",
-                         highest, words_of(study, standard),
-                         options.task == Task::discrimination ? " or the standard" : ""));
+             fmt::format("exceed the pack's gain, the stiffness ceiling, for {}{}; lower "
+                         "them{}",
+                         words_of(study, standard), options.rove_db > 0.0 ? " with its rove" : "",
+                         may_clip ? " or the standard" : ""));
     }
     const double most = comparison_at(options, standard, options.track.levels.back());
     if (options.along == Along::order && most >= 1.0) {

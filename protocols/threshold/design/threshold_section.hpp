@@ -19,7 +19,4 @@ void check_section(const JsonValue& file, const Study& study);
 /// The section with every key, as compact JSON. Equal options give equal text.
 [[nodiscard]] std::string section_json(const ThresholdOptions& options);
 
-/// Of the quantity along which levels go, with its ceiling and what strength decides.
-[[nodiscard]] double highest_gain_db(const ThresholdOptions& options, const Standard& standard);
-
 }  // namespace touchtrial::design::threshold

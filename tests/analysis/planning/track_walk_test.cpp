@@ -7,6 +7,7 @@
 #include "protocols/threshold/threshold_study.hpp"
 #include "support/catch.hpp"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,9 @@ using namespace touchtrial::planning;
 
 namespace {
 
-const std::string kTwoStandards =
-    R"("task": "discrimination", "interval_s": 0.5, "trials": 6, "tracks": 2,
-       "levels": {"from": -30, "to": -6, "step": 2}, "standards": [-12, -9])";
+const std::string kOneStandard =
+    R"("task": "discrimination", "interval_s": 0.5, "trials": 6,
+       "levels": {"from": -30, "to": -6, "step": 2}, "standards": [-12])";
 
 /// One class, so that tracks are few.
 design::Study walked_study(const std::string& section) {
@@ -61,7 +62,12 @@ TEST_CASE("a walk believes what a posterior of its levels and answers believes")
 }
 
 TEST_CASE("a walk names its track, and there is no other") {
-  const design::Study study = walked_study(kTwoStandards);
+  design::Study study = walked_study(kOneStandard);
+  auto options =
+      std::make_shared<design::threshold::ThresholdOptions>(design::threshold::options_of(study));
+  options->standards = {-12.0, -9.0};
+  options->tracks_each = 2;
+  study.options = options;
   CHECK_THAT(walked(study, 1, {}).words, Catch::Contains("standard -12 dB"));
   CHECK_THAT(walked(study, 2, {}).words, Catch::Contains("standard -12 dB"));
   CHECK_THAT(walked(study, 4, {}).words, Catch::Contains("standard -9 dB"));

@@ -26,6 +26,20 @@ std::vector<LevelCounts> some_counts() {
 
 }  // namespace
 
+// Counts and log-likelihoods as SciPy's optimisers find them from many starts:
+// scripts/crosscheck-procedures.
+TEST_CASE("of several maxima of the likelihood the fit is the highest") {
+  const std::vector<LevelCounts> adaptive{{-30, 0, 1}, {-29, 0, 1},   {-28, 2, 2},   {-27, 1, 1},
+                                          {-26, 1, 3}, {-25, 12, 14}, {-24, 11, 12}, {-23, 5, 7},
+                                          {-22, 8, 9}, {-21, 8, 8},   {-20, 1, 1},   {-18, 1, 1}};
+  CHECK(fit_observer(adaptive, {}).log_likelihood == Approx(-24.07940395843588).margin(1e-6));
+  const std::vector<LevelCounts> constant{{-30, 18, 40}, {-25, 26, 40}, {-20, 39, 40},
+                                          {-15, 40, 40}, {-10, 40, 40}, {-5, 39, 40}};
+  const Fit fit = fit_observer(constant, {});
+  CHECK(fit.log_likelihood == Approx(-64.2359074648309).margin(1e-6));
+  CHECK(fit.observer.slope == Approx(4.1432773).margin(1e-3));
+}
+
 TEST_CASE("reversals are the levels where a staircase turns") {
   CHECK(reversals_of(trials_at({5, 5, 4, 3, 3, 4, 5, 5, 4, 4, 5})) ==
         std::vector<std::size_t>{3, 5, 4});

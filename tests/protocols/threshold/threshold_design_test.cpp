@@ -93,7 +93,7 @@ TEST_CASE("what cannot be presented or answered is refused with its place and a 
     CHECK_THAT(refusal_of(file), holds_text(text));
   };
   refused(detection_file(), "/threshold/along", "pitch", "/threshold/along: must be \"gain\"");
-  refused(detection_file(), "/threshold/levels", {-3, 3}, "3.00 dB above the pack's gain");
+  refused(detection_file(), "/threshold/levels", {-3, 3}, "exceed the pack's gain");
   refused(detection_file(), "/threshold/levels", {-3, -3}, "must ascend");
   refused(detection_file(), "/threshold/levels", {{"from", -40}, {"to", 0}, {"step", 1e-9}},
           "more than 200 values");
@@ -102,7 +102,7 @@ TEST_CASE("what cannot be presented or answered is refused with its place and a 
   refused(detection_file(), "/threshold/standards", {-6}, "belongs to discrimination");
   refused(detection_file(), "/threshold/procedure", "questplus", "quest-plus");
   refused(detection_file(), "/threshold/tracks", 9, "/threshold/tracks");
-  refused(detection_file(), "/threshold/rove_db", 3, "above the pack's gain");
+  refused(detection_file(), "/threshold/rove_db", 3, "with its rove");
   refused(detection_file(), "/threshold/question", "same-different", "no fixed guess rate");
   refused(detection_file(), "/threshold/catch", 50, "catch trials are at most");
   refused(detection_file(), "/threshold/windows", {{"slowest_mm_s", 300}}, "no speed between");
@@ -112,8 +112,8 @@ TEST_CASE("what cannot be presented or answered is refused with its place and a 
   refused(detection_file(), "/rendering/reference_grey", 0, "reference_grey: must be 128");
   refused(detection_file(), "/methods", {{{"name", "adaptive"}}, {{"name", "edge"}}},
           "has 2 entries; a threshold is of one method");
-  refused(gain_file(), "/threshold/levels", {-6, 6},
-          "above the pack's gain, the stiffness ceiling");
+  refused(gain_file(), "/threshold/levels", {6, 12},
+          "exceed the pack's gain, the stiffness ceiling");
   refused(gain_file(), "/threshold/procedure", "constant-stimuli", "equally often");
   refused(gain_file(), "/threshold/up_down", {{"first_level", -5}}, "is none of the levels");
   refused(order_file(), "/threshold/levels", {0, 20}, "orders are below 1");
@@ -153,6 +153,21 @@ TEST_CASE("the comparison is stronger by the level's share of the standard, up t
     CHECK(shown.intervals[1 - target].gain_db == standard);
     CHECK(shown.intervals[target].gain_db ==
           Approx(standard + 20.0 * std::log10(1.0 + std::pow(10.0, level / 20.0))));
+  }
+}
+
+TEST_CASE("a track has the levels up to its own standard's ceiling, and no others") {
+  json file = gain_file();
+  file["threshold"]["levels"] = {{"from", -30}, {"to", 20}, {"step", 1}};
+  file["threshold"]["catch"] = 20;
+  const design::Study study = study_of(file);
+  const auto block = design::threshold::block_settings(study);
+  REQUIRE(block.tracks.size() == 2);
+  CHECK(block.tracks[0].levels.back() == 16.0);  // 20 log10(10^(18/20) - 1) = 16.83
+  CHECK(block.tracks[1].levels.back() == -1.0);  // 20 log10(10^(6/20) - 1) = -0.04
+  for (const design::Presentation& shown :
+       presented(study, draw_of(4), [](const design::Presentation&) { return false; })) {
+    for (const design::Interval& one : shown.intervals) CHECK(one.gain_db <= 1e-9);
   }
 }
 

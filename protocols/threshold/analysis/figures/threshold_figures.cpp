@@ -285,7 +285,7 @@ std::string panel_of_track(const ThresholdReport& report, const Panels& panels, 
   if (!wrong.empty()) script += data_block(fmt::format("wrong{}", panel), wrong);
   return script +
          panels.begin(panel, fmt::format("{}, {}", track.participant,
-                                         report.standards[track.standard].words)) +
+                                         short_name(report.standards[track.standard]))) +
          fmt::format(
              "set xrange [0:{}]\nset yrange {}\nset xlabel 'trial' offset 0, 0.4\n"
              "set ylabel 'level, dB'\n",

@@ -67,8 +67,8 @@ std::string standard_sentence(const ThresholdReport& report, const StandardRepor
   if (one.tracks == 0) return one.words + ": no trials that count.";
   if (!one.mean.mean) return one.words + ": no threshold." + censored_words(one);
   const procedures::Threshold mean = mean_threshold(one.mean);
-  std::string text = fmt::format("{}: {} dB, {}.", one.words,
-                                 threshold_text(mean, report.options()), people_words(one.mean));
+  std::string text = fmt::format("{}: {} dB, {}.", one.words, threshold_text(mean, one.levels),
+                                 people_words(one.mean));
   const std::string quantity = quantity_name(report.options());
   if (!quantity.empty()) {
     text +=

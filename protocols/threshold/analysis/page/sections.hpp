@@ -6,13 +6,15 @@
 #include "protocols/threshold/analysis/report.hpp"
 
 #include <string>
+#include <vector>
 
 namespace touchtrial::analysis::threshold {
 
 /// A threshold with its interval, in dB: "−21.3 [−23.0, −19.6]". A censored one: "below −40.0"; an
 /// end that was not found: "open".
+/// \param levels  of the track
 [[nodiscard]] std::string threshold_text(const procedures::Threshold& threshold,
-                                         const design::threshold::ThresholdOptions& options);
+                                         const std::vector<double>& levels);
 /// "11.5% [9.8, 13.4]", or the change of an order: "0.120 [0.101, 0.140]"
 [[nodiscard]] std::string quantity_text(const Quantity& quantity,
                                         const design::threshold::ThresholdOptions& options);

@@ -33,7 +33,7 @@ Table standards_table(const ThresholdReport& report) {
   for (const StandardReport& one : report.standards) {
     const procedures::Threshold mean = mean_threshold(one.mean);
     std::vector<Cell>& row = table.rows.emplace_back(std::vector<Cell>{
-        one.words, std::to_string(one.mean.participants), threshold_text(mean, options),
+        one.words, std::to_string(one.mean.participants), threshold_text(mean, one.levels),
         plain_figure(one.mean.sd, 1), std::to_string(one.tracks),
         std::to_string(one.censored_below), std::to_string(one.censored_above)});
     if (!quantity.empty()) {
@@ -76,8 +76,8 @@ bool any_track(const ThresholdReport& report, bool (*has)(const TrackReport&)) {
 }
 
 std::string estimate_text(const std::optional<TrackEstimate>& estimate,
-                          const ThresholdOptions& options) {
-  return estimate ? threshold_text(estimate->threshold, options) : kNoFigure;
+                          const std::vector<double>& levels) {
+  return estimate ? threshold_text(estimate->threshold, levels) : kNoFigure;
 }
 
 Table tracks_table(const ThresholdReport& report) {
@@ -102,19 +102,21 @@ Table tracks_table(const ThresholdReport& report) {
   if (fits) table.columns.push_back({"p of the fit"});
   if (!quantity.empty()) table.columns.push_back({quantity});
   for (const TrackReport& track : report.tracks) {
+    const StandardReport& standard = report.standards[track.standard];
     const TrackEstimate quoted = report.quoted(track).value_or(TrackEstimate{});
-    std::vector<Cell>& row = table.rows.emplace_back(std::vector<Cell>{
-        track.participant, std::to_string(track.track), report.standards[track.standard].words,
-        std::to_string(track.answers.n), share_figure(track.answers.share()),
-        estimate_text(track.posterior, options), estimate_text(track.likelihood, options),
-        plain_figure(quoted.slope, 2), share_figure(quoted.lapse)});
+    std::vector<Cell>& row = table.rows.emplace_back(
+        std::vector<Cell>{track.participant, std::to_string(track.track), standard.words,
+                          std::to_string(track.answers.n), share_figure(track.answers.share()),
+                          estimate_text(track.posterior, standard.levels),
+                          estimate_text(track.likelihood, standard.levels),
+                          plain_figure(quoted.slope, 2), share_figure(quoted.lapse)});
     if (turns) {
-      row.emplace_back(track.reversals ? threshold_text(*track.reversals, options) : kNoFigure);
+      row.emplace_back(track.reversals ? threshold_text(*track.reversals, standard.levels)
+                                       : kNoFigure);
     }
     if (fits) row.emplace_back(track.fit ? p_figure(track.fit->p) : kNoFigure);
     if (!quantity.empty()) {
-      const design::threshold::Standard& of = report.standards[track.standard].of;
-      row.emplace_back(quantity_text(quantity_of(options, of, quoted.threshold), options));
+      row.emplace_back(quantity_text(quantity_of(options, standard.of, quoted.threshold), options));
     }
   }
   return table;

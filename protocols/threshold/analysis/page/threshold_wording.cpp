@@ -28,8 +28,8 @@ std::optional<double> hundredfold(const std::optional<double>& share) {
 }  // namespace
 
 std::string threshold_text(const procedures::Threshold& threshold,
-                           const ThresholdOptions& options) {
-  const std::vector<double>& levels = options.track.levels;
+                           const std::vector<double>& levels) {
+  if (levels.empty()) return kNoFigure;
   if (threshold.censored == Censored::below) return "below " + plain_figure(levels.front(), 1);
   if (threshold.censored == Censored::above) return "above " + plain_figure(levels.back(), 1);
   if (!threshold.level) return kNoFigure;

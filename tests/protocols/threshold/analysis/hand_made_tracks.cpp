@@ -41,10 +41,10 @@ ThresholdOptions constant_options(std::vector<double> standards) {
   options.task = design::threshold::Task::discrimination;
   options.standards = std::move(standards);
   options.track.procedure = "constant-stimuli";
-  options.track.levels = levels_from(-30.0, 0.0, 5.0);
+  options.track.levels = levels_from(-32.0, -2.0, 5.0);
   options.track.trials = 140;
   add_grid(options);
-  options.track.grid.thresholds = levels_from(-30.0, 0.0, 1.0);
+  options.track.grid.thresholds = levels_from(-32.0, -2.0, 1.0);
   return options;
 }
 
@@ -125,7 +125,8 @@ void HandMadeTracks::missed(int session, int track, int level) {
 
 void HandMadeTracks::track(int session, int number, const procedures::Observer& observer,
                            RandomStream& random) {
-  const procedures::TrackSettings& settings = options().track;
+  const procedures::TrackSettings settings = design::threshold::block_settings(outcomes.design)
+                                                 .tracks.at(static_cast<std::size_t>(number - 1));
   const auto procedure = procedures::make_procedure(settings, random);
   const auto choices = static_cast<std::uint64_t>(outcomes.choices.size());
   for (int i = 0; i < settings.trials; ++i) {

@@ -102,11 +102,12 @@ TEST_CASE("studies without trials have no figures of thresholds") {
 
 TEST_CASE("thresholds and their intervals read as text, censored ones without a number") {
   const design::threshold::ThresholdOptions options = detection_options();
-  CHECK(own::threshold_text({-21.25, -23.0, -19.5}, options) == "−21.2 [−23.0, −19.5]");
-  CHECK(own::threshold_text({-21.0, {}, -19.5}, options) == "−21.0 [open, −19.5]");
-  CHECK(own::threshold_text({-21.0, {}, {}}, options) == "−21.0");
-  CHECK(own::threshold_text({{}, {}, {}, procedures::Censored::below}, options) == "below −40.0");
-  CHECK(own::threshold_text({{}, {}, {}, procedures::Censored::above}, options) == "above 0.0");
+  const std::vector<double>& levels = options.track.levels;
+  CHECK(own::threshold_text({-21.25, -23.0, -19.5}, levels) == "−21.2 [−23.0, −19.5]");
+  CHECK(own::threshold_text({-21.0, {}, -19.5}, levels) == "−21.0 [open, −19.5]");
+  CHECK(own::threshold_text({-21.0, {}, {}}, levels) == "−21.0");
+  CHECK(own::threshold_text({{}, {}, {}, procedures::Censored::below}, levels) == "below −40.0");
+  CHECK(own::threshold_text({{}, {}, {}, procedures::Censored::above}, levels) == "above 0.0");
   design::threshold::ThresholdOptions order = constant_options({0.5});
   CHECK(own::quantity_text({0.1, 0.05, {}}, order) == "10.0% [5.0, open]");
   order.along = design::threshold::Along::order;
@@ -134,7 +135,26 @@ TEST_CASE("thresholds.csv has a row for each track, and tracks.csv one for each 
   const auto& last = trials.rows.back();
   CHECK(std::get<std::string>(last[column_of(trials, "kind")]) == "control");
   CHECK(std::holds_alternative<std::monostate>(last[column_of(trials, "track")]));
-  CHECK(std::get<double>(last[column_of(trials, "level_db")]) == 0.0);
+  CHECK(std::get<double>(last[column_of(trials, "level_db")]) == -2.0);
+}
+
+TEST_CASE("a standard near the pack's gain has fewer levels, and is censored at its own highest") {
+  design::threshold::ThresholdOptions options = constant_options({-12.0, -3.0});
+  HandMadeTracks made(options);
+  made.session();
+  const std::size_t levels = design::threshold::levels_of(options, {0, -3.0}).size();
+  REQUIRE(levels < options.track.levels.size());
+  for (int i = 0; i < 60; ++i) {
+    made.answer({1, 2, i % static_cast<int>(levels), i % 2, i / 2 % 2});
+  }
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  REQUIRE(report.tracks.size() == 1);
+  CHECK(report.tracks[0].answers.n == 60);
+  CHECK(report.tracks[0].posterior->threshold.censored == procedures::Censored::above);
+  CHECK(report.standards.at(1).levels.size() == levels);
+  const std::string text = analysis::document_text(
+      own::threshold_analysis().results(made.outcomes, {})->document({}, {}));
+  CHECK_THAT(text, holds_text("above −12.0") || holds_text("above −7.0"));
 }
 
 TEST_CASE("wishes that a report of thresholds cannot fulfil are refused by their names") {
@@ -157,7 +177,7 @@ TEST_CASE("tables of trials have the track and the level where an order chose th
   CHECK(own_columns[1].value(view) == analysis::DataCell(std::string("bark, standard -12 dB")));
   CHECK(own_columns[2].value(view) ==
         analysis::DataCell(
-            levels_from(-30.0, 0.0, 5.0)[static_cast<std::size_t>(trial.chosen->level)]));
+            levels_from(-32.0, -2.0, 5.0)[static_cast<std::size_t>(trial.chosen->level)]));
   for (const analysis::TrialColumn& column : own_columns) {
     CHECK(column.after_unblinding);
     CHECK_FALSE(analysis::meaning_of(column.name).description.empty());
