@@ -44,7 +44,6 @@ constexpr milliseconds kNoAccident{500};
 // second limit.
 constexpr double kPushTooHardN = 2.0;
 constexpr double kSoftAgainN = 1.7;
-constexpr double kLiftedMm = 1.0;    ///< above the plane: as in protocols/session/interval_run.cpp
 constexpr double kBarsTimeS = 0.06;  ///< time constant of the bars in practice
 
 GLFWmonitor* monitor_of(const ParticipantWindowOptions& options) {
@@ -591,7 +590,7 @@ void ParticipantWindow::feel(const device::ServoSample& sample) noexcept {
   // In an interval the hand's force alone: a texture's would tell the planes apart.
   const double press_n = s.options.stiffness_n_per_mm * std::max(0.0, -sample.position_mm.z);
   const double force_n = s.interval ? press_n : norm(sample.force_n);
-  s.has_lifted = s.has_lifted || sample.position_mm.z > kLiftedMm;
+  s.has_lifted = s.has_lifted || sample.position_mm.z > design::kLiftedMm;
   if (force_n > kPushTooHardN && !s.is_too_hard) s.cue(Cue::too_hard);
   s.is_too_hard = force_n > (s.is_too_hard ? kSoftAgainN : kPushTooHardN);
   if (s.last_felt && sample.tick > s.last_felt->tick) {

@@ -18,6 +18,9 @@ struct IntervalWindows {
   friend bool operator==(const IntervalWindows&, const IntervalWindows&) = default;
 };
 
+/// A stylus that is so far above the plane has lifted off, mm.
+inline constexpr double kLiftedMm = 1.0;
+
 /// An interval ends when its clock, which runs in contact and inside the windows alone, has reached
 /// `seconds`; then the hand lifts off, and the next plane comes on. A trial with an interval whose
 /// clock has not got there within the study's explore_limit_s comes again.

@@ -9,8 +9,6 @@
 namespace touchtrial::session {
 namespace {
 
-/// A stylus that is so far above the plane has lifted off.
-constexpr double kLiftedMm = 1.0;
 // The stroke that is played: as instructions ask for.
 constexpr double kPlayedMmS = 100.0;
 constexpr double kPlayedLoadN = 0.7;
@@ -19,7 +17,7 @@ constexpr double kShareOfPlane = 0.35;  ///< radius re the shorter side
 }  // namespace
 
 Vec3 IntervalForce::force_n(const device::DeviceSample& sample) noexcept {
-  has_lifted_ = has_lifted_ || sample.position_mm.z > kLiftedMm;
+  has_lifted_ = has_lifted_ || sample.position_mm.z > design::kLiftedMm;
   if (!has_lifted_) return {};
   const double wall_n = -stiffness_n_per_mm_ * sample.position_mm.z;
   const double speed_mm_s = std::hypot(sample.velocity_mm_s.x, sample.velocity_mm_s.y);

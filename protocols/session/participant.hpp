@@ -56,9 +56,10 @@ struct AnswerStep {
   int of = 0;
   bool practice = false;
   bool time_is_up = false;
-  bool may_explore_again = false;                ///< the reply may be `explore_again`
-  int confidence_levels = 0;                     ///< 0: not asked
-  /// Key of the title in the texts' "screens", of trials with intervals; empty: which picture it is.
+  bool may_explore_again = false;  ///< the reply may be `explore_again`
+  int confidence_levels = 0;       ///< 0: not asked
+  /// Key of the title in the texts' "screens", of trials with intervals; empty: which picture it
+  /// is.
   std::string question{};
   design::Sight sight = design::Sight::curtain;  ///< blindfold: the answer is spoken
 };

@@ -124,8 +124,7 @@ struct RealTimeExplorer::Machinery {
 
   /// Runs the servo on its thread; the caller's looks after the participant meanwhile.
   /// \param began  set to the time at which the servo starts
-  [[nodiscard]] device::ServoReport run(device::HapticDevice& device,
-                                        device::ForceSource& force,
+  [[nodiscard]] device::ServoReport run(device::HapticDevice& device, device::ForceSource& force,
                                         device::SampleSink& sink, const device::ServoOptions& servo,
                                         Participant& participant,
                                         std::chrono::steady_clock::time_point& began);
@@ -191,8 +190,8 @@ device::ServoControl& RealTimeExplorer::control() noexcept {
 }
 
 Exploration RealTimeExplorer::explore(device::ForceSource& force, const PlaneGeometry& plane,
-                                      Participant& participant,
-                                      const device::ServoOptions& options, store::Trace& trace) {
+                                      Participant& participant, const device::ServoOptions& options,
+                                      store::Trace& trace) {
   Machinery& m = *machinery_;
   m.make_room(options);
   device::HapticDevice& device = participant.begin_exploring(plane);

@@ -181,6 +181,7 @@ void TrialRun::run_intervals() {
     case IntervalsEnd::not_explored:
       session_.interrupt(ended, "not explored as asked for");
       ++came_again_;
+      desk_.enter("not explored");
       static_cast<void>(
           desk_.attend(NoticeStep{NoticeStep::What::not_explored, session_.presentations_begun()}));
       return;

@@ -174,12 +174,13 @@ class PracticeRun {
   const PracticeTextures& textures_;
   store::Trace trace_;
   int a_round_;
+  int not_explored_ = 0;  ///< trials with an interval that was not explored as asked for
 };
 
 bool PracticeRun::run() {
   const int rounds = textures_.plan.rounds;
   for (PracticeProgress at = progress(); !at.passed; at = progress()) {
-    if (at.round > rounds) {
+    if (at.round > rounds || not_explored_ > a_round_) {
       if (!desk_.session().remarks().deviations.contains("practice-not-passed")) {
         desk_.session().deviate(desk_.now(), {"practice-not-passed", ""});
       }
@@ -196,6 +197,7 @@ bool PracticeRun::run_round(int round) {
   desk_.enter_practice("practice", 0, a_round_);
   if (!desk_.attend(PracticeStep{round})) return desk_.goes_on();
   for (PracticeProgress at = progress(); at.round == round && !at.passed; at = progress()) {
+    if (not_explored_ > a_round_) return true;
     if (!desk_.await_device()) {
       if (!desk_.goes_on()) return false;
       continue;
@@ -259,6 +261,8 @@ std::optional<device::ServoEnd> PracticeRun::explore_intervals(const design::Pre
       desk_.session().note(desk_.now(), "practice interrupted: " + desk_.note_interruption(last));
       return std::nullopt;
     case IntervalsEnd::not_explored:
+      ++not_explored_;
+      desk_.enter_practice("not explored", shown.trial, a_round_);
       static_cast<void>(desk_.attend(
           NoticeStep{NoticeStep::What::not_explored, desk_.session().presentations_begun()}));
       return std::nullopt;
