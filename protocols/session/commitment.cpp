@@ -64,8 +64,36 @@ std::string touch_of(const design::LeastTouch& touch) {
          number_text(touch.path_mm) + " mm along it, unless time is up";
 }
 
-std::string design_of(const design::Study& study) {
+/// What a trial with several planes asks for; the numbers of its trials are in the rule of orders.
+std::string intervals_of(const design::Study& study, const design::IntervalPlan& plan) {
+  const design::IntervalWindows& windows = plan.windows;
+  const std::size_t practice = study.protocol->practice_trials(study, {}, 1).size();
+  return line("planes a trial", std::to_string(plan.count)) +
+         line("exploration of each",
+              number_text(plan.seconds) + " s in contact, at " + number_text(windows.slowest_mm_s) +
+                  " to " + number_text(windows.fastest_mm_s) + " mm/s and " +
+                  number_text(windows.lightest_n) + " to " + number_text(windows.strongest_n) +
+                  " N, within " + number_text(study.trials.explore_limit_s) +
+                  " s; else the trial comes again") +
+         line("practice", practice == 0
+                              ? std::string("none")
+                              : counted(static_cast<int>(practice), "trial") +
+                                    " a round at the highest level; criterion " +
+                                    std::to_string(plan.practice_criterion) + " correct, " +
+                                    counted(plan.practice_rounds, "round") + " at most") +
+         line("feedback in trials", plan.feedback ? "yes" : "no");
+}
+
+std::string exploring_of(const design::Study& study) {
+  if (const auto plan = study.protocol->interval_plan(study)) return intervals_of(study, *plan);
   const design::TrialOptions& trials = study.trials;
+  return line("time to explore", number_text(trials.explore_limit_s) + " s") +
+         line("before an answer", touch_of(trials.answer_after)) +
+         line("practice", practice_of(study)) +
+         line("catch trials (not scored)", std::to_string(trials.catch_trials));
+}
+
+std::string design_of(const design::Study& study) {
   return line("protocol", study.protocol_name()) +
          line("classes", std::to_string(study.classes.size()) + " (" + labels_of(study) + ")") +
          line("methods presented", study.presented_labels()) +
@@ -75,10 +103,7 @@ std::string design_of(const design::Study& study) {
               ? ""
               : line("groups", listed(study.groups.labels) +
                                    (study.groups.open ? ", open to the experimenter" : ""))) +
-         line("time to explore", number_text(trials.explore_limit_s) + " s") +
-         line("before an answer", touch_of(trials.answer_after)) +
-         line("practice", practice_of(study)) + line("language", language_of(study)) +
-         line("catch trials (not scored)", std::to_string(trials.catch_trials)) +
+         exploring_of(study) + line("language", language_of(study)) +
          line("orders", design::schedule_rule(study));
 }
 

@@ -119,9 +119,13 @@ struct SameDifferentLevel {
   Proportion same_at_all;  ///< false alarms at all levels
   std::optional<double> d_differencing{};  ///< 0 with fewer hits than false alarms
   std::optional<double> d_independent{};
+  /// For means: with fewer hits than false alarms, minus the d' of the exchanged shares, so that
+  /// guessing gives 0 on average.
+  std::optional<double> signed_differencing{};
+  std::optional<double> signed_independent{};
 };
 
-/// Means over participants at one level.
+/// Means over participants at one level, of the signed values.
 struct SameDifferentGroup {
   std::size_t standard = 0;
   double level = 0.0;

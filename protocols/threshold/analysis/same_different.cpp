@@ -59,6 +59,11 @@ void add_d_prime(SameDifferentLevel& level) {
   if (!hits || !false_alarms) return;
   level.d_differencing = d_of(differencing_d_prime({*hits, *false_alarms}));
   level.d_independent = d_of(independent_d_prime({*hits, *false_alarms}));
+  const double low = std::min(*hits, *false_alarms);
+  const double high = std::max(*hits, *false_alarms);
+  const double sign = *hits < *false_alarms ? -1.0 : 1.0;
+  level.signed_differencing = sign * d_of(differencing_d_prime({high, low}));
+  level.signed_independent = sign * d_of(independent_d_prime({high, low}));
 }
 
 void add_to(Proportion& sum, const Proportion& of) {
@@ -115,10 +120,10 @@ std::vector<SameDifferentGroup> same_different_groups(std::span<const SameDiffer
   };
   std::map<std::pair<std::size_t, double>, Values> values;
   for (const SameDifferentLevel& one : levels) {
-    if (one.participant.empty() || !one.d_differencing || !one.d_independent) continue;
+    if (one.participant.empty() || !one.signed_differencing || !one.signed_independent) continue;
     Values& of = values[{one.standard, one.level}];
-    of.differencing.push_back(*one.d_differencing);
-    of.independent.push_back(*one.d_independent);
+    of.differencing.push_back(*one.signed_differencing);
+    of.independent.push_back(*one.signed_independent);
   }
   std::vector<SameDifferentGroup> groups;
   for (const auto& [place, of] : values) {

@@ -81,8 +81,10 @@ void warn_of_habits(const ThresholdReport& report, Sentences& all) {
         learning.mean.mean.value_or(0.0) < 0.0 ? "better" : "worse", p_phrase(*learning.p)));
   }
   if (report.options().question == Question::same_different) return;
-  const bool prefers = std::ranges::any_of(report.choice_use, [](const ChoiceUse& one) {
-    return one.excess.p && *one.excess.p <= kUsualLevel;
+  // Of several answers, by Bonferroni.
+  const double level = kUsualLevel / std::max(1.0, static_cast<double>(report.choice_use.size()));
+  const bool prefers = std::ranges::any_of(report.choice_use, [level](const ChoiceUse& one) {
+    return one.excess.p && *one.excess.p <= level;
   });
   if (prefers) {
     all.emplace_back(

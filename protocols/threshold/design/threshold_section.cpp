@@ -297,7 +297,7 @@ void check_section(const JsonValue& file, const Study& study) {
   for (const Standard& standard : standards) {
     const std::size_t own = levels_of(options, standard).size();
     const bool may_clip = options.task == Task::discrimination;
-    if (own < (may_clip ? 2 : options.track.levels.size())) {
+    if (own < (may_clip ? 1 : options.track.levels.size())) {
       refuse("/levels",
              fmt::format("exceed the pack's gain, the stiffness ceiling, for {}{}; lower "
                          "them{}",

@@ -156,7 +156,9 @@ Table group_d_prime_table(const ThresholdReport& report) {
        "levels are mixed or gains roved. Independent: each impression is judged by itself, which "
        "needs two fixed stimuli; its d' is smaller (Macmillan and Creelman 2005, chapter 9). Hits "
        "are those of the level, false alarms those of all levels of the standard. Half an answer "
-       "stands for none and is taken from all; d' is 0 with fewer hits than false alarms."}};
+       "stands for none and is taken from all. With fewer hits than false alarms a participant's "
+       "own d' is 0, which is most likely, and enters these means as minus the d' of the exchanged "
+       "shares, so that guessing gives 0 on average."}};
   return table;
 }
 
