@@ -30,8 +30,8 @@ struct TrialOutcome {
   design::StimulusIndex stimulus;  ///< without meaning for a catch trial
   design::PresentationKind kind = design::PresentationKind::scored;
   std::optional<design::ChosenLevel> chosen{};  ///< by an adaptive order
-  bool scored = false;          ///< by the schedule; not a lead-in or catch trial
-  bool counted = false;         ///< counts towards accuracy
+  bool scored = false;                          ///< by the schedule; not a lead-in or catch trial
+  bool counted = false;                         ///< counts towards accuracy
   std::optional<int> response;  ///< index of the chosen alternative; empty: no response
   std::optional<int> right;     ///< index of the right choice; empty: there is none
   std::optional<store::TrialMeasures> measures;

@@ -109,7 +109,7 @@ DifferencePower power_of(const std::vector<SampleResult>& samples, const Thresho
 }
 
 ThresholdRow threshold_row(const ThresholdPool& pool, const ThresholdPlan& plan, int size,
-                    const std::vector<SampleResult>& samples) {
+                           const std::vector<SampleResult>& samples) {
   ThresholdRow row{.trials = pool.trials, .participants = size, .standards = {}, .difference = {}};
   for (std::size_t standard = 0; standard < pool.standards.size(); ++standard) {
     std::vector<double> widths;

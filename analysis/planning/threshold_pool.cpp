@@ -127,7 +127,8 @@ std::vector<Threshold> thresholds_of(const TracksOfPerson& tracks,
 }
 
 /// Adds a participant.
-void add_person(ThresholdPool& pool, const std::vector<Threshold>& thresholds, std::size_t tracks_each) {
+void add_person(ThresholdPool& pool, const std::vector<Threshold>& thresholds,
+                std::size_t tracks_each) {
   std::vector<std::optional<double>>& person = pool.people.emplace_back(pool.standards.size());
   for (std::size_t standard = 0; standard < person.size(); ++standard) {
     double sum = 0.0;

@@ -104,9 +104,9 @@ struct SubjectModel {
 /// \throws StudyError as load_subject_model
 [[nodiscard]] SubjectModel parse_subject_model(std::string_view text, const std::string& source);
 
-/// The text of a subject file with every key, but for `thought` and `given_function` if there is none.
-/// parse_subject_model reads it back as the same model except for the source: numbers have all
-/// their digits. Indented; ends with a line feed.
+/// The text of a subject file with every key, but for `thought` and `given_function` if there is
+/// none. parse_subject_model reads it back as the same model except for the source: numbers have
+/// all their digits. Indented; ends with a line feed.
 [[nodiscard]] std::string subject_model_json(const SubjectModel& model);
 
 }  // namespace touchtrial::simulation
