@@ -162,7 +162,7 @@ struct StudyCost {
 /// includes the disk.
 StudyCost simulate_once(const design::StudyKey& key, const engine::Pack& pack,
                         const fs::path& database) {
-  const simulation::SubjectModel subject = app::subject_for({}, key.study);
+  const simulation::SubjectModel subject = app::subject_for({}, key.study, {});
   simulation::SimulationOptions options;
   options.participants = kParticipants;
   const auto start = std::chrono::steady_clock::now();
