@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include <malloc.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
@@ -137,7 +138,18 @@ void let_writes_fail() {
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
 }
 
+/// Planes come and go by the dozen. Their memory is kept, since every page that the kernel hands
+/// out anew costs more than filling it.
+void keep_memory() {
+#ifdef M_MMAP_THRESHOLD
+  static_cast<void>(mallopt(M_MMAP_THRESHOLD, 32 << 20));  // the largest that glibc takes
+  static_cast<void>(mallopt(M_TRIM_THRESHOLD, 1 << 30));
+  static_cast<void>(mallopt(M_TOP_PAD, 4 << 20));
+#endif
+}
+
 int parse_and_run(int argc, char** argv) {
+  keep_memory();
   let_writes_fail();
   set_up_log();
   registration::register_protocols();

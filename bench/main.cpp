@@ -5,6 +5,7 @@
 #include "bench/inputs/pictures.hpp"
 #include "bench/measure/simd_target.hpp"
 #include "bench/results.hpp"
+#include "core/bytes.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "engine/fourier/planning.hpp"
@@ -35,6 +36,7 @@ struct Arguments {
   int runs = 1;
   bool docs = false;
   bool quick = false;
+  bool check = false;
 };
 
 Scope scope_for(const Arguments& arguments, const std::vector<std::string>& targets) {
@@ -75,6 +77,21 @@ void run_only(const Arguments& arguments, const Scope& scope) {
                    "docs/benchmarks/results.json");
 }
 
+/// Names what has become slower than the committed results.
+/// \throws Error if there is such a goal
+void check(const std::vector<GoalResult>& goals) {
+  const std::vector<std::string> slower =
+      slower_than_committed(goals, text_of(ByteView(read_file(kDocs / "results.json"))));
+  for (const std::string& line : slower) app::print("slower: " + line + "\n");
+  if (!slower.empty()) {
+    throw Error(
+        fmt::format("{} of the ratios are more than a tenth above those of "
+                    "docs/benchmarks/results.json",
+                    slower.size()));
+  }
+  app::print("no ratio is more than a tenth above those of docs/benchmarks/results.json\n");
+}
+
 void run(const Arguments& arguments) {
   cv::setNumThreads(1);
   engine::use_measured_plans(engine::user_cache_folder());  // as the program does
@@ -88,6 +105,7 @@ void run(const Arguments& arguments) {
   Results results;
   results.goals = take_goals(targets, effort);
   app::print(goals_table(results.goals));
+  if (arguments.check) return check(results.goals);
   if (arguments.json.empty() && !arguments.docs) return;
   results.rows = measure_rows(all_cases(scope), effort, app::progress_bar("rows"));
   if (!arguments.json.empty()) replace_file(arguments.json, results_json(this_machine(), results));
@@ -112,6 +130,11 @@ void set_up(CLI::App& program, Arguments& arguments) {
       ->capture_default_str();
   CLI::Option* const docs = program.add_flag(
       "--docs", arguments.docs, "As --json, and update docs/benchmarks with its pictures");
+  program
+      .add_flag("--check", arguments.check,
+                "Compare the ratios to peers and bounds with the committed results, name what is "
+                "slower by more than a tenth, and fail if anything is")
+      ->excludes(docs);
   program
       .add_flag("--quick", arguments.quick,
                 "One size and few repetitions, to check that everything works")

@@ -32,7 +32,7 @@ Json word(const std::string& text) {
 }
 
 Json limit_of(const GoalResult& result) {
-  constexpr const char* kNames[] = {"ratio", "ours_us", "error", "count"};
+  constexpr const char* kNames[] = {"ratio", "of_bound", "ours_us", "error", "count"};
   return kNames[static_cast<std::size_t>(result.limit)];
 }
 
@@ -41,6 +41,9 @@ Json json_of(const GoalResult& result) {
           {"ours_us", number(result.ours_us)},
           {"peer_us", number(result.peer_us)},
           {"ratio", number(result.ratio)},
+          {"bound", word(result.bound)},
+          {"bound_us", number(result.bound_us)},
+          {"of_bound", number(result.of_bound)},
           {"target", number(result.target)},
           {"error", number(result.error)},
           {"met", has_target(result) ? Json(is_met(result)) : Json(nullptr)},

@@ -29,9 +29,9 @@ struct Results {
   std::vector<SolverCourse> courses;  ///< of TV-Gabor, on the usual picture; not part of the JSON
 };
 
-/// {"processor", .., "goals": [{"goal", "ours_us", "peer_us", "ratio", "target", "error", "met",
-/// ..}], "rows": [{"work", "who", "input", "size_px", "radius", "us", "error", ..}]}. Numbers that
-/// were not taken are null.
+/// {"processor", .., "goals": [{"goal", "ours_us", "peer_us", "ratio", "of_bound", "target",
+/// "error", "met", ..}], "rows": [{"work", "who", "input", "size_px", "radius", "us", "error",
+/// ..}]}. Numbers that were not taken are null.
 [[nodiscard]] std::string results_json(const Machine& machine, const Results& measured);
 
 /// Replaces everything between the lines <!-- NAME --> and <!-- end of NAME --> of a Markdown page.

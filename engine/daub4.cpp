@@ -1,5 +1,6 @@
 #include "engine/daub4.hpp"
 
+#include "engine/kernels/strips.hpp"
 #include "engine/symmetric_extension.hpp"
 
 #include <array>
@@ -54,20 +55,22 @@ SubBands sub_bands_of(const Plane<Sample>& image) {
   const int width = (image.width() + 1) / 2;
   SubBands bands{Plane<double>(height, width), Plane<double>(height, width),
                  Plane<double>(height, width), Plane<double>(height, width)};
-  std::vector<double> low(2 * static_cast<std::size_t>(width) + kTaps - 2);
-  std::vector<double> high(low.size());
-  for (int i = 0; i < height; ++i) {
-    ImageRows<Sample> rows;
-    for (int m = 0; m < kTaps; ++m) {
-      rows[static_cast<std::size_t>(m)] = image.row(symmetric_index(2 * i + m, image.height()));
+  for_each_strip(height, 4 * width, [&](Rows strip) {
+    std::vector<double> low(2 * static_cast<std::size_t>(width) + kTaps - 2);
+    std::vector<double> high(low.size());
+    for (int i = strip.first; i < strip.last; ++i) {
+      ImageRows<Sample> rows;
+      for (int m = 0; m < kTaps; ++m) {
+        rows[static_cast<std::size_t>(m)] = image.row(symmetric_index(2 * i + m, image.height()));
+      }
+      filter_columns(rows, kLow, low);
+      filter_columns(rows, kHigh, high);
+      filter_row(low, kLow, bands.ll.row(i));
+      filter_row(low, kHigh, bands.hl.row(i));
+      filter_row(high, kLow, bands.lh.row(i));
+      filter_row(high, kHigh, bands.hh.row(i));
     }
-    filter_columns(rows, kLow, low);
-    filter_columns(rows, kHigh, high);
-    filter_row(low, kLow, bands.ll.row(i));
-    filter_row(low, kHigh, bands.hl.row(i));
-    filter_row(high, kLow, bands.lh.row(i));
-    filter_row(high, kHigh, bands.hh.row(i));
-  }
+  });
   return bands;
 }
 

@@ -1,10 +1,13 @@
 #include "engine/evaluation.hpp"
 
+#include "core/parallel.hpp"
 #include "engine/extraction.hpp"
 #include "engine/metrics/picture_statistics.hpp"
 #include "engine/metrics/ssim.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 
@@ -48,12 +51,18 @@ Evaluation evaluate_image(const GreyImage& image, bool sweep,
                           const std::function<void()>& order_done) {
   refuse_small(image, sweep);
   const GreyImage adaptive = picture_of(image, {});
-  Evaluation evaluation{image.height(), image.width(), figures_of(image), figures_of(adaptive), {}};
+  Evaluation evaluation{image.height(), image.width(), {}, {}, {}};
+  in_parallel(0, 2, [&](std::size_t i) {
+    (i == 0 ? evaluation.original : evaluation.adaptive) = figures_of(i == 0 ? image : adaptive);
+  });
   if (!sweep) return evaluation;
-  for (int k = 1; k <= kSweptOrders; ++k) {
-    evaluation.orders.push_back(figures_of_order(image, k / 20.0, adaptive));
+  evaluation.orders.resize(kSweptOrders);
+  std::mutex mutex;
+  in_parallel(0, evaluation.orders.size(), [&](std::size_t i) {
+    evaluation.orders[i] = figures_of_order(image, static_cast<double>(i + 1) / 20.0, adaptive);
+    const std::lock_guard lock(mutex);
     if (order_done) order_done();
-  }
+  });
   return evaluation;
 }
 

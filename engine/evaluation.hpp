@@ -39,10 +39,10 @@ struct Evaluation {
 /// Evaluates an image, in double.
 /// \param image  at least 2 x 2; for a sweep at least kMsSsimSmallestSide on each side
 /// \param sweep  whether to extract the fixed orders and compare them by MS-SSIM
-/// \param order_done  called after each order of a sweep
+/// \param order_done  called after each order of a sweep, from any thread, never from two at a time
 /// \throws std::invalid_argument if the image is smaller; the message has its size and the least
 ///   one
-/// Thread-safe.
+/// Thread-safe. Uses all cores: the results do not depend on their number.
 [[nodiscard]] Evaluation evaluate_image(const GreyImage& image, bool sweep,
                                         const std::function<void()>& order_done = {});
 

@@ -165,9 +165,8 @@ bool extracted_by_kernel(const GreyImage& image, const ExtractionOptions& option
 template <typename Real>
 void add_by_products(const GreyImage& image, const WantedPlanes& wanted, Extraction<Real>& result) {
   if (wanted.picture && result.picture.empty()) result.picture = texture_picture(result.texture);
-  if (wanted.force && result.force.x.empty()) {
-    result.force = tangential_force(result.texture, kForceNeighbourhood);
-  }
+  result.force = {};
+  if (wanted.force) result.force = tangential_force(result.texture, kForceNeighbourhood);
   result.enhanced = wanted.enhanced ? converted<Real>(image) : Plane<Real>();
   for (std::size_t i = 0; i < result.enhanced.size(); ++i) {
     result.enhanced.samples()[i] += result.texture.samples()[i];

@@ -1,7 +1,7 @@
 #include "engine/force_field.hpp"
 
 #include "engine/finite_plane.hpp"
-#include "engine/kernels/field_rows.hpp"
+#include "engine/kernels/strips.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -27,22 +27,6 @@ void add_neighbours(std::span<const Real> row, std::span<const Real> neighbours,
   }
 }
 
-/// The usual neighbourhood has its own kernel in float.
-bool made_by_kernel(const Plane<double>&, int, ForceField<double>&) {
-  return false;
-}
-bool made_by_kernel(const Plane<float>& surface, int neighbourhood, ForceField<float>& force) {
-  if (neighbourhood != 3) return false;
-  ForceRows rows(surface.width());
-  for (int y = 0; y < surface.height(); ++y) {
-    std::ranges::copy(surface.row(y), rows.next_surface());
-    const int before = std::max(y - 1, 0);
-    rows.add_row(force.x.row(before).data(), force.y.row(before).data());
-  }
-  rows.finish(force.x.row(surface.height() - 1).data(), force.y.row(surface.height() - 1).data());
-  return true;
-}
-
 }  // namespace
 
 template <typename Real>
@@ -56,18 +40,19 @@ ForceField<Real> tangential_force(const Plane<Real>& surface, int neighbourhood)
   const int reach_x = std::min(neighbourhood / 2, surface.width() - 1);
   ForceField<Real> force{Plane<Real>(surface.height(), surface.width()),
                          Plane<Real>(surface.height(), surface.width())};
-  if (made_by_kernel(surface, neighbourhood, force)) return force;
-  for (int y = 0; y < surface.height(); ++y) {
-    const int first = std::max(-reach_y, -y);
-    const int last = std::min(reach_y, surface.height() - 1 - y);
-    for (int dy = first; dy <= last; ++dy) {
-      for (int dx = -reach_x; dx <= reach_x; ++dx) {
-        if (dx == 0 && dy == 0) continue;
-        add_neighbours<Real>(surface.row(y), surface.row(y + dy), dy, dx, force.x.row(y),
-                             force.y.row(y));
+  for_each_strip(surface.height(), surface.width(), [&](Rows strip) {
+    for (int y = strip.first; y < strip.last; ++y) {
+      const int first = std::max(-reach_y, -y);
+      const int last = std::min(reach_y, surface.height() - 1 - y);
+      for (int dy = first; dy <= last; ++dy) {
+        for (int dx = -reach_x; dx <= reach_x; ++dx) {
+          if (dx == 0 && dy == 0) continue;
+          add_neighbours<Real>(surface.row(y), surface.row(y + dy), dy, dx, force.x.row(y),
+                               force.y.row(y));
+        }
       }
     }
-  }
+  });
   return force;
 }
 

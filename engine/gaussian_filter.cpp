@@ -1,6 +1,7 @@
 #include "engine/gaussian_filter.hpp"
 
 #include "engine/finite_plane.hpp"
+#include "engine/kernels/strips.hpp"
 #include "engine/symmetric_extension.hpp"
 
 #include <algorithm>
@@ -98,10 +99,12 @@ Plane<double> gaussian_filtered(const Plane<double>& plane, double sigma_px) {
   require_finite(plane, "gaussian_filtered", "plane");
   if (sigma_px == 0.0) return plane;
   Plane<double> out(plane.height(), plane.width());
-  GaussianRows rows(plane, sigma_px);
-  for (int y = 0; y < plane.height(); ++y) {
-    std::ranges::copy(rows.row(y), out.row(y).begin());
-  }
+  for_each_strip(plane.height(), plane.width(), [&](Rows strip) {
+    GaussianRows rows(plane, sigma_px);
+    for (int y = strip.first; y < strip.last; ++y) {
+      std::ranges::copy(rows.row(y), out.row(y).begin());
+    }
+  });
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include "engine/kernels/aligned_rows.hpp"
 #include "engine/kernels/gl_row.hpp"
+#include "engine/kernels/strips.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -58,15 +59,19 @@ void row_of(const ExtendedRows& rows, int radius, std::span<const float> orders,
   gl_row(rows, radius, orders.data(), texture.data());
 }
 
-/// \param orders_of_row  takes y; returns that row's orders, followed by a vector of slack in float
+/// \param orders_of_row  takes y and a row to write to; returns that row's orders, followed by a
+///   vector of slack in float
 template <typename Real, typename OrdersOfRow>
 Plane<Real> texture_by_rows(const GreyImage& image, int radius, OrdersOfRow orders_of_row) {
   Plane<Real> texture(image.height(), image.width());
-  ExtendedRows rows(image, radius);
-  for (int y = 0; y < image.height(); ++y) {
-    rows.next_row();
-    row_of(rows, radius, orders_of_row(y), texture.row(y));
-  }
+  for_each_strip(image.height(), image.width(), [&](Rows strip) {
+    AlignedRows<Real> orders(1, static_cast<std::size_t>(image.width()), 0);
+    ExtendedRows rows(image, radius, strip.first);
+    for (int y = strip.first; y < strip.last; ++y) {
+      rows.next_row();
+      row_of(rows, radius, orders_of_row(y, orders.row(0)), texture.row(y));
+    }
+  });
   return texture;
 }
 
@@ -89,18 +94,17 @@ void apply(Norm norm, const GreyImage& image, Plane<double>& texture, WeightSum 
 template <>
 Plane<double> gl_texture<double>(const GreyImage& image, int radius, double order) {
   const std::vector<double> row(static_cast<std::size_t>(image.width()), order);
-  return texture_by_rows<double>(image, radius, [&](int) { return std::span<const double>(row); });
+  return texture_by_rows<double>(image, radius,
+                                 [&](int, double*) { return std::span<const double>(row); });
 }
 
 template <typename Real>
 Plane<Real> gl_texture(const GreyImage& image, int radius, const Plane<double>& orders) {
   const auto width = static_cast<std::size_t>(image.width());
-  AlignedRows<Real> row(1, width, 0);
-  const std::span<Real> to(row.row(0), width);
-  return texture_by_rows<Real>(image, radius, [&](int y) {
+  return texture_by_rows<Real>(image, radius, [&](int y, Real* to) {
     const auto from = orders.row(y / 2);
     for (std::size_t x = 0; x < width; ++x) to[x] = static_cast<Real>(from[x / 2]);
-    return std::span<const Real>(to);
+    return std::span<const Real>(to, width);
   });
 }
 

@@ -1,5 +1,7 @@
 #include "analysis/measures/rms_alone.hpp"
 
+#include "engine/rendering/field_statistics.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -103,15 +105,14 @@ std::vector<double> patch_strengths(engine::FieldView field, double tangential_n
   if (std::min(height, width) < kPatchesASide) {
     throw std::invalid_argument("patch_strengths: the field is too small");
   }
+  const engine::ForceField<double> force = engine::lateral_field(field, {}).force;
   std::vector<Sum> squares(static_cast<std::size_t>(kPatchesASide * kPatchesASide));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const engine::FieldSample& sample =
-          field.samples[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + x];
       const int row = std::min(y / (height / kPatchesASide), kPatchesASide - 1);
       const int column = std::min(x / (width / kPatchesASide), kPatchesASide - 1);
-      const double fx = tangential_n * sample.force_x;
-      const double fy = tangential_n * sample.force_y;
+      const double fx = tangential_n * force.x.at(y, x);
+      const double fy = tangential_n * force.y.at(y, x);
       squares[static_cast<std::size_t>(row * kPatchesASide + column)].add(fx * fx + fy * fy);
     }
   }

@@ -26,6 +26,7 @@ Cases all_cases(const Scope& scope) {
   append(tv_gabor_cases(scope), cases);
   append(force_cases(), cases);
   append(falcon_cases(), cases);
+  append(limit_cases(scope), cases);
   return cases;
 }
 

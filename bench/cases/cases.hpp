@@ -37,7 +37,12 @@ inline constexpr double kFixedOrder = 0.55;
 [[nodiscard]] Cases daub4_cases(const Scope& scope);
 
 /// What an extraction computes besides the texture.
-enum class Extras { none, picture, force };
+enum class Extras {
+  none,
+  picture,
+  heights,  ///< what the models' forces need: the plane's highest point
+  force     ///< force planes, as for dumps
+};
 [[nodiscard]] Case extraction_case(int size_px, int radius, Extras extras);
 [[nodiscard]] Case ring_sums_case(int size_px, int radius, Extras extras, RingSums how);
 [[nodiscard]] Cases extraction_cases(const Scope& scope);
@@ -64,6 +69,14 @@ template <typename Real>
 
 /// The computations of a Falcon's driver for each reading.
 [[nodiscard]] Cases falcon_cases();
+
+/// What the machine cannot do faster (bench/limits): reading a picture and writing a plane, through
+/// the caches and past them.
+[[nodiscard]] Cases streaming_cases(int size_px);
+[[nodiscard]] Case arithmetic_case(int size_px);
+/// The engine's hash function, which is a library's.
+[[nodiscard]] Case hash_case(int bytes);
+[[nodiscard]] Cases limit_cases(const Scope& scope);
 
 /// All of the above.
 [[nodiscard]] Cases all_cases(const Scope& scope);

@@ -3,6 +3,7 @@
 #include "bench/inputs/truth.hpp"
 #include "bench/peers/mat_view.hpp"
 #include "bench/peers/opencv_extraction.hpp"
+#include "engine/rendering/texture_field.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +21,8 @@ std::string work_of(Extras extras) {
   switch (extras) {
     case Extras::picture:
       return "extraction, picture";
+    case Extras::heights:
+      return "extraction, heights";
     case Extras::force:
       return "extraction, force";
     case Extras::none:
@@ -53,10 +56,17 @@ struct OurExtraction {
     return error;
   }
 
+  void find_highest() {
+    const Plane<float>& heights = result.texture;
+    highest = engine::highest_of(
+        {.geometry = {0.2, heights.height(), heights.width()}, .heights = heights.samples()});
+  }
+
   GreyImage image;
   engine::ExtractionOptions options;
   engine::WantedPlanes wanted;
   engine::Extraction<float> result;
+  double highest = 0.0;
 };
 
 struct PeerExtraction {
@@ -66,6 +76,7 @@ struct PeerExtraction {
   void run(int radius, Extras extras) {
     pipeline.extract(mat_of(image), radius);
     if (extras == Extras::picture) pipeline.make_picture();
+    if (extras == Extras::heights) pipeline.find_highest();
     if (extras == Extras::force) pipeline.make_force();
   }
 
@@ -105,6 +116,7 @@ Case extraction_case(int size_px, int radius, Extras extras) {
     return Job{[=] {
                  engine::extract_texture_into(ours->image, ours->options, ours->wanted,
                                               ours->result);
+                 if (extras == Extras::heights) ours->find_highest();
                },
                error_up_to(size_px, [=] { return ours->error(extras); })};
   };
@@ -127,6 +139,7 @@ Cases extraction_cases(const Scope& scope) {
   for (const int size_px : scope.sizes_px) {
     for (const int radius : scope.radii) add_all(size_px, radius, Extras::none, cases);
     add_all(size_px, kUsualRadius, Extras::picture, cases);
+    add_all(size_px, kUsualRadius, Extras::heights, cases);
     add_all(size_px, kUsualRadius, Extras::force, cases);
   }
   for (const int size_px : scope.more_sizes_px) {

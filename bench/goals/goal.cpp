@@ -1,16 +1,19 @@
 #include "bench/goals/goal.hpp"
 
+#include "core/errors.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace touchtrial::bench {
 namespace {
 
-constexpr std::size_t kColumns = 8;
+constexpr std::size_t kColumns = 10;
 using Line = std::array<std::string, kColumns>;
 
 std::string time_text(double us) {
@@ -31,6 +34,8 @@ std::string target_text(const GoalResult& result) {
   switch (result.limit) {
     case Limit::time_us:
       return "<= " + time_text(result.target);
+    case Limit::of_bound:
+      return fmt::format("<= {:g} of bound", result.target);
     case Limit::error:
       return fmt::format("error <= {:.0e}", result.target);
     case Limit::count:
@@ -53,12 +58,18 @@ std::string ours_text(const GoalResult& result) {
   return time.empty() ? count : time + ", " + count;
 }
 
+std::string ratio_text(double ratio, int digits) {
+  return std::isnan(ratio) ? std::string() : fmt::format("{:.{}f}", ratio, digits);
+}
+
 Line line_of(const GoalResult& result) {
   return {result.goal,
           ours_text(result),
           result.peer,
           time_text(result.peer_us),
-          std::isnan(result.ratio) ? std::string() : fmt::format("{:.3f}", result.ratio),
+          ratio_text(result.ratio, 3),
+          result.bound.empty() ? "" : result.bound + ", " + time_text(result.bound_us),
+          ratio_text(result.of_bound, 2),
           target_text(result),
           error_text(result.error, result.error_unit),
           met_text(result)};
@@ -76,6 +87,8 @@ double limited_number(const GoalResult& result) noexcept {
   switch (result.limit) {
     case Limit::time_us:
       return result.ours_us;
+    case Limit::of_bound:
+      return result.of_bound;
     case Limit::error:
       return result.error;
     case Limit::count:
@@ -94,9 +107,37 @@ bool is_met(const GoalResult& result) noexcept {
   return limited_number(result) <= result.target;
 }
 
+std::vector<std::string> slower_than_committed(const std::vector<GoalResult>& results,
+                                               std::string_view committed) {
+  constexpr double kAllowed = 1.1;
+  std::vector<std::string> lines;
+  try {
+    const auto earlier = nlohmann::json::parse(committed).at("goals");
+    for (const GoalResult& result : results) {
+      const auto same = std::ranges::find_if(earlier, [&](const nlohmann::json& one) {
+        return one.at("goal") == result.goal && one.at("peer").is_null() == result.peer.empty() &&
+               (result.peer.empty() || one.at("peer") == result.peer);
+      });
+      if (same == earlier.end()) continue;
+      const auto compare = [&](const char* key, const std::string& beside, double now) {
+        const auto before = same->find(key);
+        if (before == same->end() || before->is_null() || std::isnan(now)) return;
+        if (now <= kAllowed * before->get<double>()) return;
+        lines.push_back(fmt::format("{}: {:.3f} of {}, and {:.3f} in the committed results",
+                                    result.goal, now, beside, before->get<double>()));
+      };
+      compare("ratio", result.peer, result.ratio);
+      compare("of_bound", "the bound", result.of_bound);
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(std::string("the committed results are not the benchmark's JSON: ") + error.what());
+  }
+  return lines;
+}
+
 std::string goals_table(const std::vector<GoalResult>& results) {
-  std::vector<Line> lines = {
-      {"goal", "ours", "peer", "peer's time", "ratio", "target", "our error", "met"}};
+  std::vector<Line> lines = {{"goal", "ours", "peer", "peer's time", "ratio", "bound", "of bound",
+                              "target", "our error", "met"}};
   for (const GoalResult& result : results) lines.push_back(line_of(result));
   std::array<std::size_t, kColumns> widths{};
   for (const Line& line : lines) {

@@ -6,16 +6,18 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchtrial::bench {
 
 /// The quantity that a target limits from above.
 enum class Limit {
-  ratio,    ///< our time / the peer's time
-  time_us,  ///< our time
-  error,    ///< our error against double, in `error_unit`
-  count     ///< `count`, in `count_unit`
+  ratio,     ///< our time / the peer's time
+  of_bound,  ///< our time / the machine's bound
+  time_us,   ///< our time
+  error,     ///< our error against double, in `error_unit`
+  count      ///< `count`, in `count_unit`
 };
 
 struct GoalResult {
@@ -24,6 +26,9 @@ struct GoalResult {
   double ours_us = kNotTaken;
   double peer_us = kNotTaken;
   double ratio = kNotTaken;
+  std::string bound;  ///< what the machine cannot do faster; "" if none was measured
+  double bound_us = kNotTaken;
+  double of_bound = kNotTaken;  ///< ours / bound
   double error = kNotTaken;
   std::string error_unit;
   double count = kNotTaken;
@@ -51,6 +56,14 @@ using Goal = std::function<std::vector<GoalResult>(const Effort& effort)>;
 
 /// The time and database size of a simulated study, and the cost of a start and a short command.
 [[nodiscard]] std::vector<Goal> program_goals();
+
+/// Compares with committed results, by what does not depend on a machine's speed: the ratios to
+/// peer and bound.
+/// \param committed  of results_json()
+/// \return a line for each ratio that is more than a tenth larger than the committed one
+/// \throws Error if the committed results are not such JSON
+[[nodiscard]] std::vector<std::string> slower_than_committed(const std::vector<GoalResult>& results,
+                                                             std::string_view committed);
 
 /// The table for the terminal and the documentation: Markdown with aligned columns.
 [[nodiscard]] std::string goals_table(const std::vector<GoalResult>& results);

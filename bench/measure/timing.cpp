@@ -61,25 +61,27 @@ double cpu_clock_us() noexcept {
   return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
 }
 
-PairTimes time_pair(const Case& ours, const Case& peer, const Effort& effort) {
-  Side our_side(ours);
-  Side peer_side(peer);
-  std::vector<double> ours_us, peer_us, ratios;
-  const int rounds = rounds_for(our_side.turn_us() + peer_side.turn_us(), effort);
-  for (int round = 0; round < rounds; ++round) {
-    ours_us.push_back(our_side.turn());
-    peer_us.push_back(peer_side.turn());
-    ratios.push_back(ours_us.back() / peer_us.back());
+std::vector<TimeBeside> time_in_turns(const Cases& cases, const Effort& effort) {
+  std::vector<Side> sides;
+  double round_us = 0.0;
+  for (const Case& one : cases) {
+    sides.emplace_back(one);
+    round_us += sides.back().turn_us();
   }
-  return {median(ours_us), median(peer_us), median(ratios)};
-}
-
-PairTimes time_alone(const Case& ours, const Effort& effort) {
-  Side side(ours);
-  std::vector<double> times_us;
-  const int rounds = rounds_for(side.turn_us(), effort);
-  for (int round = 0; round < rounds; ++round) times_us.push_back(side.turn());
-  return {median(times_us), kNotTaken, kNotTaken};
+  std::vector<std::vector<double>> times_us(cases.size());
+  std::vector<std::vector<double>> ratios(cases.size());
+  const int rounds = rounds_for(round_us, effort);
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      times_us[i].push_back(sides[i].turn());
+      ratios[i].push_back(times_us[0].back() / times_us[i].back());
+    }
+  }
+  std::vector<TimeBeside> times;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    times.push_back({median(times_us[i]), median(ratios[i])});
+  }
+  return times;
 }
 
 }  // namespace touchtrial::bench

@@ -39,17 +39,15 @@ struct Effort {
 
 /// Medians over all rounds. The ratio is the median of the rounds' ratios, not the ratio of the
 /// medians: it suffers less on a machine whose speed drifts.
-struct PairTimes {
-  double ours_us = kNotTaken;
-  double peer_us = kNotTaken;
-  double ratio = kNotTaken;  ///< ours / peer
+struct TimeBeside {
+  double us = kNotTaken;
+  double ratio = kNotTaken;  ///< of the first case to this one
 };
 
-/// Times both in alternating turns. A turn takes some milliseconds of one of them, after an untimed
-/// run, so that each finds the caches as it leaves them itself.
-[[nodiscard]] PairTimes time_pair(const Case& ours, const Case& peer, const Effort& effort);
-
-/// As time_pair for work without a peer: sets `ours_us` only.
-[[nodiscard]] PairTimes time_alone(const Case& ours, const Effort& effort);
+/// Times all cases in alternating turns. A turn takes some milliseconds of one of them, after an
+/// untimed run, so that each finds the caches as it leaves them itself.
+/// \param cases  ours first
+/// \return in the order of the cases
+[[nodiscard]] std::vector<TimeBeside> time_in_turns(const Cases& cases, const Effort& effort);
 
 }  // namespace touchtrial::bench

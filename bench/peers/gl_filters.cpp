@@ -62,7 +62,8 @@ void filter_adaptive(const GreyImage& image, int radius, const Plane<float>& ord
   engine::AlignedRows<float> last(1, width, kReadPast);
   engine::Extraction<float> result;
   result.texture = std::move(texture);
-  engine::TextureSink sink(image.height(), image.width(), {}, result);
+  engine::shape_planes(image.height(), image.width(), {}, result);
+  engine::TextureSink sink(result);
   engine::ExtendedRows rows(image, radius);
   for (int y = 0; y < image.height(); ++y) {
     const float* order = orders.row(y).data();

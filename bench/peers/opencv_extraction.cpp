@@ -139,6 +139,10 @@ void OpenCvRingSums::make_picture() {
   texture_.convertTo(picture_, CV_8U, 1.0, 128.0);
 }
 
+void OpenCvRingSums::find_highest() {
+  cv::minMaxLoc(texture_, nullptr, &highest_);
+}
+
 void OpenCvRingSums::make_force() {
   cv::Sobel(texture_, force_x_, CV_32F, 1, 0, 3, -0.5, 0, cv::BORDER_REFLECT);
   cv::Sobel(texture_, force_y_, CV_32F, 0, 1, 3, -0.5, 0, cv::BORDER_REFLECT);

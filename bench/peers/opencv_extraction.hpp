@@ -56,6 +56,9 @@ class OpenCvRingSums {
   /// clamp(round(128 + T)).
   /// \pre extract was called
   void make_picture();
+  /// The largest T.
+  /// \pre extract was called
+  void find_highest();
   /// Minus half the Sobel gradient of T. It differs from docs/method.md at the outermost pixels,
   /// where the method counts only neighbours that exist.
   /// \pre extract was called
@@ -77,6 +80,7 @@ class OpenCvRingSums {
   cv::Mat slope_x_, slope_y_, slope_, csgv_, steep_, branch_, half_orders_, orders_;
   cv::Mat padded_u8_, padded_, nine_, column_sums_, ring_, difference_, decay_;
   cv::Mat texture_, picture_, force_x_, force_y_;
+  double highest_ = 0.0;
 };
 
 }  // namespace touchtrial::bench

@@ -3,6 +3,7 @@
 #include "engine/kernels/aligned_rows.hpp"
 #include "engine/kernels/gl_row.hpp"
 #include "engine/kernels/half_gradient.hpp"
+#include "engine/kernels/strips.hpp"
 #include "engine/kernels/texture_sink.hpp"
 #include "engine/order_map.hpp"
 
@@ -36,17 +37,18 @@ void keep_csgv(const HalfGradient& gradient, Plane<float>& csgv) {
   }
 }
 
-/// The orders of the image's rows. Two rows share their orders, and so do two pixels of a row.
+/// The orders of rows of the image, one after the other. Two rows share their orders, and so do two
+/// pixels of a row.
 class OrderRows {
  public:
   explicit OrderRows(const HalfGradient& gradient)
       : gradient_(gradient),
         row_(1, 2 * static_cast<std::size_t>(gradient.width()), kVectorBytes / sizeof(float)) {}
 
-  /// \param y  the rows of the image, one after the other
   const float* row(int y) {
-    if (y % 2 == 0) {
-      order_row(gradient_.row(y / 2), gradient_.width(), gradient_.largest(), row_.row(0));
+    if (y / 2 != made_) {
+      made_ = y / 2;
+      order_row(gradient_.row(made_), gradient_.width(), gradient_.largest(), row_.row(0));
     }
     return row_.row(0);
   }
@@ -54,14 +56,18 @@ class OrderRows {
  private:
   const HalfGradient& gradient_;
   AlignedRows<float> row_;
+  int made_ = -1;
 };
 
-/// Filters all rows of the image.
-/// \param order_of  called with y for all rows, one after the other; returns the order for gl_row()
+/// Filters the rows of one strip of the image.
+/// \param order_of  called with y for the strip's rows, one after the other; returns the order for
+///   gl_row()
 template <typename OrderOf>
-void filter_rows(const GreyImage& image, int radius, TextureSink& sink, OrderOf order_of) {
-  ExtendedRows rows(image, radius);
-  for (int y = 0; y < image.height(); ++y) {
+void filter_rows(const GreyImage& image, int radius, Rows strip, Extraction<float>& result,
+                 OrderOf order_of) {
+  ExtendedRows rows(image, radius, strip.first);
+  TextureSink sink(result);
+  for (int y = strip.first; y < strip.last; ++y) {
     const auto order = order_of(y);
     rows.next_row();
     gl_row(rows, radius, order, sink.row(y), sink.waiting());
@@ -71,12 +77,14 @@ void filter_rows(const GreyImage& image, int radius, TextureSink& sink, OrderOf 
 }
 
 void second_pass(const GreyImage& image, int radius, const HalfGradient& gradient,
-                 TextureSink& sink, Plane<float>& kept_orders) {
-  OrderRows orders(gradient);
-  filter_rows(image, radius, sink, [&](int y) {
-    const float* const order = orders.row(y);
-    if (!kept_orders.empty()) std::copy_n(order, image.width(), kept_orders.row(y).data());
-    return order;
+                 Extraction<float>& result) {
+  for_each_strip(image.height(), image.width(), [&](Rows strip) {
+    OrderRows orders(gradient);
+    filter_rows(image, radius, strip, result, [&](int y) {
+      const float* const order = orders.row(y);
+      if (!result.order.empty()) std::copy_n(order, image.width(), result.order.row(y).data());
+      return order;
+    });
   });
 }
 
@@ -93,12 +101,12 @@ void extract_adaptive(const GreyImage& image, int radius, const WantedPlanes& wa
   reshape_if(wanted.csgv, result.csgv, image.height(), image.width());
   keep_csgv(gradient, result.csgv);
   reshape_if(wanted.order, result.order, image.height(), image.width());
-  TextureSink sink(image.height(), image.width(), wanted, result);
+  shape_planes(image.height(), image.width(), wanted, result);
   if (gradient.largest() < static_cast<float>(kFlatBelowCsgv)) {
-    std::fill(result.order.samples().begin(), result.order.samples().end(), 0.0F);
-    sink.fill_flat();
+    std::ranges::fill(result.order.samples(), 0.0F);
+    fill_flat(result);
   } else {
-    second_pass(image, radius, gradient, sink, result.order);
+    second_pass(image, radius, gradient, result);
   }
 }
 
@@ -110,8 +118,10 @@ void extract_fixed(const GreyImage& image, int radius, double order, const Wante
   reshape_if(wanted.order, result.order, image.height(), image.width());
   std::fill(result.order.samples().begin(), result.order.samples().end(),
             static_cast<float>(order));
-  TextureSink sink(image.height(), image.width(), wanted, result);
-  filter_rows(image, radius, sink, [=](int) { return order; });
+  shape_planes(image.height(), image.width(), wanted, result);
+  for_each_strip(image.height(), image.width(), [&](Rows strip) {
+    filter_rows(image, radius, strip, result, [=](int) { return order; });
+  });
 }
 
 void extract_sub_bands(const GreyImage& image, Extraction<float>& result) {

@@ -254,12 +254,13 @@ HWY_EXPORT(row_of_one_order);
 
 }  // namespace
 
-ExtendedRows::ExtendedRows(const GreyImage& image, int reach)
+ExtendedRows::ExtendedRows(const GreyImage& image, int reach, int first)
     : image_(image),
       reach_(reach),
+      y_(first - 1),
       rows_(2 * static_cast<std::size_t>(reach) + 1, static_cast<std::size_t>(image.width()),
             static_cast<std::size_t>(reach)) {
-  for (int y = -reach; y < reach; ++y) load(y);
+  for (int y = first - reach; y < first + reach; ++y) load(y);
 }
 
 void ExtendedRows::next_row() {

@@ -24,9 +24,10 @@ class ExtendedRows {
  public:
   /// \param image  not empty
   /// \param reach  >= 1; may exceed the image
-  ExtendedRows(const GreyImage& image, int reach);
+  /// \param first  the first row of the series
+  ExtendedRows(const GreyImage& image, int reach, int first = 0);
 
-  /// Moves to the next row, which must exist. The first call moves to row 0.
+  /// Moves to the next row, which must exist. The first call moves to the first row.
   void next_row();
 
   /// The sample in column 0 of the row that lies `offset` below the current one. Columns -reach ..
@@ -46,7 +47,7 @@ class ExtendedRows {
 
   const GreyImage& image_;
   int reach_;
-  int y_ = -1;
+  int y_;
   AlignedRows<std::int16_t> rows_;
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 
 // Compiled once for every target: this file includes itself.
 #undef HWY_TARGET_INCLUDE
@@ -169,27 +170,35 @@ HalfGradient::HalfGradient(const GreyImage& image)
       width_((image.width() + 1) / 2),
       rows_(static_cast<std::size_t>(height_), static_cast<std::size_t>(width_), 0, RowUse::plane) {
   const int strips = (width_ + kStripColumns - 1) / kStripColumns;
-  int first = 0;
-  for (int strip = 1; strip <= strips; ++strip) {
-    const int last = strip == strips ? width_ : first + width_ / strips;
-    compute(image, {first, last});
-    first = last;
-  }
+  std::mutex mutex;
+  for_each_strip(height_, 4 * width_, [&](Rows rows) {
+    float largest = 0.0F;
+    int first = 0;
+    for (int strip = 1; strip <= strips; ++strip) {
+      const int last = strip == strips ? width_ : first + width_ / strips;
+      largest = std::max(largest, compute(image, {first, last}, rows));
+      first = last;
+    }
+    const std::lock_guard lock(mutex);
+    largest_ = std::max(largest_, largest);
+  });
 }
 
-void HalfGradient::compute(const GreyImage& image, Columns columns) {
+float HalfGradient::compute(const GreyImage& image, Columns columns, Rows rows) {
   const Columns wider{std::max(columns.first - 1, 0), std::min(columns.last + 1, width_)};
   ColumnFilter filter(image, wider);
   const SobelState state(wider.count());
-  for (int y = -1; y <= height_; ++y) {
+  float largest = 0.0F;
+  for (int y = rows.first - 1; y <= rows.last; ++y) {
     filter_along_x(filter.row(symmetric_index(y, height_)), wider.count(), state.rows());
-    if (y < 1) continue;
+    if (y < rows.first + 1) continue;
     state.extend(wider.count());
     float* const to = rows_.row(static_cast<std::size_t>(y - 1)) + columns.first;
     const float largest_of_row = HWY_DYNAMIC_DISPATCH(row_of_csgv)(
         state.rows(), columns.first - wider.first, columns.count(), to);
-    largest_ = std::max(largest_, largest_of_row);
+    largest = std::max(largest, largest_of_row);
   }
+  return largest;
 }
 
 void order_row(const float* csgv, int count, float largest, float* out) {

@@ -5,6 +5,7 @@
 
 #include "core/plane.hpp"
 #include "engine/kernels/aligned_rows.hpp"
+#include "engine/kernels/strips.hpp"
 #include "engine/kernels/wavelet_rows.hpp"
 
 #include <cstddef>
@@ -29,7 +30,8 @@ class HalfGradient {
   [[nodiscard]] float largest() const noexcept { return largest_; }
 
  private:
-  void compute(const GreyImage& image, Columns columns);
+  /// \return the largest CSGV of these rows
+  float compute(const GreyImage& image, Columns columns, Rows rows);
 
   int height_;
   int width_;

@@ -17,7 +17,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -36,26 +35,27 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little,
               "fields are written and mapped in the layout that they have in memory");
-static_assert(sizeof(FieldSample) == 3 * sizeof(float) && alignof(FieldSample) == alignof(float) &&
-                  std::is_trivially_copyable_v<FieldSample>,
-              "FieldSample is the file's sample layout");
+constexpr std::uint32_t kFieldVersion = 3;
 
-constexpr std::uint32_t kFieldVersion = 2;
+/// What the heights of a file are, by the model that renders them.
+enum class Layout : std::uint32_t { coefficients = 2, heights = 3 };
 
-/// The kinds of samples that a file may hold.
-enum class Layout : std::uint32_t { surface_and_force = 1, coefficients = 2 };
+Layout layout_of(ModelKind model) {
+  return model == ModelKind::surface ? Layout::coefficients : Layout::heights;
+}
 
 struct Header {
   std::array<char, 8> magic = {'T', 'T', 'F', 'I', 'E', 'L', 'D', '1'};
   std::uint32_t version = kFieldVersion;
-  Layout layout = Layout::surface_and_force;
+  Layout layout = Layout::heights;
   std::uint32_t height_px = 0;
   std::uint32_t width_px = 0;
   double pitch_mm = 0.0;
   double highest = 0.0;
-  std::array<std::uint8_t, 24> reserved{};
+  std::uint32_t neighbourhood = 0;
+  std::array<std::uint8_t, 20> reserved{};
 };
-static_assert(sizeof(Header) == 64, "samples start on a cache line");
+static_assert(sizeof(Header) == 64, "heights start on a cache line");
 
 bool is_pitch(double pitch_mm) {
   return std::isfinite(pitch_mm) && pitch_mm > 0.0;
@@ -70,29 +70,21 @@ Header checked_header(ByteView file, const std::filesystem::path& path) {
     refuse(path, "has field version " + std::to_string(header.version) + ", not " +
                      std::to_string(kFieldVersion));
   }
-  if (header.layout != Layout::surface_and_force && header.layout != Layout::coefficients) {
+  if (header.layout != Layout::heights && header.layout != Layout::coefficients) {
     refuse(path, "has the unknown sample layout " +
                      std::to_string(static_cast<std::uint32_t>(header.layout)));
   }
   if (!is_pitch(header.pitch_mm)) refuse(path, "has a pitch that is not a finite number > 0");
   if (!std::isfinite(header.highest))
     refuse(path, "has a highest point that is not a finite number");
+  const bool is_odd = header.neighbourhood % 2 == 1;
+  if (header.layout == Layout::heights &&
+      (!is_odd || header.neighbourhood < 3 || header.neighbourhood > kLargestNeighbourhood)) {
+    refuse(path, "has the neighbourhood " + std::to_string(header.neighbourhood) +
+                     ", which is not odd and 3 to " + std::to_string(kLargestNeighbourhood));
+  }
   if (header.reserved != Header{}.reserved) refuse(path, "has reserved bytes that are not zero");
   return header;
-}
-
-std::size_t sample_size(Layout layout) {
-  return layout == Layout::coefficients ? sizeof(float) : sizeof(FieldSample);
-}
-
-Layout layout_of(FieldView field) {
-  return field.coefficients.empty() ? Layout::surface_and_force : Layout::coefficients;
-}
-
-/// The bytes of a view's samples or coefficients.
-std::span<const std::byte> samples_of(FieldView field) {
-  return layout_of(field) == Layout::coefficients ? std::as_bytes(field.coefficients)
-                                                  : std::as_bytes(field.samples);
 }
 
 Header header_for(FieldView field) {
@@ -101,11 +93,16 @@ Header header_for(FieldView field) {
     throw std::invalid_argument("encode_field: the field has no size or no pitch");
   }
   Header header;
-  header.layout = layout_of(field);
+  header.layout = layout_of(field.model);
+  if (field.model == ModelKind::paper) {
+    header.neighbourhood = static_cast<std::uint32_t>(field.neighbourhood);
+  }
   const std::int64_t pixels = std::int64_t{geometry.height_px} * geometry.width_px;
-  if (pixels > kMaxImagePixels ||
-      samples_of(field).size() != static_cast<std::size_t>(pixels) * sample_size(header.layout)) {
-    throw std::invalid_argument("encode_field: the samples do not fill the geometry");
+  if (pixels > kMaxImagePixels || field.heights.size() != static_cast<std::size_t>(pixels)) {
+    throw std::invalid_argument("encode_field: the heights do not fill the geometry");
+  }
+  if (!field.other_slopes.empty()) {
+    throw std::invalid_argument("encode_field: a sum of fields has no file");
   }
   header.height_px = static_cast<std::uint32_t>(geometry.height_px);
   header.width_px = static_cast<std::uint32_t>(geometry.width_px);
@@ -121,7 +118,7 @@ Header header_for(FieldView field) {
 
 Bytes encode_field(FieldView field) {
   const Header header = header_for(field);
-  const std::span<const std::byte> samples = samples_of(field);
+  const std::span<const std::byte> samples = std::as_bytes(field.heights);
   Bytes file(sizeof header + samples.size());
   std::memcpy(file.data(), &header, sizeof header);
   std::memcpy(file.data() + sizeof header, samples.data(), samples.size());
@@ -136,20 +133,17 @@ FieldView decode_field(ByteView file, const std::filesystem::path& path) {
     refuse(path, "has the impossible size " + std::to_string(header.width_px) + " x " +
                      std::to_string(header.height_px));
   }
-  if (file.size() - sizeof header != pixels * sample_size(header.layout)) {
+  if (file.size() - sizeof header != pixels * sizeof(float)) {
     refuse(path, "is truncated or overlong");
   }
   FieldView view;
   view.geometry = {header.pitch_mm, static_cast<int>(header.height_px),
                    static_cast<int>(header.width_px)};
   view.highest = header.highest;
-  const std::uint8_t* first = file.data() + sizeof header;
-  const auto count = static_cast<std::size_t>(pixels);
-  if (header.layout == Layout::coefficients) {
-    view.coefficients = {reinterpret_cast<const float*>(first), count};
-  } else {
-    view.samples = {reinterpret_cast<const FieldSample*>(first), count};
-  }
+  view.model = header.layout == Layout::coefficients ? ModelKind::surface : ModelKind::paper;
+  if (view.model == ModelKind::paper) view.neighbourhood = static_cast<int>(header.neighbourhood);
+  view.heights = {reinterpret_cast<const float*>(file.data() + sizeof header),
+                  static_cast<std::size_t>(pixels)};
   return view;
 }
 

@@ -3,8 +3,11 @@
 #include "engine/fourier/real_fft.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <complex>
+#include <cstdint>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -21,30 +24,39 @@ constexpr double square(double value) noexcept {
 
 /// Root mean square over all samples, given the square of each.
 template <typename SquareOf>
-double root_mean(FieldView field, SquareOf square_of) noexcept {
+double root_mean(SampledView field, SquareOf square_of) noexcept {
   if (field.samples.empty()) return 0.0;
   double sum = 0.0;
   for (const FieldSample& sample : field.samples) sum += square_of(sample);
   return std::sqrt(sum / static_cast<double>(field.samples.size()));
 }
 
-/// Appends scale * sqrt(squared_step(left, right) + squared_step(above, below)) / (2 pitch) for
-/// every pixel that has all four neighbours.
+/// Scale * sqrt(squared_step(left, right) + squared_step(above, below)) / (2 pitch) for every pixel
+/// that has all four neighbours.
 template <typename SquaredStep>
-void append_central_differences(FieldView field, double scale, std::vector<float>& pool,
-                                SquaredStep squared_step) {
+std::vector<float> central_differences(SampledView field, double scale, SquaredStep squared_step) {
   const int height = field.geometry.height_px;
   const int width = field.geometry.width_px;
-  if (height < 3 || width < 3) return;
+  if (height < 3 || width < 3) return {};
   const double per_mm = scale / (2.0 * field.geometry.pitch_mm);
+  std::vector<float> norms(static_cast<std::size_t>(height - 2) *
+                           static_cast<std::size_t>(width - 2));
+  float* to = norms.data();
   for (int y = 1; y < height - 1; ++y) {
     const FieldSample* row = field.samples.data() + static_cast<std::size_t>(y) * width;
     for (int x = 1; x < width - 1; ++x) {
       const double squares =
           squared_step(row[x - 1], row[x + 1]) + squared_step(row[x - width], row[x + width]);
-      pool.push_back(static_cast<float>(per_mm * std::sqrt(squares)));
+      *to++ = static_cast<float>(per_mm * std::sqrt(squares));
     }
   }
+  return norms;
+}
+
+/// The place of a value >= 0 in the order of its leading bits: floats sort like their bits.
+constexpr int kPlaceBits = 12;
+std::size_t place_of(float value) noexcept {
+  return std::bit_cast<std::uint32_t>(value) >> (32 - kPlaceBits);
 }
 
 /// Mean of the values that are not 0; 0 if there is none.
@@ -84,28 +96,24 @@ void for_each_power(RealFft<double>& fft, int height, int width, Visit visit) {
 
 }  // namespace
 
-double tangential_rms(FieldView field) noexcept {
+double tangential_rms(SampledView field) noexcept {
   return root_mean(field,
                    [](const FieldSample& s) { return square(s.force_x) + square(s.force_y); });
 }
 
-double normal_rms(FieldView field) noexcept {
-  return root_mean(field, [](const FieldSample& s) { return square(double{s.surface} - 128.0); });
+double height_rms(SampledView field) noexcept {
+  return root_mean(field, [](const FieldSample& s) { return square(s.height); });
 }
 
-double height_rms(FieldView relief) noexcept {
-  return root_mean(relief, [](const FieldSample& s) { return square(s.surface); });
-}
-
-void append_tangential_stiffness(FieldView field, double scale, std::vector<float>& pool) {
-  append_central_differences(field, scale, pool, [](const FieldSample& a, const FieldSample& b) {
+std::vector<float> tangential_stiffness(SampledView field, double scale) {
+  return central_differences(field, scale, [](const FieldSample& a, const FieldSample& b) {
     return square(double{b.force_x} - a.force_x) + square(double{b.force_y} - a.force_y);
   });
 }
 
-void append_normal_stiffness(FieldView field, double scale, std::vector<float>& pool) {
-  append_central_differences(field, scale, pool, [](const FieldSample& a, const FieldSample& b) {
-    return square(double{b.surface} - a.surface);
+std::vector<float> height_stiffness(SampledView field, double scale) {
+  return central_differences(field, scale, [](const FieldSample& a, const FieldSample& b) {
+    return square(double{b.height} - a.height);
   });
 }
 
@@ -125,21 +133,40 @@ double explicit_factor(double gain, std::span<const double> rms, Equalise equali
   return gain * (equalise == Equalise::rms ? mean_of_nonzero(rms) : 1.0);
 }
 
-double typical_stiffness(std::vector<float>& pool) {
-  const double typical = percentile(pool, 0.99);
-  const double largest = percentile(pool, 1.0);
+double typical_stiffness(std::span<const std::vector<float>> pools) {
+  const double typical = percentile(pools, 0.99);
+  const double largest = percentile(pools, 1.0);
   return typical > kLeastShareOfMaximum * largest ? typical : largest;
 }
 
-double percentile(std::vector<float>& pool, double share) {
-  if (pool.empty()) return 0.0;
-  const double position = share * static_cast<double>(pool.size() - 1);
-  const double whole = std::floor(position);
-  const auto middle = pool.begin() + static_cast<std::ptrdiff_t>(whole);
-  std::nth_element(pool.begin(), middle, pool.end());
-  const auto next = std::min_element(middle + 1, pool.end());
-  if (next == pool.end()) return *middle;
-  return *middle + (position - whole) * (double{*next} - *middle);
+double percentile(std::span<const std::vector<float>> pools, double share) {
+  std::vector<std::size_t> counts(std::size_t{1} << kPlaceBits);
+  std::size_t size = 0;
+  for (const std::vector<float>& pool : pools) {
+    for (const float value : pool) ++counts[place_of(value)];
+    size += pool.size();
+  }
+  if (size == 0) return 0.0;
+  const double position = share * static_cast<double>(size - 1);
+  const auto rank = static_cast<std::size_t>(position);
+  std::size_t place = 0;
+  std::size_t below = 0;
+  while (below + counts[place] <= rank) below += counts[place++];
+  // Only values near the rank need sorting, and the smallest of those behind them.
+  std::vector<float> near;
+  near.reserve(counts[place]);
+  float next = std::numeric_limits<float>::infinity();
+  for (const std::vector<float>& pool : pools) {
+    for (const float value : pool) {
+      if (place_of(value) == place) near.push_back(value);
+      if (place_of(value) > place) next = std::min(next, value);
+    }
+  }
+  const auto middle = near.begin() + static_cast<std::ptrdiff_t>(rank - below);
+  std::nth_element(near.begin(), middle, near.end());
+  if (middle + 1 != near.end()) next = *std::min_element(middle + 1, near.end());
+  const double rest = position - static_cast<double>(rank);
+  return rest > 0.0 ? *middle + rest * (double{next} - *middle) : *middle;
 }
 
 std::vector<double> power_shares_above(const Plane<double>& x, const Plane<double>& y,

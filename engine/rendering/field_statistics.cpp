@@ -14,16 +14,28 @@ namespace {
 constexpr double kFinestFeltMm = 1.0;
 constexpr double kVibrationHz = 250.0;
 
-double tangential_percentile(FieldView field, double share) {
-  std::vector<float> pool;
-  pool.reserve(field.samples.size());
-  for (const FieldSample& sample : field.samples) {
-    pool.push_back(static_cast<float>(norm(Vec2{sample.force_x, sample.force_y})));
-  }
-  return percentile(pool, share);
+double tangential_percentile(SampledView field, double share) {
+  std::vector<float> pool(field.samples.size());
+  std::ranges::transform(field.samples, pool.begin(), [](const FieldSample& sample) {
+    const double x = sample.force_x;
+    const double y = sample.force_y;
+    return static_cast<float>(std::sqrt(x * x + y * y));
+  });
+  return percentile({&pool, 1}, share);
 }
 
-void add_power_shares(FieldView field, FieldStatistics& statistics) {
+ForceField<double> force_planes(SampledView field) {
+  const int height = field.geometry.height_px;
+  const int width = field.geometry.width_px;
+  ForceField<double> force{Plane<double>(height, width), Plane<double>(height, width)};
+  for (std::size_t i = 0; i < field.samples.size(); ++i) {
+    force.x.samples()[i] = field.samples[i].force_x;
+    force.y.samples()[i] = field.samples[i].force_y;
+  }
+  return force;
+}
+
+void add_power_shares(SampledView field, FieldStatistics& statistics) {
   const double pitch_mm = field.geometry.pitch_mm;
   std::vector<double> limits_cycles_per_px = {pitch_mm / kFinestFeltMm};
   for (const double speed_mm_per_s : kStrokeSpeedsMmPerS) {
@@ -39,31 +51,21 @@ void add_power_shares(FieldView field, FieldStatistics& statistics) {
 
 LateralField lateral_field(FieldView field, Gains gains) {
   if (field.empty()) throw std::invalid_argument("lateral_field: the field is empty");
-  return parts_of(field.model()).lateral(field, gains);
+  const ModelParts parts = parts_of(field.model);
+  return {force_planes(parts.sampled(field).view()), parts.n_per_grey(field, gains)};
 }
 
 FieldStatistics field_statistics(FieldView field, Gains gains, const RenderingOptions& options) {
   if (field.empty()) throw std::invalid_argument("field_statistics: the field is empty");
-  return parts_of(field.model()).statistics(field, gains, options);
+  return parts_of(field.model).statistics(field, gains, options);
 }
 
-FieldStatistics lateral_statistics(FieldView planes, double n_per_grey) {
+FieldStatistics lateral_statistics(SampledView field, double n_per_grey) {
   FieldStatistics statistics;
-  statistics.tangential_rms_n = n_per_grey * tangential_rms(planes);
-  statistics.tangential_p999_n = n_per_grey * tangential_percentile(planes, 0.999);
-  add_power_shares(planes, statistics);
+  statistics.tangential_rms_n = n_per_grey * tangential_rms(field);
+  statistics.tangential_p999_n = n_per_grey * tangential_percentile(field, 0.999);
+  add_power_shares(field, statistics);
   return statistics;
-}
-
-ForceField<double> force_planes(FieldView planes) {
-  const int height = planes.geometry.height_px;
-  const int width = planes.geometry.width_px;
-  ForceField<double> force{Plane<double>(height, width), Plane<double>(height, width)};
-  for (std::size_t i = 0; i < planes.samples.size(); ++i) {
-    force.x.samples()[i] = planes.samples[i].force_x;
-    force.y.samples()[i] = planes.samples[i].force_y;
-  }
-  return force;
 }
 
 void require_finite_rms(double tangential, double normal) {

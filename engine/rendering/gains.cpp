@@ -18,8 +18,8 @@ void check(std::span<const FieldView> fields, const RenderingOptions& options) {
   if (options.gains && !are_valid(*options.gains)) {
     throw std::invalid_argument("choose_gains: explicit gains must be finite numbers >= 0");
   }
-  if (!std::ranges::all_of(
-          fields, [&](const FieldView& field) { return field.model() == options.model; })) {
+  if (!std::ranges::all_of(fields,
+                           [&](const FieldView& field) { return field.model == options.model; })) {
     throw std::invalid_argument("choose_gains: a field is of another rendering model");
   }
 }

@@ -5,6 +5,7 @@
 
 #include "core/plane.hpp"
 #include "core/vec.hpp"
+#include "engine/rendering/field_measures.hpp"
 #include "engine/rendering/field_statistics.hpp"
 #include "engine/rendering/gains.hpp"
 #include "engine/rendering/texture_field.hpp"
@@ -20,9 +21,12 @@ namespace touchtrial::engine {
 struct ModelParts {
   /// \param smooth  the texture T after the reconstruction filter, grey levels
   TextureField (*make_field)(Plane<double> smooth, const RenderingOptions& options);
+  /// The field at its pixel centres.
+  SampledField (*sampled)(FieldView field);
   StudyGains (*choose_gains)(std::span<const FieldView> fields, const RenderingOptions& options);
   FieldStatistics (*statistics)(FieldView field, Gains gains, const RenderingOptions& options);
-  LateralField (*lateral)(FieldView field, Gains gains);
+  /// Newtons of one grey level per pixel of the lateral force.
+  double (*n_per_grey)(FieldView field, Gains gains) noexcept;
 };
 
 [[nodiscard]] ModelParts parts_of(ModelKind kind) noexcept;
@@ -32,13 +36,10 @@ struct ModelParts {
 /// Defined in surface_model.cpp.
 [[nodiscard]] ModelParts surface_parts() noexcept;
 
-/// The statistics of a lateral force that is proportional to force planes; leaves the others at 0.
-/// \param planes  with samples
+/// The statistics of a lateral force that is proportional to a field's; leaves the others at 0.
+/// \param field  with samples
 /// \param n_per_grey  newtons of one grey level per pixel
-[[nodiscard]] FieldStatistics lateral_statistics(FieldView planes, double n_per_grey);
-
-/// The force planes of a field with samples, grey levels per pixel.
-[[nodiscard]] ForceField<double> force_planes(FieldView planes);
+[[nodiscard]] FieldStatistics lateral_statistics(SampledView field, double n_per_grey);
 
 /// Checks a field for field_statistics by its two rms values.
 /// \throws std::invalid_argument if one of them is not finite

@@ -1,11 +1,17 @@
 #include "engine/rendering/paper_model.hpp"
 
+#include "core/parallel.hpp"
+#include "engine/force_field.hpp"
 #include "engine/rendering/field_measures.hpp"
 #include "engine/rendering/model_parts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <span>
+#include <stdexcept>
 #include <vector>
 
 namespace touchtrial::engine {
@@ -13,34 +19,160 @@ namespace {
 
 /// Texture values at a point between pixels.
 struct Texture {
-  double surface;
-  double force_x;
-  double force_y;
+  double height = 0.0;
+  Vec2 force;
 };
 
-Texture texture_at(const FieldView& field, double x_mm, double y_mm) noexcept {
-  const PlaneGeometry& plane = field.geometry;
+constexpr int kLargestReach = kLargestNeighbourhood / 2;
+
+/// dx / (dx^2 + dy^2) at [dy][dx].
+constexpr auto kPull = [] {
+  std::array<std::array<double, kLargestReach + 1>, kLargestReach + 1> pull{};
+  for (int dy = 0; dy <= kLargestReach; ++dy) {
+    for (int dx = 1; dx <= kLargestReach; ++dx) {
+      pull[dy][dx] = double{1} * dx / (dx * dx + dy * dy);
+    }
+  }
+  return pull;
+}();
+
+/// The tangential force at a pixel's centre, from the definition (docs/method.md, "Force field").
+Vec2 force_at_pixel(const FieldView& field, int y, int x) noexcept {
+  const float* const heights = field.slopes().data();
+  const int width = field.geometry.width_px;
+  const int reach = std::min(field.neighbourhood / 2, kLargestReach);
+  const auto row = [&](int at) { return heights + static_cast<std::size_t>(at) * width; };
+  const double centre = row(y)[x];
+  Vec2 force;
+  for (int dy = -std::min(reach, y); dy <= std::min(reach, field.geometry.height_px - 1 - y);
+       ++dy) {
+    const float* const neighbours = row(y + dy) + x;
+    for (int dx = -std::min(reach, x); dx <= std::min(reach, width - 1 - x); ++dx) {
+      const double difference = centre - neighbours[dx];
+      force.x += difference * std::copysign(kPull[std::abs(dy)][std::abs(dx)], dx);
+      force.y += difference * std::copysign(kPull[std::abs(dx)][std::abs(dy)], dy);
+    }
+  }
+  return force;
+}
+
+/// The same for a neighbourhood of 3, without branches. Neighbours that do not exist are replaced
+/// by some that do, and count nothing.
+Vec2 force_at_any_pixel(const float* heights, const PlaneGeometry& plane, int y, int x) noexcept {
+  const int left = x > 0 ? 1 : 0;
+  const int right = x + 1 < plane.width_px ? 1 : 0;
+  const int up = y > 0 ? 1 : 0;
+  const int down = y + 1 < plane.height_px ? 1 : 0;
+  const float* const middle = heights + static_cast<std::size_t>(y) * plane.width_px + x;
+  const float* const above = middle - std::ptrdiff_t{up} * plane.width_px;
+  const float* const below = middle + std::ptrdiff_t{down} * plane.width_px;
+  const double centre = *middle;
+  /// left * (G_left - G_i) - right * (G_right - G_i) in a row.
+  const auto across = [&](const float* row) {
+    return left * (row[-left] - centre) - right * (row[right] - centre);
+  };
+  const auto along = [&](int dx) {
+    return up * (above[dx] - centre) - down * (below[dx] - centre);
+  };
+  return {across(middle) + 0.5 * (up * across(above) + down * across(below)),
+          along(0) + 0.5 * (left * along(-left) + right * along(right))};
+}
+
+/// A point among pixels: between `left` and `left + right` (0 or 1) by the share `to_right`, and
+/// likewise along y.
+struct Place {
+  int left;
+  int top;
+  int right;
+  int down;
+  double to_right;
+  double to_down;
+};
+
+Place place_in(const PlaneGeometry& plane, double x_mm, double y_mm) noexcept {
   const Vec2 px = plane.to_px(x_mm, y_mm);
   const double x = std::clamp(px.x, 0.0, plane.width_px - 1.0);
   const double y = std::clamp(px.y, 0.0, plane.height_px - 1.0);
   const auto left = static_cast<int>(x);
   const auto top = static_cast<int>(y);
-  const std::size_t right_step = left + 1 < plane.width_px ? 1 : 0;
-  const std::size_t down_step = top + 1 < plane.height_px ? plane.width_px : 0;
-  const FieldSample* corner =
-      field.samples.data() + static_cast<std::size_t>(top) * plane.width_px + left;
-  const double to_right = x - left;
-  const double to_down = y - top;
-  const auto mixed = [&](float FieldSample::*value) {
-    const double a = corner->*value;
-    const double b = corner[right_step].*value;
-    const double c = corner[down_step].*value;
-    const double d = corner[down_step + right_step].*value;
-    const double upper = a + to_right * (b - a);
-    const double lower = c + to_right * (d - c);
-    return upper + to_down * (lower - upper);
+  return {left,     top,    left + 1 < plane.width_px ? 1 : 0, top + 1 < plane.height_px ? 1 : 0,
+          x - left, y - top};
+}
+
+/// Bilinear between the four pixels, given the value at (y, x) of each.
+template <typename ValueAt>
+auto mixed(const Place& at, ValueAt value_at) noexcept {
+  const auto along_row = [&](int y) {
+    const auto left = value_at(y, at.left);
+    if (at.to_right == 0.0) return left;  // as in the outer half pixel
+    return left + at.to_right * (value_at(y, at.left + at.right) - left);
   };
-  return {mixed(&FieldSample::surface), mixed(&FieldSample::force_x), mixed(&FieldSample::force_y)};
+  const auto upper = along_row(at.top);
+  if (at.to_down == 0.0) return upper;
+  return upper + at.to_down * (along_row(at.top + at.down) - upper);
+}
+
+double height_at(const FieldView& field, const Place& at) noexcept {
+  return mixed(at, [&](int y, int x) {
+    return double{field.heights[static_cast<std::size_t>(y) * field.geometry.width_px + x]};
+  });
+}
+
+/// Whether the point's four pixels have all their neighbours in a neighbourhood of 3.
+bool is_inside(const PlaneGeometry& plane, const Place& at) noexcept {
+  return at.left >= 1 && at.top >= 1 && at.left + 2 < plane.width_px &&
+         at.top + 2 < plane.height_px;
+}
+
+/// Two numbers side by side in a register.
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+
+/// Height and force with the usual neighbourhood of 3 inside the plane. There a pixel's own height
+/// cancels in each pair of opposite neighbours, so the force is [1 2 1] / 2 across and [1 0 -1]
+/// along its component; mixing two neighbouring pixels gives weights for four rows and columns.
+/// \param heights  of the slopes; the texture's height is theirs
+Texture texture_inside(const float* heights, std::size_t stride, const Place& at) noexcept {
+  const double v = at.to_down;
+  const double u = at.to_right;
+  const Pair smooth_first = {0.5 * (1.0 - u), 1.0 - 0.5 * u};
+  const Pair smooth_last = {0.5 + 0.5 * u, 0.5 * u};
+  const float* row = heights + static_cast<std::size_t>(at.top - 1) * stride +
+                     static_cast<std::size_t>(at.left - 1);
+  Pair steps{};   // along x, smoothed along y
+  Pair smooth{};  // along x, and then steps along y
+  const auto add_row = [&](double smooth_down, double step_down) {
+    const Pair first = {row[0], row[1]};
+    const Pair last = {row[2], row[3]};
+    steps += smooth_down * (first - last);
+    smooth += step_down * (smooth_first * first + smooth_last * last);
+    row += stride;
+  };
+  const auto between = [&] { return row[1] + u * (double{row[2]} - row[1]); };
+  add_row(0.5 * (1.0 - v), 1.0 - v);
+  const double upper = between();
+  add_row(1.0 - 0.5 * v, v);
+  const double lower = between();
+  add_row(0.5 + 0.5 * v, v - 1.0);
+  add_row(0.5 * v, -v);
+  return {upper + v * (lower - upper),
+          {(1.0 - u) * steps[0] + u * steps[1], smooth[0] + smooth[1]}};
+}
+
+Texture texture_at(const FieldView& field, double x_mm, double y_mm) noexcept {
+  const Place at = place_in(field.geometry, x_mm, y_mm);
+  if (field.neighbourhood != 3) {
+    return {height_at(field, at),
+            mixed(at, [&](int y, int x) { return force_at_pixel(field, y, x); })};
+  }
+  if (!is_inside(field.geometry, at)) {
+    return {height_at(field, at), mixed(at, [&](int y, int x) {
+              return force_at_any_pixel(field.slopes().data(), field.geometry, y, x);
+            })};
+  }
+  Texture texture =
+      texture_inside(field.slopes().data(), static_cast<std::size_t>(field.geometry.width_px), at);
+  if (!field.other_slopes.empty()) texture.height = height_at(field, at);
+  return texture;
 }
 
 }  // namespace
@@ -49,29 +181,31 @@ PaperModel::PaperModel(FieldView field, const RenderingOptions& options, Gains g
     : field_(field),
       stiffness_n_per_mm_(options.stiffness_n_per_mm),
       damping_n_s_per_mm_(options.damping_n_s_per_mm),
-      reference_grey_(options.reference_grey),
+      reference_height_(options.reference_grey - kMidGrey),
       max_force_n_(options.max_force_n),
-      gains_(gains) {}
+      gains_(gains) {
+  if (field.model != ModelKind::paper) field_.heights = {};  // the flat wall
+}
 
 Vec3 PaperModel::force_n(Vec3 position_mm, Vec3 velocity_mm_s) const noexcept {
   if (!is_finite(position_mm) || !is_finite(velocity_mm_s)) return {};
   double elastic_n = -stiffness_n_per_mm_ * position_mm.z;
-  Texture texture{reference_grey_, 0.0, 0.0};
-  if (field_.geometry.contains(position_mm.x, position_mm.y) && !field_.samples.empty()) {
+  Vec2 texture;
+  if (field_.geometry.contains(position_mm.x, position_mm.y) && !field_.empty()) {
     if (is_out_of_reach(elastic_n)) return {};
-    texture = texture_at(field_, position_mm.x, position_mm.y);
-    elastic_n += gains_.normal_n * (texture.surface - reference_grey_);
+    const Texture felt = texture_at(field_, position_mm.x, position_mm.y);
+    texture = felt.force;
+    elastic_n += gains_.normal_n * (felt.height - reference_height_);
   }
   const double normal_n = elastic_n - damping_n_s_per_mm_ * velocity_mm_s.z;
   if (!(elastic_n > 0.0 && normal_n > 0.0)) return {};
   return limited_in_norm(
-      {gains_.tangential_n * texture.force_x, gains_.tangential_n * texture.force_y, normal_n},
-      max_force_n_);
+      {gains_.tangential_n * texture.x, gains_.tangential_n * texture.y, normal_n}, max_force_n_);
 }
 
 bool PaperModel::is_out_of_reach(double wall_n) const noexcept {
-  if (reference_grey_ == 0.0 && wall_n <= 0.0) return true;
-  return wall_n + gains_.normal_n * (field_.highest - reference_grey_) <= 0.0;
+  if (reference_height_ == -kMidGrey && wall_n <= 0.0) return true;
+  return wall_n + gains_.normal_n * (field_.highest - reference_height_) <= 0.0;
 }
 
 // What make_texture_field, choose_gains, field_statistics and lateral_field do for this model.
@@ -80,24 +214,41 @@ namespace {
 
 constexpr double kSlackOfGains = 1e-9;  // relative; less above the budget is rounding
 
-/// The filter and the force depend on differences only, so the level of 128 is added last and costs
-/// no digits.
 TextureField field_of_paper(Plane<double> smooth, const RenderingOptions& options) {
-  const ForceField<double> force = tangential_force(smooth, options.neighbourhood);
-  Plane<FieldSample> samples(smooth.height(), smooth.width());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples.samples()[i] = {static_cast<float>(128.0 + smooth.samples()[i]),
-                            static_cast<float>(force.x.samples()[i]),
-                            static_cast<float>(force.y.samples()[i])};
+  if (options.neighbourhood < 3 || options.neighbourhood % 2 == 0 ||
+      options.neighbourhood > kLargestNeighbourhood) {
+    throw std::invalid_argument("make_texture_field: the neighbourhood must be odd, 3 to 31");
   }
-  return {{options.pitch_mm, smooth.height(), smooth.width()}, std::move(samples)};
+  return TextureField({.geometry = {options.pitch_mm, smooth.height(), smooth.width()},
+                       .model = ModelKind::paper,
+                       .neighbourhood = options.neighbourhood},
+                      converted<float>(smooth));
 }
 
-/// One of the two forces that have a gain.
+Plane<double> plane_of(std::span<const float> samples, const PlaneGeometry& geometry) {
+  Plane<double> plane(geometry.height_px, geometry.width_px);
+  std::ranges::copy(samples, plane.samples().begin());
+  return plane;
+}
+
+SampledField sampled_paper(FieldView field) {
+  const ForceField<double> force =
+      tangential_force(plane_of(field.slopes(), field.geometry), field.neighbourhood);
+  SampledField sampled{field.geometry, {field.geometry.height_px, field.geometry.width_px}};
+  for (std::size_t i = 0; i < field.heights.size(); ++i) {
+    sampled.samples.samples()[i] = {field.heights[i], static_cast<float>(force.x.samples()[i]),
+                                    static_cast<float>(force.y.samples()[i])};
+  }
+  return sampled;
+}
+
+/// What the two gains, k_t and c, depend on. One entry for each field.
 struct Channel {
-  double (*rms)(FieldView) noexcept;
-  void (*append_stiffness)(FieldView, double, std::vector<float>&);
-  std::optional<double> explicit_gain;
+  std::vector<double> rms;
+  std::vector<double> factors;                ///< equalising
+  std::vector<std::vector<float>> stiffness;  ///< with the factors; empty for a flat field
+
+  explicit Channel(std::size_t fields) : rms(fields), factors(fields), stiffness(fields) {}
 };
 
 struct ChannelGains {
@@ -105,29 +256,14 @@ struct ChannelGains {
   bool over_budget = false;
 };
 
-/// The pooled stiffness of all fields that are not flat, each with its scale.
-double pooled_stiffness(std::span<const FieldView> fields, const std::vector<double>& rms,
-                        const std::vector<double>& scale, const Channel& channel) {
-  std::size_t pixels = 0;
-  for (const FieldView& field : fields) pixels += field.samples.size();
-  std::vector<float> pool;
-  pool.reserve(pixels);
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    if (rms[i] > 0.0) channel.append_stiffness(fields[i], scale[i], pool);
-  }
-  return typical_stiffness(pool);
-}
-
-ChannelGains channel_gains(std::span<const FieldView> fields, const RenderingOptions& options,
-                           const Channel& channel) {
-  std::vector<double> rms;
-  for (const FieldView& field : fields) rms.push_back(channel.rms(field));
-  ChannelGains gains{equalising_factors(rms, options.equalise)};
-  const double stiffness = pooled_stiffness(fields, rms, gains.of_field, channel);
+ChannelGains channel_gains(const Channel& channel, std::optional<double> explicit_gain,
+                           const RenderingOptions& options) {
+  ChannelGains gains{channel.factors};
+  const double stiffness = typical_stiffness(channel.stiffness);
   const double budget = options.texture_stiffness_n_per_mm;
   double factor = stiffness > 0.0 ? budget / stiffness : 0.0;
-  if (channel.explicit_gain) {
-    factor = explicit_factor(*channel.explicit_gain, rms, options.equalise);
+  if (explicit_gain) {
+    factor = explicit_factor(*explicit_gain, channel.rms, options.equalise);
     gains.over_budget = factor * stiffness > budget * (1.0 + kSlackOfGains);
   }
   for (double& gain : gains.of_field) gain *= factor;
@@ -135,42 +271,53 @@ ChannelGains channel_gains(std::span<const FieldView> fields, const RenderingOpt
 }
 
 StudyGains gains_of_paper(std::span<const FieldView> fields, const RenderingOptions& options) {
-  Channel tangential{tangential_rms, append_tangential_stiffness, std::nullopt};
-  Channel normal{normal_rms, append_normal_stiffness, std::nullopt};
-  if (options.gains) {
-    tangential.explicit_gain = options.gains->tangential_n;
-    normal.explicit_gain = options.gains->normal_n;
-  }
-  const ChannelGains along = channel_gains(fields, options, tangential);
-  const ChannelGains across = channel_gains(fields, options, normal);
+  Channel along(fields.size());
+  Channel across(fields.size());
+  in_parallel(0, fields.size(), [&](std::size_t i) {
+    const SampledField sampled = sampled_paper(fields[i]);
+    const auto measure = [&](Channel& channel, double (*rms)(SampledView) noexcept,
+                             std::vector<float> (*stiffness)(SampledView, double)) {
+      channel.rms[i] = rms(sampled.view());
+      channel.factors[i] = equalising_factors({&channel.rms[i], 1}, options.equalise).front();
+      if (channel.rms[i] > 0.0)
+        channel.stiffness[i] = stiffness(sampled.view(), channel.factors[i]);
+    };
+    measure(along, tangential_rms, tangential_stiffness);
+    measure(across, height_rms, height_stiffness);
+  });
+  std::optional<Gains> given = options.gains;
+  const ChannelGains tangential =
+      channel_gains(along, given ? std::optional(given->tangential_n) : std::nullopt, options);
+  const ChannelGains normal =
+      channel_gains(across, given ? std::optional(given->normal_n) : std::nullopt, options);
   StudyGains gains;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    gains.of_field.push_back({along.of_field[i], across.of_field[i]});
+    gains.of_field.push_back({tangential.of_field[i], normal.of_field[i]});
   }
-  gains.over_budget = along.over_budget || across.over_budget;
+  gains.over_budget = tangential.over_budget || normal.over_budget;
   return gains;
 }
 
 FieldStatistics statistics_of_paper(FieldView field, Gains gains,
                                     const RenderingOptions& /*options*/) {
-  require_finite_rms(tangential_rms(field), normal_rms(field));
-  FieldStatistics statistics = lateral_statistics(field, gains.tangential_n);
-  statistics.normal_rms_n = gains.normal_n * normal_rms(field);
-  std::vector<float> pool;
-  pool.reserve(field.samples.size());
-  append_tangential_stiffness(field, 1.0, pool);
-  statistics.stiffness_p99_n_per_mm = gains.tangential_n * percentile(pool, 0.99);
+  const SampledField sampled = sampled_paper(field);
+  const SampledView view = sampled.view();
+  require_finite_rms(tangential_rms(view), height_rms(view));
+  FieldStatistics statistics = lateral_statistics(view, gains.tangential_n);
+  statistics.normal_rms_n = gains.normal_n * height_rms(view);
+  const std::vector<float> stiffness = tangential_stiffness(view, 1.0);
+  statistics.stiffness_p99_n_per_mm = gains.tangential_n * percentile({&stiffness, 1}, 0.99);
   return statistics;
 }
 
-LateralField lateral_of_paper(FieldView field, Gains gains) {
-  return {force_planes(field), gains.tangential_n};
+double n_per_grey_of_paper(FieldView /*field*/, Gains gains) noexcept {
+  return gains.tangential_n;
 }
 
 }  // namespace
 
 ModelParts paper_parts() noexcept {
-  return {field_of_paper, gains_of_paper, statistics_of_paper, lateral_of_paper};
+  return {field_of_paper, sampled_paper, gains_of_paper, statistics_of_paper, n_per_grey_of_paper};
 }
 
 }  // namespace touchtrial::engine

@@ -13,19 +13,22 @@ namespace touchtrial::engine {
 class PaperModel {
  public:
   /// Reads no sample: of a mapped field, only the pages that the stylus touches are loaded.
-  /// \param field  its height_px * width_px samples must outlive the model
+  /// \param field  its heights must outlive the model
   /// \param options,gains  finite, in the ranges of their types
   PaperModel(FieldView field, const RenderingOptions& options, Gains gains) noexcept;
 
   /// Contact lasts while the elastic force k * depth + c * (G - G_ref) is positive; with
   /// reference_grey 0, depth must be positive too. In contact F_N = elastic force - damping * v_z
-  /// and F_T = k_t * (force planes), both bilinear between pixel centres and constant across the
-  /// outer half pixel. The norm of the total is limited to max_force_n; its direction is kept.
+  /// and F_T = k_t * tangential_force(heights), both bilinear between pixel centres and constant
+  /// across the outer half pixel; G = 128 + T. No plane of forces is stored: they follow from the
+  /// heights round the stylus. The norm of the total is limited to max_force_n; its direction is
+  /// kept.
   /// Damping neither pulls (where F_N <= 0 there is no force at all) nor acts above the surface.
   /// Beyond the plane's edge: the flat wall, k * depth - damping * v_z.
   /// Without contact the force is zero; the field is not read where no surface could reach the
   /// hand. A position or velocity that is not finite gives zero force.
-  /// No allocation, lock or exception. Any number of threads. Cost: about 20 ns.
+  /// No allocation, lock or exception. Any number of threads. Cost: about 20 ns; with wider
+  /// neighbourhoods about 4 n^2 ns.
   [[nodiscard]] Vec3 force_n(Vec3 position_mm, Vec3 velocity_mm_s) const noexcept;
 
  private:
@@ -35,7 +38,7 @@ class PaperModel {
   FieldView field_;
   double stiffness_n_per_mm_;
   double damping_n_s_per_mm_;
-  double reference_grey_;
+  double reference_height_;  ///< G_ref - 128
   double max_force_n_;
   Gains gains_;
 };

@@ -54,6 +54,12 @@ enum class Equalise { none, rms };
 /// a hand that explores a texture.
 inline constexpr double kStatedLoadN = 0.7;
 
+/// G of a texture of 0, grey levels: G = 128 + T.
+inline constexpr double kMidGrey = 128.0;
+
+/// The largest neighbourhood of a tangential force that a model evaluates at the stylus.
+inline constexpr int kLargestNeighbourhood = 31;
+
 /// The "rendering" object of the study file.
 struct RenderingOptions {
   ModelKind model = ModelKind::paper;
@@ -66,7 +72,7 @@ struct RenderingOptions {
   Equalise equalise = Equalise::none;
   double reference_grey = 128.0;  ///< paper: G_ref, grey levels, 0 .. 255
   double friction = 0.0;          ///< surface: friction coefficient mu, >= 0; 0: no friction
-  int neighbourhood = 3;          ///< paper: n, odd, >= 3
+  int neighbourhood = 3;          ///< paper: n, odd, 3 .. kLargestNeighbourhood
   double max_force_n = 3.3;       ///< limit of the total force's norm, > 0
 
   friend bool operator==(const RenderingOptions&, const RenderingOptions&) = default;

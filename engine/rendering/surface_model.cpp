@@ -1,5 +1,6 @@
 #include "engine/rendering/surface_model.hpp"
 
+#include "core/parallel.hpp"
 #include "engine/rendering/cubic_spline.hpp"
 #include "engine/rendering/field_measures.hpp"
 #include "engine/rendering/model_parts.hpp"
@@ -40,7 +41,7 @@ SurfaceModel::SurfaceModel(FieldView field, const RenderingOptions& options, Gai
       friction_(options.friction),
       bristle_n_per_mm_(options.texture_stiffness_n_per_mm / std::numbers::sqrt2),
       max_force_n_(options.max_force_n),
-      mm_per_grey_(field.coefficients.empty() ? 0.0 : gains.height_mm),
+      mm_per_grey_(field.empty() || field.model != ModelKind::surface ? 0.0 : gains.height_mm),
       // A B-spline is a weighted mean of its coefficients, and so never above the highest.
       reach_mm_(mm_per_grey_ > 0.0 ? std::max(0.0, mm_per_grey_ * field.highest) : 0.0) {}
 
@@ -80,7 +81,7 @@ SurfaceModel::Relief SurfaceModel::relief_at(double x_mm, double y_mm) const noe
   const Fade down = on_plane ? Fade{} : fade_at(y_mm, plane.height_mm());
   if (across.value == 0.0 || down.value == 0.0) return {};
   const Vec2 px = plane.to_px(x_mm, y_mm);
-  const SplinePoint h = spline_at(field_.coefficients, plane.height_px, plane.width_px, px.x, px.y);
+  const SplinePoint h = spline_at(field_.heights, plane.height_px, plane.width_px, px.x, px.y);
   const double per_mm = mm_per_grey_ / plane.pitch_mm;
   const double height_mm = mm_per_grey_ * h.value;
   return {height_mm * across.value * down.value,
@@ -108,7 +109,7 @@ std::vector<Column> columns_around(FieldView field, int y) {
   const int width = field.geometry.width_px;
   const auto row = [&](int at) {
     const int inside = std::clamp(at, 0, field.geometry.height_px - 1);
-    return field.coefficients.data() + static_cast<std::size_t>(inside) * width;
+    return field.heights.data() + static_cast<std::size_t>(inside) * width;
   };
   const float* above = row(y - 1);
   const float* middle = row(y);
@@ -123,25 +124,24 @@ std::vector<Column> columns_around(FieldView field, int y) {
   return columns;
 }
 
-/// The spline of a field at its pixel centres, in the form of samples: `surface` is the height h in
-/// grey levels (without 128), the force is minus the gradient of h, grey levels per pixel.
-/// Cost: some 5 ns a pixel.
-TextureField relief_of(FieldView field) {
+/// The spline of a field at its pixel centres; the force is minus the gradient of h. Cost: some 5
+/// ns a pixel.
+SampledField relief_of(FieldView field) {
   const PlaneGeometry& plane = field.geometry;
-  Plane<FieldSample> relief(plane.height_px, plane.width_px);
+  SampledField relief{plane, {plane.height_px, plane.width_px}};
   for (int y = 0; y < plane.height_px; ++y) {
     const std::vector<Column> columns = columns_around(field, y);
     for (int x = 0; x < plane.width_px; ++x) {
       const Column& left = columns[std::max(x - 1, 0)];
       const Column& middle = columns[x];
       const Column& right = columns[std::min(x + 1, plane.width_px - 1)];
-      relief.at(y, x) = {
+      relief.samples.at(y, x) = {
           static_cast<float>((left.value + 4.0 * middle.value + right.value) / 6.0),
           static_cast<float>(-0.5 * (double{right.value} - left.value)),
           static_cast<float>(-(left.slope + 4.0 * middle.slope + right.slope) / 6.0)};
     }
   }
-  return {plane, std::move(relief)};
+  return relief;
 }
 
 /// The lateral force at a neighbour of a pixel, at the height at which the pixel meets the stated
@@ -149,20 +149,21 @@ TextureField relief_of(FieldView field) {
 Vec2 force_beside(const FieldSample& middle, const FieldSample& beside, double lateral,
                   double normal) noexcept {
   const double load_n =
-      std::max(0.0, kStatedLoadN + normal * (double{beside.surface} - middle.surface));
+      std::max(0.0, kStatedLoadN + normal * (double{beside.height} - middle.height));
   return {lateral * load_n * beside.force_x, lateral * load_n * beside.force_y};
 }
 
-/// Appends, for every interior pixel of a relief, the Frobenius norm of the in-plane Jacobian, in
-/// N/mm: central differences, over the pitch, of the model's lateral force at the height above the
-/// plane at which the pixel in the middle meets a load of kStatedLoadN.
+/// The Frobenius norm of the in-plane Jacobian at every interior pixel of a relief, in N/mm:
+/// central differences, over the pitch, of the model's lateral force at the height above the plane
+/// at which the pixel in the middle meets a load of kStatedLoadN.
 /// \param mm_per_grey  alpha
 /// \param wall_n_per_mm  k; 0 leaves only the part that is linear in alpha
-void append_stiffness_at_load(FieldView relief, double mm_per_grey, double wall_n_per_mm,
-                              std::vector<float>& pool) {
+std::vector<float> stiffness_at_load(SampledView relief, double mm_per_grey, double wall_n_per_mm) {
   const int height = relief.geometry.height_px;
   const int width = relief.geometry.width_px;
-  if (height < 3 || width < 3) return;
+  if (height < 3 || width < 3) return {};
+  std::vector<float> pool;
+  pool.reserve(relief.samples.size());
   const double lateral = mm_per_grey / relief.geometry.pitch_mm;
   const double normal = mm_per_grey * wall_n_per_mm;
   for (int y = 1; y < height - 1; ++y) {
@@ -178,6 +179,7 @@ void append_stiffness_at_load(FieldView relief, double mm_per_grey, double wall_
       pool.push_back(static_cast<float>(step_n / (2.0 * relief.geometry.pitch_mm)));
     }
   }
+  return pool;
 }
 
 /// Newtons of one grey level per pixel of the relief's force, at the stated load.
@@ -191,9 +193,9 @@ class Surfaces {
  public:
   Surfaces(std::span<const FieldView> fields, const RenderingOptions& options)
       : fields_(fields), wall_n_per_mm_(options.stiffness_n_per_mm) {
-    for (const FieldView& field : fields) {
-      rms_.push_back(tangential_rms(relief_of(field).view()));
-    }
+    rms_.resize(fields.size());
+    in_parallel(0, fields.size(),
+                [&](std::size_t i) { rms_[i] = tangential_rms(relief_of(fields[i]).view()); });
     factor_ = equalising_factors(rms_, options.equalise);
   }
 
@@ -202,31 +204,30 @@ class Surfaces {
 
   /// Stiffness of the normal force, N/mm, per mm per grey level of alpha.
   [[nodiscard]] double normal_stiffness() const {
-    return pooled([&](FieldView relief, double factor, std::vector<float>& pool) {
-      append_normal_stiffness(relief, factor * wall_n_per_mm_, pool);
+    return pooled([&](SampledView relief, double factor) {
+      return height_stiffness(relief, factor * wall_n_per_mm_);
     });
   }
   /// Stiffness of the lateral force at the stated load, N/mm, at this alpha.
   [[nodiscard]] double lateral_stiffness(double mm_per_grey) const {
-    return pooled([&](FieldView relief, double factor, std::vector<float>& pool) {
-      append_stiffness_at_load(relief, mm_per_grey * factor, wall_n_per_mm_, pool);
+    return pooled([&](SampledView relief, double factor) {
+      return stiffness_at_load(relief, mm_per_grey * factor, wall_n_per_mm_);
     });
   }
   /// The same per mm per grey level of alpha, in the limit of small heights.
   [[nodiscard]] double linear_stiffness() const {
-    return pooled([](FieldView relief, double factor, std::vector<float>& pool) {
-      append_stiffness_at_load(relief, factor, 0.0, pool);
-    });
+    return pooled(
+        [](SampledView relief, double factor) { return stiffness_at_load(relief, factor, 0.0); });
   }
 
  private:
-  template <typename Append>
-  [[nodiscard]] double pooled(Append append) const {
-    std::vector<float> pool;
-    for (std::size_t i = 0; i < fields_.size(); ++i) {
-      if (rms_[i] > 0.0) append(relief_of(fields_[i]).view(), factor_[i], pool);
-    }
-    return typical_stiffness(pool);
+  template <typename StiffnessOf>
+  [[nodiscard]] double pooled(StiffnessOf stiffness_of) const {
+    std::vector<std::vector<float>> pools(fields_.size());
+    in_parallel(0, fields_.size(), [&](std::size_t i) {
+      if (rms_[i] > 0.0) pools[i] = stiffness_of(relief_of(fields_[i]).view(), factor_[i]);
+    });
+    return typical_stiffness(pools);
   }
 
   std::span<const FieldView> fields_;
@@ -289,31 +290,26 @@ StudyGains gains_of_surfaces(std::span<const FieldView> fields, const RenderingO
 TextureField field_of_surface(Plane<double> smooth, const RenderingOptions& options) {
   const PlaneGeometry geometry{options.pitch_mm, smooth.height(), smooth.width()};
   const Plane<double> exact = cubic_spline_coefficients(std::move(smooth));
-  return {geometry, converted<float>(exact)};
+  return TextureField({.geometry = geometry, .model = ModelKind::surface}, converted<float>(exact));
 }
 
 FieldStatistics statistics_of_surface(FieldView field, Gains gains,
                                       const RenderingOptions& options) {
-  const TextureField relief = relief_of(field);
-  const FieldView view = relief.view();
+  const SampledField relief = relief_of(field);
+  const SampledView view = relief.view();
   require_finite_rms(tangential_rms(view), height_rms(view));
   FieldStatistics statistics = lateral_statistics(view, newtons_per_grey(field, gains));
   statistics.normal_rms_n = options.stiffness_n_per_mm * gains.height_mm * height_rms(view);
-  std::vector<float> pool;
-  pool.reserve(field.coefficients.size());
-  append_stiffness_at_load(view, gains.height_mm, options.stiffness_n_per_mm, pool);
-  statistics.stiffness_p99_n_per_mm = percentile(pool, 0.99);
+  const std::vector<float> stiffness =
+      stiffness_at_load(view, gains.height_mm, options.stiffness_n_per_mm);
+  statistics.stiffness_p99_n_per_mm = percentile({&stiffness, 1}, 0.99);
   return statistics;
-}
-
-LateralField lateral_of_surface(FieldView field, Gains gains) {
-  return {force_planes(relief_of(field).view()), newtons_per_grey(field, gains)};
 }
 
 }  // namespace
 
 ModelParts surface_parts() noexcept {
-  return {field_of_surface, gains_of_surfaces, statistics_of_surface, lateral_of_surface};
+  return {field_of_surface, relief_of, gains_of_surfaces, statistics_of_surface, newtons_per_grey};
 }
 
 }  // namespace touchtrial::engine

@@ -49,7 +49,7 @@ inline constexpr double kRimMm = 2.0;
 class SurfaceModel {
  public:
   /// Reads no coefficient.
-  /// \param field  its height_px * width_px coefficients must outlive the model
+  /// \param field  its heights must outlive the model
   /// \param options,gains  finite, in the ranges of their types
   SurfaceModel(FieldView field, const RenderingOptions& options, Gains gains) noexcept;
 

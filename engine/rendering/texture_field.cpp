@@ -6,7 +6,9 @@
 #include "engine/rendering/model_parts.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
 namespace touchtrial::engine {
@@ -21,25 +23,13 @@ void check_options(const RenderingOptions& options) {
   }
 }
 
-/// The largest value, or the first that is not finite.
-template <typename Range, typename HeightOf>
-double highest_in(const Range& range, HeightOf height_of) noexcept {
-  float highest = height_of(range.front());
-  for (const auto& entry : range) {
-    const float height = height_of(entry);
-    if (!std::isfinite(height)) return height;
-    highest = std::max(highest, height);
-  }
-  return highest;
-}
-
 /// \throws std::invalid_argument if the fields cannot be added
 void check_parts(std::span<const FieldWithGains> parts) {
   if (parts.empty()) throw std::invalid_argument("applied_sum: there is no field");
   const FieldView& first = parts.front().field;
   for (const FieldWithGains& part : parts) {
     if (part.field.empty() || part.field.geometry != first.geometry ||
-        part.field.model() != first.model()) {
+        part.field.model != first.model || part.field.neighbourhood != first.neighbourhood) {
       throw std::invalid_argument("applied_sum: a field is empty or differs from the first");
     }
   }
@@ -56,21 +46,27 @@ void centre(Plane<double>& heights) {
 }  // namespace
 
 double highest_of(FieldView field) noexcept {
-  if (!field.coefficients.empty()) {
-    return highest_in(field.coefficients, [](float coefficient) { return coefficient; });
+  // On the bits, which sort like whole numbers once those of negative floats are inverted: such a
+  // loop vectorises, one over floats does not.
+  constexpr std::int32_t kMagnitude = 0x7fffffff;
+  constexpr std::int32_t kInfinite = 0x7f800000;
+  const auto in_order = [](std::int32_t bits) { return bits ^ ((bits >> 31) & kMagnitude); };
+  std::int32_t highest = std::numeric_limits<std::int32_t>::min();
+  std::int32_t largest = 0;
+  for (const float height : field.heights) {
+    const auto bits = std::bit_cast<std::int32_t>(height);
+    highest = std::max(highest, in_order(bits));
+    largest = std::max(largest, bits & kMagnitude);
   }
-  return highest_in(field.samples, [](const FieldSample& sample) { return sample.surface; });
+  return std::bit_cast<float>(largest >= kInfinite ? largest : in_order(highest));
 }
 
-TextureField::TextureField(PlaneGeometry geometry, Plane<FieldSample> samples)
-    : geometry_(geometry),
-      samples_(std::move(samples)),
-      highest_(highest_of({geometry, samples_.samples()})) {}
-
-TextureField::TextureField(PlaneGeometry geometry, Plane<float> coefficients)
-    : geometry_(geometry),
-      coefficients_(std::move(coefficients)),
-      highest_(highest_of({geometry, {}, coefficients_.samples()})) {}
+TextureField::TextureField(const FieldView& like, Plane<float> heights, Plane<float> other_slopes)
+    : like_{.geometry = like.geometry, .model = like.model, .neighbourhood = like.neighbourhood},
+      heights_(std::move(heights)),
+      other_slopes_(std::move(other_slopes)) {
+  if (!heights_.empty()) like_.highest = highest_of(view());
+}
 
 TextureField make_texture_field(const Plane<double>& texture, const RenderingOptions& options) {
   check_options(options);
@@ -82,35 +78,20 @@ TextureField make_texture_field(const Plane<double>& texture, const RenderingOpt
 
 TextureField applied_sum(std::span<const FieldWithGains> parts) {
   check_parts(parts);
-  const PlaneGeometry plane = parts.front().field.geometry;
-  const bool is_surface = parts.front().field.model() == ModelKind::surface;
+  const FieldView& first = parts.front().field;
+  const PlaneGeometry plane = first.geometry;
+  const bool is_surface = first.model == ModelKind::surface;
   Plane<double> heights(plane.height_px, plane.width_px);
-  Plane<FieldSample> samples(is_surface ? 0 : plane.height_px, is_surface ? 0 : plane.width_px,
-                             {0.0F, 0.0F, 0.0F});
+  Plane<double> slopes(is_surface ? 0 : plane.height_px, is_surface ? 0 : plane.width_px);
+  const auto add = [](Plane<double>& sum, double gain, std::span<const float> part) {
+    for (std::size_t i = 0; i < sum.size(); ++i) sum.samples()[i] += gain * double{part[i]};
+  };
   for (const auto& [field, gains] : parts) {
-    for (std::size_t i = 0; i < heights.size(); ++i) {
-      if (is_surface) {
-        heights.samples()[i] += gains.height_mm * static_cast<double>(field.coefficients[i]);
-        continue;
-      }
-      const FieldSample& sample = field.samples[i];
-      FieldSample& sum = samples.samples()[i];
-      heights.samples()[i] += gains.normal_n * (static_cast<double>(sample.surface) - 128.0);
-      sum.force_x += static_cast<float>(gains.tangential_n * static_cast<double>(sample.force_x));
-      sum.force_y += static_cast<float>(gains.tangential_n * static_cast<double>(sample.force_y));
-    }
+    add(heights, is_surface ? gains.height_mm : gains.normal_n, field.heights);
+    add(slopes, gains.tangential_n, is_surface ? std::span<const float>() : field.slopes());
   }
   centre(heights);
-  if (is_surface) {
-    Plane<float> coefficients(plane.height_px, plane.width_px);
-    std::ranges::transform(heights.samples(), coefficients.samples().begin(),
-                           [](double height) { return static_cast<float>(height); });
-    return {plane, std::move(coefficients)};
-  }
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    samples.samples()[i].surface = static_cast<float>(128.0 + heights.samples()[i]);
-  }
-  return {plane, std::move(samples)};
+  return TextureField(first, converted<float>(heights), converted<float>(slopes));
 }
 
 double lateral_rms(FieldView field) {

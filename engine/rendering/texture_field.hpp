@@ -11,53 +11,52 @@
 
 namespace touchtrial::engine {
 
-/// One pixel of a field for the model `paper`, before gains.
-struct FieldSample {
-  float surface = 128.0F;  ///< G after the reconstruction filter, grey levels
-  float force_x = 0.0F;    ///< tangential force to the right, grey levels per pixel
-  float force_y = 0.0F;    ///< tangential force downwards in the image, grey levels per pixel
-};
-
 /// A field owned by another object: a mapped file of a pack, or a TextureField. It holds no name.
-/// It has either samples (`paper`) or spline coefficients (`surface`), row-major,
-/// geometry.height_px x geometry.width_px of them; a flat wall without texture has neither.
+/// It has one plane of heights, row-major, geometry.height_px x geometry.width_px of them; a flat
+/// wall without texture has none. Forces follow from the heights at the stylus.
 struct FieldView {
   PlaneGeometry geometry;
-  std::span<const FieldSample> samples = {};
-  /// Coefficients of the cubic B-spline through T after the reconstruction filter, grey levels
-  std::span<const float> coefficients = {};
-  /// Upper bound of all surface values (or coefficients), grey levels: a model need not read the
-  /// field above it. Infinite if unknown.
+  ModelKind model = ModelKind::paper;  ///< the model that can render the field
+  /// `paper`: T after the reconstruction filter. `surface`: coefficients of the cubic B-spline
+  /// through it. Grey levels.
+  std::span<const float> heights = {};
+  /// `paper`: the heights whose tangential force is felt, where they are others: in a sum of fields
+  /// whose two gains differ. As many as `heights`, or none.
+  std::span<const float> other_slopes = {};
+  int neighbourhood = 3;  ///< `paper`: side of the tangential force's neighbourhood, pixels
+  /// Upper bound of `heights`: a model need not read the field above it. Infinite if unknown.
   double highest = std::numeric_limits<double>::infinity();
 
-  /// The model that can render the field.
-  [[nodiscard]] ModelKind model() const noexcept {
-    return coefficients.empty() ? ModelKind::paper : ModelKind::surface;
+  [[nodiscard]] bool empty() const noexcept { return heights.empty(); }
+  /// The heights from which the tangential force follows.
+  [[nodiscard]] std::span<const float> slopes() const noexcept {
+    return other_slopes.empty() ? heights : other_slopes;
   }
-  [[nodiscard]] bool empty() const noexcept { return samples.empty() && coefficients.empty(); }
 };
 
-/// The largest surface value or coefficient of a field; not finite if any of them is not. Reads the
-/// whole field.
+/// The largest height of a field; not finite if any of them is not. Reads the whole field.
 /// \pre the field is not empty
 [[nodiscard]] double highest_of(FieldView field) noexcept;
 
 /// A field in memory.
 class TextureField {
  public:
-  TextureField(PlaneGeometry geometry, Plane<FieldSample> samples);
-  /// \param coefficients  as FieldView::coefficients
-  TextureField(PlaneGeometry geometry, Plane<float> coefficients);
+  /// \param like  geometry, model and neighbourhood of the field; its spans are not used
+  /// \param heights,other_slopes  as in FieldView
+  explicit TextureField(const FieldView& like, Plane<float> heights,
+                        Plane<float> other_slopes = {});
 
   [[nodiscard]] FieldView view() const noexcept {
-    return {geometry_, samples_.samples(), coefficients_.samples(), highest_};
+    FieldView view = like_;
+    view.heights = heights_.samples();
+    view.other_slopes = other_slopes_.samples();
+    return view;
   }
 
  private:
-  PlaneGeometry geometry_;
-  Plane<FieldSample> samples_;
-  Plane<float> coefficients_;
-  double highest_;
+  FieldView like_;  ///< without spans
+  Plane<float> heights_;
+  Plane<float> other_slopes_;
 };
 
 /// A field with gains, for applied_sum.
@@ -73,13 +72,13 @@ struct FieldWithGains {
 /// \throws std::invalid_argument if there is none, or they differ
 [[nodiscard]] TextureField applied_sum(std::span<const FieldWithGains> parts);
 
-/// Root mean square of a field's lateral force, or slope, in units of its samples.
+/// Root mean square of a field's lateral force, or slope, in units of its heights per pixel.
 [[nodiscard]] double lateral_rms(FieldView field);
 
-/// Builds a field for the options' model from an extracted texture T. `paper`: the surface 128 + T
-/// after the reconstruction filter, and its tangential force with the options' neighbourhood.
-/// `surface`: the filtered T as a spline, without force planes. Computed in double, stored as
-/// float. Thread-safe.
+/// Builds a field for the options' model from an extracted texture T: T after the reconstruction
+/// filter, and for `surface` the spline through it. Computed in double, stored as float: the
+/// tangential force of the stored heights differs from that of the exact ones by no more than 3e-7
+/// of the largest height. Thread-safe.
 /// \param texture  T, grey levels, finite, at least 1 x 1
 /// \throws std::invalid_argument if the texture is empty or not finite, or pitch, filter or
 ///   neighbourhood is out of range

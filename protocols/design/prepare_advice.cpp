@@ -33,7 +33,7 @@ std::vector<SkippedWork> skipped_work(const Study& study, std::uintmax_t pixels)
                        "the " + study.protocol_name() +
                            " protocol presents only its first method, " +
                            study.methods.front().label,
-                       pixels * sizeof(engine::FieldSample)});
+                       pixels * sizeof(float)});
   }
   return skipped;
 }

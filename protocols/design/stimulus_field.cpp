@@ -12,7 +12,7 @@ namespace {
 
 /// Raise this number with every change of the engine that changes fields; all packs are then
 /// rebuilt.
-constexpr std::string_view kComputation = "touchtrial field 2";
+constexpr std::string_view kComputation = "touchtrial field 3";
 
 /// The rendering options that the field's bytes depend on. Gains are not among them, because they
 /// are applied when the field is felt.
@@ -29,14 +29,13 @@ engine::TextureField rendered(Plane<double> texture, const engine::RenderingOpti
   engine::StageTimer timer(log);
   engine::TextureField field = engine::make_texture_field(texture, rendering);
   const double sigma_px = to_px(rendering.filter_mm, rendering.pitch_mm);
-  const bool has_forces = rendering.model == engine::ModelKind::paper;
-  timer.done(has_forces ? "filter, forces" : "filter, spline",
+  timer.done(rendering.model == engine::ModelKind::paper ? "filter" : "filter, spline",
              sigma_px > 0.0 ? "a Gaussian of " + number_text(sigma_px) + " px first"
                             : "unfiltered: there is nothing to filter, or filter_mm is 0",
-             field.view().samples.size_bytes() + field.view().coefficients.size_bytes());
-  if (!has_forces && log != nullptr) {
-    log->skip("force planes", "the model surface needs the height alone",
-              texture.size() * (sizeof(engine::FieldSample) - sizeof(float)));
+             field.view().heights.size_bytes());
+  if (log != nullptr) {
+    log->skip("force planes", "forces follow from the heights at the stylus",
+              2 * field.view().heights.size_bytes());
   }
   return field;
 }
@@ -138,14 +137,8 @@ BuiltField build_field(const GreyImage& image, const engine::ExtractionOptions& 
 }
 
 bool is_flat(engine::FieldView field) noexcept {
-  if (field.model() == engine::ModelKind::surface) {
-    const float level = field.coefficients.front();
-    return std::ranges::all_of(field.coefficients, [level](float c) { return c == level; });
-  }
-  const float level = field.samples.front().surface;
-  return std::ranges::all_of(field.samples, [level](const engine::FieldSample& sample) {
-    return sample.force_x == 0.0F && sample.force_y == 0.0F && sample.surface == level;
-  });
+  const float level = field.heights.front();
+  return std::ranges::all_of(field.heights, [level](float height) { return height == level; });
 }
 
 }  // namespace touchtrial::design

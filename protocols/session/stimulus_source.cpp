@@ -30,7 +30,7 @@ StimulusSource::StimulusSource(const engine::Pack& pack, const engine::Rendering
   for (const engine::PackEntry& entry : pack.manifest().entries) {
     fields_.push_back(pack.map(entry.code));
     const engine::FieldView view = fields_.back().view();
-    if (view.model() != rendering.model) {
+    if (view.model != rendering.model) {
       throw FileError(one_line(folder_ + ": field " + entry.code +
                                " is of another rendering model than the study; run `touchtrial "
                                "prepare`"));
@@ -50,9 +50,7 @@ StimulusSource::StimulusSource(const engine::Pack& pack, const engine::Rendering
 
 void StimulusSource::fetch() const noexcept {
   for (const engine::MappedField& field : fields_) {
-    const engine::FieldView view = field.view();
-    touch(std::as_bytes(view.samples));
-    touch(std::as_bytes(view.coefficients));
+    touch(std::as_bytes(field.view().heights));
   }
 }
 

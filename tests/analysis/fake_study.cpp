@@ -59,7 +59,7 @@ std::filesystem::path fake_pack(const design::StudyKey& key, const std::filesyst
   std::filesystem::create_directories(folder);
   engine::PackManifest manifest{key.study_id, {}};
   for (const design::KeyedStimulus& stimulus : key.stimuli) {
-    const engine::TextureField field({0.2, 2, 2}, Plane<engine::FieldSample>(2, 2));
+    const engine::TextureField field({.geometry = {0.2, 2, 2}}, Plane<float>(2, 2));
     const Digest checksum = engine::write_field(folder, stimulus.code, field.view());
     manifest.entries.push_back({stimulus.code, checksum, {}, {0.01, 0.02}});
   }

@@ -1,5 +1,6 @@
 #include "analysis/measures/rms_alone.hpp"
 
+#include "engine/rendering/field_statistics.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
@@ -12,15 +13,31 @@ using namespace touchtrial::engine;
 
 namespace {
 
+/// A ramp of a slope whose force is `left` grey levels per pixel in the first fifth of the columns,
+/// and `right` in the others.
 TextureField field_of(int side, double left, double right) {
-  Plane<FieldSample> samples(side, side);
+  Plane<float> heights(side, side);
   for (int y = 0; y < side; ++y) {
+    double height = 0.0;
     for (int x = 0; x < side; ++x) {
-      const double force = x < side / 5 ? left : right;
-      samples.at(y, x) = {128.0F, static_cast<float>(0.6 * force), static_cast<float>(0.8 * force)};
+      heights.at(y, x) = static_cast<float>(height);
+      height -= (x < side / 5 ? left : right) / 4.0;
     }
   }
-  return {PlaneGeometry{0.2, side, side}, std::move(samples)};
+  return TextureField({.geometry = {0.2, side, side}}, std::move(heights));
+}
+
+/// The strength of a patch of known forces, from the definition.
+double strength_of(FieldView field, int first_y, int first_x, int patch, double tangential_n) {
+  const ForceField<double> force = lateral_field(field, {}).force;
+  double squares = 0.0;
+  for (int y = first_y; y < first_y + patch; ++y) {
+    for (int x = first_x; x < first_x + patch; ++x) {
+      squares += std::pow(tangential_n * force.x.at(y, x), 2) +
+                 std::pow(tangential_n * force.y.at(y, x), 2);
+    }
+  }
+  return 0.5 * std::log(squares / (patch * patch));
 }
 
 }  // namespace
@@ -29,9 +46,9 @@ TEST_CASE("a patch's strength is the logarithm of its rms force in newtons") {
   const TextureField field = field_of(52, 10.0, 20.0);
   const std::vector<double> strengths = patch_strengths(field.view(), 0.01, 1e-9);
   REQUIRE(strengths.size() == 25);
-  CHECK(strengths[0] == Approx(std::log(0.1)));
-  CHECK(strengths[1] == Approx(std::log(0.2)));
-  CHECK(strengths[24] == Approx(std::log(0.2)));
+  CHECK(strengths[0] == Approx(strength_of(field.view(), 0, 0, 10, 0.01)));
+  CHECK(strengths[7] == Approx(std::log(0.2)));  // inside, where the force is 20 throughout
+  CHECK(strengths[1] == Approx(strength_of(field.view(), 0, 10, 10, 0.01)));
   CHECK(patch_strengths(field_of(20, 0.0, 0.0).view(), 0.01, 0.002)[7] == Approx(std::log(0.002)));
   CHECK_THROWS_AS(patch_strengths(field_of(4, 1.0, 1.0).view(), 0.01, 0.002),
                   std::invalid_argument);

@@ -4,6 +4,7 @@
 #include "engine/example_images.hpp"
 #include "engine/force_field.hpp"
 #include "engine/gl_texture.hpp"
+#include "engine/kernels/strips.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/extraction_reference.hpp"
 #include "support/catch.hpp"
@@ -14,6 +15,8 @@
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
+
+#include <tbb/task_arena.h>
 
 namespace touchtrial {
 namespace {
@@ -187,7 +190,7 @@ TEST_CASE("the adaptive kernels give the by-products of double on every target")
 TEST_CASE(
     "an image whose planes are written past the caches has the same texture, "
     "picture and force on every target") {
-  const GreyImage image = cloth_image({301, 299});
+  const GreyImage image = cloth_image({651, 619});
   const Plane<double> truth = engine::extract_texture<double>(image, adaptive_options(2)).texture;
   on_every_simd_target([&] {
     engine::WantedPlanes wanted;
@@ -199,6 +202,27 @@ TEST_CASE(
     const auto force = engine::tangential_force(result.texture, 3);
     CHECK(result.force.x == force.x);
     CHECK(result.force.y == force.y);
+  });
+}
+
+TEST_CASE("a megapixel is extracted by several threads at once, to the same digits as by one") {
+  const GreyImage image = cloth_image({1003, 1009});
+  REQUIRE(static_cast<std::int64_t>(image.size()) >= engine::kThreadsFromPixels);
+  engine::WantedPlanes wanted;
+  wanted.picture = wanted.order = wanted.csgv = true;
+  const auto truth = engine::extract_texture<double>(image, adaptive_options(2), wanted);
+  on_every_simd_target([&] {
+    const auto result = engine::extract_texture<float>(image, adaptive_options(2), wanted);
+    CHECK(largest_difference(result.texture, truth.texture) < kPhotographTolerance);
+    CHECK(largest_relative_difference(result.csgv, truth.csgv) < 5e-7);
+    CHECK(result.picture == engine::texture_picture(result.texture));
+    engine::Extraction<float> alone;
+    tbb::task_arena one(1);
+    one.execute([&] { engine::extract_texture_into(image, adaptive_options(2), wanted, alone); });
+    CHECK(result.texture == alone.texture);
+    CHECK(result.order == alone.order);
+    CHECK(result.csgv == alone.csgv);
+    CHECK(result.picture == alone.picture);
   });
 }
 

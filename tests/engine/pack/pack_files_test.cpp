@@ -34,15 +34,17 @@ std::string refusal_of(const Bytes& file) {
 }
 
 TEST_CASE("encode_field lays the header and the samples out as documented") {
-  const std::vector<engine::FieldSample> samples = {{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}};
-  const Bytes file = engine::encode_field({{0.25, 1, 2}, samples});
-  REQUIRE(file.size() == 64 + 2 * 12);
+  const std::vector<float> heights = {1.0F, 4.0F};
+  const Bytes file =
+      engine::encode_field({.geometry = {0.25, 1, 2}, .heights = heights, .neighbourhood = 5});
+  REQUIRE(file.size() == 64 + 2 * 4);
   CHECK(text_of(ByteView(file).first(8)) == "TTFIELD1");
-  CHECK(to_hex(ByteView(file).subspan(8, 16)) == "02000000010000000100000002000000");
+  CHECK(to_hex(ByteView(file).subspan(8, 16)) == "03000000030000000100000002000000");
   CHECK(to_hex(ByteView(file).subspan(24, 8)) == "000000000000d03f");
   CHECK(to_hex(ByteView(file).subspan(32, 8)) == "0000000000001040");
-  CHECK(std::all_of(file.begin() + 40, file.begin() + 64, [](std::uint8_t b) { return b == 0; }));
-  CHECK(to_hex(ByteView(file).subspan(64, 12)) == "0000803f0000004000004040");
+  CHECK(to_hex(ByteView(file).subspan(40, 4)) == "05000000");
+  CHECK(std::all_of(file.begin() + 44, file.begin() + 64, [](std::uint8_t b) { return b == 0; }));
+  CHECK(to_hex(ByteView(file).subspan(64, 8)) == "0000803f00008040");
 }
 
 TEST_CASE("decode_field gives back what encode_field was given") {
@@ -54,21 +56,20 @@ TEST_CASE("decode_field gives back what encode_field was given") {
   CHECK(read.geometry.height_px == height);
   CHECK(read.geometry.width_px == width);
   CHECK(read.geometry.pitch_mm == 0.2);
-  REQUIRE(read.samples.size() == field.view().samples.size());
-  CHECK(std::memcmp(read.samples.data(), field.view().samples.data(), read.samples.size_bytes()) ==
-        0);
+  CHECK(read.model == engine::ModelKind::paper);
+  CHECK(read.neighbourhood == 3);
+  CHECK(std::ranges::equal(read.heights, field.view().heights));
 }
 
-TEST_CASE("a surface's file holds coefficients alone, a third of the bytes") {
+TEST_CASE("the fields of both models are one plane, and say whose they are") {
   const engine::TextureField surface = random_surface(20, 17, 1);
   const Bytes file = engine::encode_field(surface.view());
   REQUIRE(file.size() == 64 + 20 * 17 * 4);
-  CHECK(engine::encode_field(random_field(20, 17, 1).view()).size() == 64 + 20 * 17 * 12);
+  CHECK(engine::encode_field(random_field(20, 17, 1).view()).size() == file.size());
   const engine::FieldView read = engine::decode_field(file, kFieldPath);
-  CHECK(read.model() == engine::ModelKind::surface);
-  CHECK(read.samples.empty());
+  CHECK(read.model == engine::ModelKind::surface);
   CHECK(read.highest == surface.view().highest);
-  CHECK(std::ranges::equal(read.coefficients, surface.view().coefficients));
+  CHECK(std::ranges::equal(read.heights, surface.view().heights));
 }
 
 TEST_CASE("decoding a field and making its model read the header's page only") {
@@ -79,18 +80,17 @@ TEST_CASE("decoding a field and making its model read the header's page only") {
   guarded.leave_only({0});
   const engine::FieldView read = engine::decode_field(guarded.as<std::uint8_t>(), kFieldPath);
   engine::RenderingOptions options;
-  options.model = read.model();
+  options.model = read.model;
   const engine::RenderingModel model(read, options, {0.01, 0.01, 0.01});
   engine::Bristle touch;
   CHECK(model.force_n({9.0, 8.0, 50.0}, {}, touch) == Vec3{});
-  CHECK(guarded.pages() > 4);
+  CHECK(guarded.pages() > 2);
 }
 
 TEST_CASE("the header says how high a field reaches") {
   const engine::TextureField field = random_field(9, 8, 3);
   float highest = 0.0F;
-  for (const engine::FieldSample& sample : field.view().samples)
-    highest = std::max(highest, sample.surface);
+  for (const float height : field.view().heights) highest = std::max(highest, height);
   CHECK(engine::decode_field(engine::encode_field(field.view()), kFieldPath).highest ==
         double{highest});
   engine::FieldView unlooked = field.view();
@@ -101,12 +101,16 @@ TEST_CASE("the header says how high a field reaches") {
 
 TEST_CASE("decode_field refuses a field of the former version, and a height that is not a number") {
   const Bytes file = engine::encode_field(random_field(2, 3, 4).view());
-  CHECK(refusal_of(with_value(file, 8, std::uint32_t{1})) ==
+  CHECK(refusal_of(with_value(file, 8, std::uint32_t{2})) ==
         kFieldPath.string() +
-            ": has field version 1, not 2; copy the pack again or rebuild it with `touchtrial "
+            ": has field version 2, not 3; copy the pack again or rebuild it with `touchtrial "
             "prepare`");
   CHECK(refusal_of(with_value(file, 32, std::nan("")))
             .find("has a highest point that is not a finite number") != std::string::npos);
+  for (const std::uint32_t side : {0U, 1U, 4U, 33U, 0xffffffffU}) {
+    CHECK(refusal_of(with_value(file, 40, side)).find("which is not odd and 3 to 31") !=
+          std::string::npos);
+  }
 }
 
 TEST_CASE("encode_field makes files of one size from fields of one size") {
@@ -116,14 +120,17 @@ TEST_CASE("encode_field makes files of one size from fields of one size") {
 }
 
 TEST_CASE("encode_field refuses a view that is not a whole field") {
-  std::vector<engine::FieldSample> samples(6);
+  std::vector<float> heights(6);
+  const auto with = [&](PlaneGeometry geometry) {
+    return engine::FieldView{.geometry = geometry, .heights = heights};
+  };
   CHECK_THROWS_AS(engine::encode_field({}), std::invalid_argument);
-  CHECK_THROWS_AS(engine::encode_field({{0.2, 2, 4}, samples}), std::invalid_argument);
-  CHECK_THROWS_AS(engine::encode_field({{0.2, -2, -3}, samples}), std::invalid_argument);
-  CHECK_THROWS_AS(engine::encode_field({{0.0, 2, 3}, samples}), std::invalid_argument);
-  CHECK_THROWS_AS(engine::encode_field({{std::nan(""), 2, 3}, samples}), std::invalid_argument);
-  samples[4].surface = std::numeric_limits<float>::quiet_NaN();
-  CHECK_THROWS_AS(engine::encode_field({{0.2, 2, 3}, samples}), std::invalid_argument);
+  CHECK_THROWS_AS(engine::encode_field(with({0.2, 2, 4})), std::invalid_argument);
+  CHECK_THROWS_AS(engine::encode_field(with({0.2, -2, -3})), std::invalid_argument);
+  CHECK_THROWS_AS(engine::encode_field(with({0.0, 2, 3})), std::invalid_argument);
+  CHECK_THROWS_AS(engine::encode_field(with({std::nan(""), 2, 3})), std::invalid_argument);
+  heights[4] = std::numeric_limits<float>::quiet_NaN();
+  CHECK_THROWS_AS(engine::encode_field(with({0.2, 2, 3})), std::invalid_argument);
 }
 
 TEST_CASE("decode_field refuses a file that is cut anywhere or too long") {

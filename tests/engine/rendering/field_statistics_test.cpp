@@ -40,8 +40,10 @@ std::vector<engine::FieldSample> waves(std::initializer_list<Wave> parts, double
   return samples;
 }
 
-engine::FieldView view_of(const std::vector<engine::FieldSample>& samples) {
-  return {{0.2, 100, 100}, samples};
+/// The statistics of the lateral force of these samples.
+engine::FieldStatistics statistics_of(const std::vector<engine::FieldSample>& samples,
+                                      double n_per_grey = 1.0) {
+  return engine::lateral_statistics({{0.2, 100, 100}, samples}, n_per_grey);
 }
 
 /// Share of power above a limit, from the discrete Fourier transform's definition.
@@ -92,37 +94,33 @@ TEST_CASE("power_shares_above is zero for a constant field") {
         std::vector<double>{0.0});
 }
 
-TEST_CASE("field_statistics gives the rms of a wave and of the surface in newtons") {
-  std::vector<engine::FieldSample> samples = waves({{2.0, 5, 0}});
-  for (std::size_t i = 0; i < samples.size(); ++i) samples[i].surface = i % 2 == 0 ? 131.F : 125.F;
+TEST_CASE("field_statistics gives the rms of a wave and of the heights in newtons") {
+  CHECK(statistics_of(waves({{2.0, 5, 0}}), 0.01).tangential_rms_n ==
+        Approx(0.01 * 2.0 / std::sqrt(2.0)).epsilon(1e-6));
+  std::vector<float> heights(100 * 100);
+  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = i % 2 == 0 ? 3.0F : -3.0F;
   const engine::FieldStatistics statistics =
-      engine::field_statistics(view_of(samples), {0.01, 0.02});
-  CHECK(statistics.tangential_rms_n == Approx(0.01 * 2.0 / std::sqrt(2.0)).epsilon(1e-6));
+      engine::field_statistics(view_of_heights(heights, 100, 100), {0.01, 0.02});
   CHECK(statistics.normal_rms_n == Approx(0.02 * 3.0).epsilon(1e-12));
 }
 
 TEST_CASE("field_statistics counts the power of waves shorter than a millimetre") {
   // 20 cycles across 20 mm are exactly 1 mm, which is not below it.
-  CHECK(engine::field_statistics(view_of(waves({{1.0, 20, 0}})), {1.0, 0.0}).share_below_1_mm ==
-        Approx(0.0).margin(1e-9));
-  CHECK(engine::field_statistics(view_of(waves({{1.0, 0, 21}})), {1.0, 0.0}).share_below_1_mm ==
-        Approx(1.0).epsilon(1e-9));
+  CHECK(statistics_of(waves({{1.0, 20, 0}})).share_below_1_mm == Approx(0.0).margin(1e-9));
+  CHECK(statistics_of(waves({{1.0, 0, 21}})).share_below_1_mm == Approx(1.0).epsilon(1e-9));
   // 15 and 15 cycles make a wave of 21.2 cycles along the diagonal.
-  CHECK(engine::field_statistics(view_of(waves({{1.0, 15, 15}})), {1.0, 0.0}).share_below_1_mm ==
-        Approx(1.0).epsilon(1e-9));
+  CHECK(statistics_of(waves({{1.0, 15, 15}})).share_below_1_mm == Approx(1.0).epsilon(1e-9));
   const auto mixed = waves({{std::sqrt(3.0), 10, 3}, {1.0, 30, 7}}, 5.0);
-  CHECK(engine::field_statistics(view_of(mixed), {1.0, 0.0}).share_below_1_mm ==
-        Approx(0.25).epsilon(1e-6));
+  CHECK(statistics_of(mixed).share_below_1_mm == Approx(0.25).epsilon(1e-6));
 }
 
 TEST_CASE("field_statistics counts the power over 250 Hz at each stroke speed") {
   // 1.5 cycles/mm are felt at 75, 150 and 300 Hz; 3 cycles/mm at 150, 300 and 600 Hz.
-  const auto slow = engine::field_statistics(view_of(waves({{1.0, 30, 0}})), {1.0, 0.0});
+  const auto slow = statistics_of(waves({{1.0, 30, 0}}));
   CHECK(slow.share_above_250_hz[0] == Approx(0.0).margin(1e-9));
   CHECK(slow.share_above_250_hz[1] == Approx(0.0).margin(1e-9));
   CHECK(slow.share_above_250_hz[2] == Approx(1.0).epsilon(1e-9));
-  const auto both =
-      engine::field_statistics(view_of(waves({{1.0, 30, 0}, {1.0, 35, 49}})), {1.0, 0.0});
+  const auto both = statistics_of(waves({{1.0, 30, 0}, {1.0, 35, 49}}));
   CHECK(both.share_above_250_hz[0] == Approx(0.0).margin(1e-9));
   CHECK(both.share_above_250_hz[1] == Approx(0.5).epsilon(1e-6));
   CHECK(both.share_above_250_hz[2] == Approx(1.0).epsilon(1e-9));
@@ -141,7 +139,7 @@ TEST_CASE("field_statistics finds the 99.9th percentile of the force") {
   std::vector<engine::FieldSample> samples(2001);
   for (int i = 0; i <= 2000; ++i) samples[i].force_y = static_cast<float>((i * 7) % 2001);
   const engine::FieldStatistics statistics =
-      engine::field_statistics({{0.2, 3, 667}, samples}, {0.5, 0.0});
+      engine::lateral_statistics({{0.2, 3, 667}, samples}, 0.5);
   CHECK(statistics.tangential_p999_n == Approx(0.5 * 1998.0).epsilon(1e-12));
 }
 
@@ -167,9 +165,10 @@ TEST_CASE("field_statistics is zero throughout for a flat field of any size") {
 
 TEST_CASE("field_statistics refuses an empty field and samples that are not finite") {
   CHECK_THROWS_AS(engine::field_statistics({}, {}), std::invalid_argument);
-  std::vector<engine::FieldSample> samples(9);
-  samples[4].surface = std::numeric_limits<float>::infinity();
-  CHECK_THROWS_AS(engine::field_statistics({{0.2, 3, 3}, samples}, {}), std::invalid_argument);
+  std::vector<float> heights(9);
+  heights[4] = std::numeric_limits<float>::infinity();
+  CHECK_THROWS_AS(engine::field_statistics(view_of_heights(heights, 3, 3), {}),
+                  std::invalid_argument);
 }
 
 TEST_CASE("the lateral field of either model has the rms that its statistics state") {

@@ -19,8 +19,9 @@ std::vector<double> stiffness_slowly(engine::FieldView field,
                                      double gain) {
   const int height = field.geometry.height_px;
   const int width = field.geometry.width_px;
+  const engine::SampledField samples = sampled(field);
   const auto at = [&](int y, int x) -> const engine::FieldSample& {
-    return field.samples[static_cast<std::size_t>(y) * width + x];
+    return samples.samples.at(y, x);
   };
   std::vector<double> norms;
   for (int y = 1; y + 1 < height; ++y) {
@@ -52,7 +53,7 @@ Stiffness pooled_p99(const std::vector<engine::TextureField>& fields,
     const engine::Gains gain = gains.of_field[i];
     const auto along = stiffness_slowly(
         view, {&engine::FieldSample::force_x, &engine::FieldSample::force_y}, gain.tangential_n);
-    const auto across = stiffness_slowly(view, {&engine::FieldSample::surface}, gain.normal_n);
+    const auto across = stiffness_slowly(view, {&engine::FieldSample::height}, gain.normal_n);
     tangential.insert(tangential.end(), along.begin(), along.end());
     normal.insert(normal.end(), across.begin(), across.end());
   }
@@ -85,19 +86,38 @@ engine::TextureField unfiltered(int height, int width, Texture texture) {
   return engine::make_texture_field(plane, options);
 }
 
+double percentile_of(const std::vector<float>& pool, double share) {
+  return engine::percentile({&pool, 1}, share);
+}
+
+TEST_CASE("percentile of several pools is that of all their values, sorted") {
+  RandomStream random(3, "pools");
+  const int scale = GENERATE(1, 40);  // many equal values, or few
+  std::vector<std::vector<float>> pools(3);
+  std::vector<double> all;
+  for (int i = 0; i < 5000; ++i) {
+    const double value = std::floor(scale * random.uniform(0.0, 1.0)) * std::exp(random.normal());
+    pools[static_cast<std::size_t>(i) % 3].push_back(static_cast<float>(value));
+    all.push_back(pools[static_cast<std::size_t>(i) % 3].back());
+  }
+  pools.emplace_back();
+  const double share = GENERATE(0.0, 0.1, 0.5, 0.9, 0.99, 0.9991, 1.0);
+  CHECK(engine::percentile(pools, share) == Approx(percentile_slowly(all, share)).epsilon(1e-12));
+}
+
 TEST_CASE("percentile interpolates linearly between order statistics") {
   std::vector<float> hundred;
   for (int i = 100; i >= 0; --i) hundred.push_back(static_cast<float>(i));
-  CHECK(engine::percentile(hundred, 0.99) == 99.0);
-  CHECK(engine::percentile(hundred, 0.0) == 0.0);
-  CHECK(engine::percentile(hundred, 1.0) == 100.0);
+  CHECK(percentile_of(hundred, 0.99) == 99.0);
+  CHECK(percentile_of(hundred, 0.0) == 0.0);
+  CHECK(percentile_of(hundred, 1.0) == 100.0);
   std::vector<float> four = {40.0F, 10.0F, 30.0F, 20.0F};
-  CHECK(engine::percentile(four, 0.5) == 25.0);
-  CHECK(engine::percentile(four, 0.99) == Approx(39.7).epsilon(1e-12));
+  CHECK(percentile_of(four, 0.5) == 25.0);
+  CHECK(percentile_of(four, 0.99) == Approx(39.7).epsilon(1e-12));
   std::vector<float> one = {7.0F};
-  CHECK(engine::percentile(one, 0.99) == 7.0);
+  CHECK(percentile_of(one, 0.99) == 7.0);
   std::vector<float> none;
-  CHECK(engine::percentile(none, 0.99) == 0.0);
+  CHECK(percentile_of(none, 0.99) == 0.0);
 }
 
 TEST_CASE("choose_gains finds the gains of a parabola and of a ramp by hand") {
@@ -136,15 +156,18 @@ TEST_CASE("choose_gains equalises the rms force of all fields") {
   const std::vector<engine::TextureField> fields = three_fields();
   const engine::StudyGains gains = engine::choose_gains(views_of(fields), equalised());
   const double tangential_n =
-      gains.of_field[0].tangential_n * engine::tangential_rms(fields[0].view());
-  const double normal_n = gains.of_field[0].normal_n * engine::normal_rms(fields[0].view());
+      gains.of_field[0].tangential_n * engine::tangential_rms(sampled(fields[0].view()).view());
+  const double normal_n =
+      gains.of_field[0].normal_n * engine::height_rms(sampled(fields[0].view()).view());
   CHECK(tangential_n > 0.0);
   CHECK(normal_n > 0.0);
   for (std::size_t i = 1; i < fields.size(); ++i) {
     const engine::FieldView view = fields[i].view();
     const engine::Gains gain = gains.of_field[i];
-    CHECK(gain.tangential_n * engine::tangential_rms(view) == Approx(tangential_n).epsilon(1e-12));
-    CHECK(gain.normal_n * engine::normal_rms(view) == Approx(normal_n).epsilon(1e-12));
+    CHECK(gain.tangential_n * engine::tangential_rms(sampled(view).view()) ==
+          Approx(tangential_n).epsilon(1e-12));
+    CHECK(gain.normal_n * engine::height_rms(sampled(view).view()) ==
+          Approx(normal_n).epsilon(1e-12));
   }
 }
 
@@ -229,14 +252,14 @@ TEST_CASE("choose_gains equalises explicit gains round their mean rms") {
   double mean_tangential_n = 0.0;
   double mean_normal_n = 0.0;
   for (const engine::TextureField& field : fields) {
-    mean_tangential_n += 0.003 * engine::tangential_rms(field.view()) / 3.0;
-    mean_normal_n += 0.002 * engine::normal_rms(field.view()) / 3.0;
+    mean_tangential_n += 0.003 * engine::tangential_rms(sampled(field.view()).view()) / 3.0;
+    mean_normal_n += 0.002 * engine::height_rms(sampled(field.view()).view()) / 3.0;
   }
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const engine::FieldView view = fields[i].view();
-    CHECK(gains.of_field[i].tangential_n * engine::tangential_rms(view) ==
+    CHECK(gains.of_field[i].tangential_n * engine::tangential_rms(sampled(view).view()) ==
           Approx(mean_tangential_n).epsilon(1e-12));
-    CHECK(gains.of_field[i].normal_n * engine::normal_rms(view) ==
+    CHECK(gains.of_field[i].normal_n * engine::height_rms(sampled(view).view()) ==
           Approx(mean_normal_n).epsilon(1e-12));
   }
 }
@@ -247,9 +270,9 @@ TEST_CASE("choose_gains refuses no fields, broken samples and an impossible budg
   engine::RenderingOptions options;
   options.texture_stiffness_n_per_mm = GENERATE(0.0, -1.0, std::nan(""));
   CHECK_THROWS_AS(engine::choose_gains(views_of(fields), options), std::invalid_argument);
-  std::vector<engine::FieldSample> samples(25);
-  samples[7].force_x = std::numeric_limits<float>::quiet_NaN();
-  const engine::FieldView broken{{0.2, 5, 5}, samples};
+  std::vector<float> heights(25);
+  heights[7] = std::numeric_limits<float>::quiet_NaN();
+  const engine::FieldView broken = view_of_heights(heights, 5, 5);
   CHECK_THROWS_AS(engine::choose_gains({&broken, 1}, {}), std::invalid_argument);
 }
 

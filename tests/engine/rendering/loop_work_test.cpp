@@ -81,25 +81,21 @@ TEST_CASE("paper does work round the same loops, which is why there is a second 
   CHECK(largest_mj < 1.0);
 }
 
-TEST_CASE("loop_work of a constant force is zero, and of a known curl is its flux") {
-  // Force planes of a vortex: F = (-y, x) grey levels per pixel has a curl of 2 per pixel.
-  std::vector<engine::FieldSample> samples(50 * 50);
-  for (int y = 0; y < 50; ++y) {
-    for (int x = 0; x < 50; ++x) {
-      samples[static_cast<std::size_t>(y) * 50 + x] = {128.0F, static_cast<float>(-y),
-                                                       static_cast<float>(x)};
-    }
-  }
+TEST_CASE("loop_work of a wall is zero, and of a ramp the difference between border and inside") {
+  std::vector<float> heights(50 * 50);
+  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = static_cast<float>(i / 50);
+  const engine::FieldView ramp = view_of_heights(heights, 50, 50);
   engine::RenderingOptions options;
   options.max_force_n = 1e6;
-  const engine::RenderingModel model({{0.2, 50, 50}, samples}, options, {0.01, 0.0});
-  const double curl_n_per_mm = 0.01 * 2.0 / 0.2;
+  const engine::RenderingModel model(ramp, options, {0.01, 0.0});
+  // F_y is -4 grey levels per pixel inside, and -3 in the first column, where two of the six
+  // neighbours above and below are missing.
   const std::vector<Vec3> square = {
-      {2.0, 3.0, -1.0}, {6.0, 3.0, -1.0}, {6.0, 8.0, -1.0}, {2.0, 8.0, -1.0}};
-  CHECK(engine::loop_work_mj(model, square) == Approx(curl_n_per_mm * 20.0).epsilon(1e-9));
+      {0.05, 3.0, -1.0}, {6.0, 3.0, -1.0}, {6.0, 8.0, -1.0}, {0.05, 8.0, -1.0}};
+  CHECK(engine::loop_work_mj(model, square) == Approx(0.01 * (-4.0 + 3.0) * 5.0).epsilon(1e-9));
   const std::vector<Vec3> back(square.rbegin(), square.rend());
-  CHECK(engine::loop_work_mj(model, back) == Approx(-curl_n_per_mm * 20.0).epsilon(1e-9));
-  const engine::RenderingModel wall({{0.2, 50, 50}, samples}, options, {});
+  CHECK(engine::loop_work_mj(model, back) == Approx(-0.01 * (-4.0 + 3.0) * 5.0).epsilon(1e-9));
+  const engine::RenderingModel wall(ramp, options, {});
   CHECK(engine::loop_work_mj(wall, random_loop(3)) == Approx(0.0).margin(1e-7));
 }
 

@@ -1,9 +1,11 @@
 #include "engine/rendering/paper_model.hpp"
 
+#include "engine/force_field.hpp"
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -19,9 +21,9 @@ Vec3 centre_of(engine::FieldView field, int y, int x, double z_mm) {
   return {at.x, at.y, z_mm};
 }
 
-/// Bilinear interpolation written out as four weighted corners.
-double mixed_slowly(engine::FieldView field, double x_mm, double y_mm,
-                    float engine::FieldSample::*value) {
+/// A value at every pixel, interpolated bilinearly: four weighted corners written out.
+double mixed_slowly(engine::FieldView field, const Plane<double>& values, double x_mm,
+                    double y_mm) {
   const int height = field.geometry.height_px;
   const int width = field.geometry.width_px;
   const Vec2 px = field.geometry.to_px(x_mm, y_mm);
@@ -32,7 +34,7 @@ double mixed_slowly(engine::FieldView field, double x_mm, double y_mm,
           std::max(0.0, 1.0 - std::abs(px.x - x)) * std::max(0.0, 1.0 - std::abs(px.y - y));
       const int row = std::clamp(y, 0, height - 1);
       const int column = std::clamp(x, 0, width - 1);
-      sum += weight * field.samples[static_cast<std::size_t>(row) * width + column].*value;
+      sum += weight * values.at(row, column);
     }
   }
   return sum;
@@ -83,38 +85,81 @@ TEST_CASE("PaperModel damps in contact, never pulls and does not act in the air"
   CHECK(model.force_n({-2.0, 2.0, 0.1}, {0.0, 0.0, -500.0}) == Vec3{});
 }
 
-TEST_CASE("PaperModel gives the field's own samples at pixel centres") {
+/// The force planes and heights of a field, in double, from the definition.
+struct SlowField {
+  explicit SlowField(engine::FieldView field)
+      : heights(field.geometry.height_px, field.geometry.width_px) {
+    std::ranges::copy(field.heights, heights.samples().begin());
+    Plane<double> slopes = heights;
+    std::ranges::copy(field.slopes(), slopes.samples().begin());
+    force = engine::tangential_force(slopes, field.neighbourhood);
+  }
+  Plane<double> heights;
+  engine::ForceField<double> force;
+};
+
+TEST_CASE("PaperModel gives tangential_force() of the field's heights at pixel centres") {
   const engine::TextureField field = random_field(6, 9, 2);
   const engine::FieldView view = field.view();
+  const SlowField slow(view);
   const engine::PaperModel model(view, {}, kGains);
   for (int y = 0; y < 6; ++y) {
     for (int x = 0; x < 9; ++x) {
-      const engine::FieldSample sample = view.samples[static_cast<std::size_t>(y) * 9 + x];
       const Vec3 force_n = model.force_n(centre_of(view, y, x, -2.0), kStill);
-      REQUIRE(force_n.x == Approx(0.012 * sample.force_x).margin(1e-12));
-      REQUIRE(force_n.y == Approx(0.012 * sample.force_y).margin(1e-12));
-      REQUIRE(force_n.z == Approx(0.8 + 0.01 * (sample.surface - 128.0)).margin(1e-12));
+      REQUIRE(force_n.x == Approx(0.012 * slow.force.x.at(y, x)).margin(1e-12));
+      REQUIRE(force_n.y == Approx(0.012 * slow.force.y.at(y, x)).margin(1e-12));
+      REQUIRE(force_n.z == Approx(0.8 + 0.01 * slow.heights.at(y, x)).margin(1e-12));
     }
   }
 }
 
 TEST_CASE("PaperModel is bilinear between pixel centres and constant in the outer half pixel") {
-  const int height = GENERATE(1, 2, 7);
-  const int width = GENERATE(1, 2, 11);
-  const engine::TextureField field = random_field(height, width, 3);
+  const int height = GENERATE(1, 2, 3, 4, 7);
+  const int width = GENERATE(1, 2, 3, 11);
+  engine::RenderingOptions options;
+  options.neighbourhood = GENERATE(3, 5, 31);
+  options.filter_mm = 0.0;
+  const engine::TextureField field =
+      engine::make_texture_field(random_texture(height, width, 3), options);
   const engine::FieldView view = field.view();
-  const engine::PaperModel model(view, {}, kGains);
+  const SlowField slow(view);
+  const engine::PaperModel model(view, options, kGains);
   RandomStream random(4, "points");
   for (int i = 0; i < 200; ++i) {
     const double x_mm = random.uniform(0.0, view.geometry.width_mm());
     const double y_mm = random.uniform(0.0, view.geometry.height_mm());
     const Vec3 force_n = model.force_n({x_mm, y_mm, -2.0}, kStill);
-    const double fx = mixed_slowly(view, x_mm, y_mm, &engine::FieldSample::force_x);
-    const double fy = mixed_slowly(view, x_mm, y_mm, &engine::FieldSample::force_y);
-    const double g = mixed_slowly(view, x_mm, y_mm, &engine::FieldSample::surface);
-    REQUIRE(force_n.x == Approx(0.012 * fx).margin(1e-9));
-    REQUIRE(force_n.y == Approx(0.012 * fy).margin(1e-9));
-    REQUIRE(force_n.z == Approx(0.8 + 0.01 * (g - 128.0)).margin(1e-9));
+    CAPTURE(height, width, options.neighbourhood, x_mm, y_mm);
+    const double fx = mixed_slowly(view, slow.force.x, x_mm, y_mm);
+    const double fy = mixed_slowly(view, slow.force.y, x_mm, y_mm);
+    const Vec3 expected{0.012 * fx, 0.012 * fy,
+                        0.8 + 0.01 * mixed_slowly(view, slow.heights, x_mm, y_mm)};
+    const double scale = std::min(1.0, 3.3 / norm(expected));
+    REQUIRE(norm(force_n - scale * expected) < 1e-12);
+  }
+}
+
+TEST_CASE("PaperModel takes the slopes of a sum of fields from their own plane") {
+  const engine::TextureField one = random_field(12, 15, 20);
+  const engine::TextureField other = random_field(12, 15, 21);
+  // The gains of the two differ in their ratio, so that no single plane has both forces.
+  const std::array<engine::FieldWithGains, 2> parts = {
+      engine::FieldWithGains{one.view(), {0.01, 0.002}},
+      engine::FieldWithGains{other.view(), {0.003, 0.004}}};
+  const engine::TextureField sum = engine::applied_sum(parts);
+  const engine::PaperModel both(sum.view(), {}, {1.0, 1.0});
+  const engine::PaperModel first(one.view(), {}, parts[0].gains);
+  const engine::PaperModel second(other.view(), {}, parts[1].gains);
+  RandomStream random(5, "points");
+  double offset_n = std::nan("");
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 at{random.uniform(0.0, 3.0), random.uniform(0.0, 2.4), -2.0};
+    const Vec3 expected = first.force_n(at, kStill) + second.force_n(at, kStill);
+    const Vec3 force_n = both.force_n(at, kStill);
+    REQUIRE(force_n.x == Approx(expected.x).margin(1e-6));
+    REQUIRE(force_n.y == Approx(expected.y).margin(1e-6));
+    if (i == 0) offset_n = expected.z - force_n.z;  // the second wall and the mean height
+    REQUIRE(expected.z - force_n.z == Approx(offset_n).margin(1e-6));
   }
 }
 
@@ -163,10 +208,11 @@ TEST_CASE("PaperModel without contact has no force of any kind") {
 }
 
 TEST_CASE("PaperModel does not read the field above the reach of any surface") {
-  std::vector<engine::FieldSample> samples(100);
-  const engine::FieldView view{.geometry = {0.2, 10, 10}, .samples = samples, .highest = 128.0};
+  std::vector<float> heights(100);
+  engine::FieldView view = view_of_heights(heights, 10, 10);
+  view.highest = 0.0;
   const engine::PaperModel model(view, {}, kGains);
-  for (engine::FieldSample& sample : samples) sample.surface = 1e6F;
+  for (float& height : heights) height = 1e6F;
   CHECK(model.force_n({1.0, 1.0, 0.1}, kStill) == Vec3{});
   CHECK(model.force_n({1.0, 1.0, -0.1}, kStill).z == Approx(3.3));
 }
@@ -236,8 +282,8 @@ TEST_CASE("PaperModel never passes on samples that are not finite") {
   const float bad =
       GENERATE(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                -std::numeric_limits<float>::infinity());
-  const std::vector<engine::FieldSample> samples(9, engine::FieldSample{bad, bad, bad});
-  const engine::PaperModel model({{0.2, 3, 3}, samples}, {}, kGains);
+  const std::vector<float> heights(9, bad);
+  const engine::PaperModel model(view_of_heights(heights, 3, 3), {}, kGains);
   CHECK(model.force_n({0.3, 0.3, -1.0}, kStill) == Vec3{});
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/random.hpp"
+#include "engine/rendering/model_parts.hpp"
 #include "engine/rendering/texture_field.hpp"
 
 #include <algorithm>
@@ -43,6 +44,15 @@ inline engine::TextureField random_surface(int height, int width, std::uint64_t 
 
 inline engine::TextureField flat_surface(int height, int width) {
   return engine::make_texture_field(Plane<double>(height, width, 0.0), surface_options());
+}
+
+/// A field of model `paper` with these heights.
+inline engine::FieldView view_of_heights(const std::vector<float>& heights, int height, int width) {
+  return {.geometry = {0.2, height, width}, .heights = heights};
+}
+
+inline engine::SampledField sampled(engine::FieldView field) {
+  return engine::parts_of(field.model).sampled(field);
 }
 
 inline std::vector<engine::FieldView> views_of(const std::vector<engine::TextureField>& fields) {

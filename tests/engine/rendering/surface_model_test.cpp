@@ -33,7 +33,7 @@ double surface_potential_mj(engine::FieldView field, double stiffness_n_per_mm, 
   const PlaneGeometry& plane = field.geometry;
   const Vec2 px = plane.to_px(position_mm.x, position_mm.y);
   const double h =
-      engine::spline_at(field.coefficients, plane.height_px, plane.width_px, px.x, px.y).value *
+      engine::spline_at(field.heights, plane.height_px, plane.width_px, px.x, px.y).value *
       fade(position_mm.x, plane.width_mm()) * fade(position_mm.y, plane.height_mm());
   const double pressed_mm = std::max(0.0, alpha_mm * h - position_mm.z);
   return 0.5 * stiffness_n_per_mm * pressed_mm * pressed_mm;
@@ -171,7 +171,10 @@ TEST_CASE("SurfaceModel's damping slows a hand, never pulls it and leaves the la
 
 TEST_CASE("SurfaceModel does not read the field above the reach of any surface") {
   std::vector<float> coefficients(100, 0.0F);
-  const engine::FieldView view{{0.2, 10, 10}, {}, coefficients, 10.0};
+  const engine::FieldView view{.geometry = {0.2, 10, 10},
+                               .model = engine::ModelKind::surface,
+                               .heights = coefficients,
+                               .highest = 10.0};
   const engine::SurfaceModel model(view, surface_options(), {.height_mm = 0.01});
   std::ranges::fill(coefficients, 1e6F);
   CHECK(still_force_n(model, {1.0, 1.0, 0.1}) == Vec3{});

@@ -2,9 +2,11 @@
 
 #include "engine/force_field.hpp"
 #include "engine/gaussian_filter.hpp"
+#include "engine/rendering/field_statistics.hpp"
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -12,11 +14,12 @@
 namespace touchtrial {
 namespace {
 
-TEST_CASE("make_texture_field is flat at 128 without force where the texture is zero") {
+TEST_CASE("make_texture_field is flat and without force where the texture is zero") {
   const engine::TextureField field = flat_field(5, 8);
-  REQUIRE(field.view().samples.size() == 40);
-  for (const engine::FieldSample& sample : field.view().samples) {
-    REQUIRE(sample.surface == 128.0F);
+  REQUIRE(field.view().heights.size() == 40);
+  const engine::SampledField samples = sampled(field.view());
+  for (const engine::FieldSample& sample : samples.samples.samples()) {
+    REQUIRE(sample.height == 0.0F);
     REQUIRE(sample.force_x == 0.0F);
     REQUIRE(sample.force_y == 0.0F);
   }
@@ -39,11 +42,12 @@ TEST_CASE("make_texture_field without filter pushes from bright to dark by the s
     for (int x = 0; x < 6; ++x) ramp.at(y, x) = x;
   }
   const engine::TextureField field = engine::make_texture_field(ramp, options);
-  const engine::FieldSample inside = field.view().samples[2 * 6 + 3];
-  CHECK(inside.surface == 131.0F);
+  const engine::SampledField samples = sampled(field.view());
+  const engine::FieldSample inside = samples.samples.at(2, 3);
+  CHECK(inside.height == 3.0F);
   CHECK(inside.force_x == Approx(-4.0));
   CHECK(inside.force_y == Approx(0.0).margin(1e-6));
-  CHECK(field.view().samples[2 * 6].force_x == Approx(-2.0));
+  CHECK(samples.samples.at(2, 0).force_x == Approx(-2.0));
 }
 
 TEST_CASE("make_texture_field is the force of the filtered surface") {
@@ -52,22 +56,45 @@ TEST_CASE("make_texture_field is the force of the filtered surface") {
   options.filter_mm = 0.15;
   options.neighbourhood = 5;
   const Plane<double> texture = random_texture(17, 12, 2);
-  Plane<double> surface = texture;
-  for (double& value : surface.samples()) value += 128.0;
-  surface = engine::gaussian_filtered(surface, 1.5);
+  const Plane<double> surface = engine::gaussian_filtered(texture, 1.5);
   const engine::ForceField<double> force = engine::tangential_force(surface, 5);
   const engine::TextureField field = engine::make_texture_field(texture, options);
+  const engine::SampledField samples = sampled(field.view());
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    const engine::FieldSample sample = field.view().samples[i];
-    REQUIRE(sample.surface == Approx(surface.samples()[i]).epsilon(1e-6));
-    REQUIRE(sample.force_x == Approx(force.x.samples()[i]).epsilon(1e-6).margin(1e-6));
-    REQUIRE(sample.force_y == Approx(force.y.samples()[i]).epsilon(1e-6).margin(1e-6));
+    const engine::FieldSample sample = samples.samples.samples()[i];
+    REQUIRE(sample.height == Approx(surface.samples()[i]).epsilon(1e-6));
+    REQUIRE(sample.force_x == Approx(force.x.samples()[i]).epsilon(1e-6).margin(1e-5));
+    REQUIRE(sample.force_y == Approx(force.y.samples()[i]).epsilon(1e-6).margin(1e-5));
   }
 }
 
+TEST_CASE("the force of stored heights is that of the exact ones, to 3e-7 of the largest height") {
+  const double amplitude = GENERATE(1e-3, 40.0, 255.0);
+  const Plane<double> texture = random_texture(60, 70, 5, amplitude);
+  engine::RenderingOptions options;
+  options.filter_mm = GENERATE(0.0, 0.4);
+  options.neighbourhood = GENERATE(3, 7);
+  const Plane<double> smooth =
+      engine::gaussian_filtered(texture, to_px(options.filter_mm, options.pitch_mm));
+  const engine::ForceField<double> exact = engine::tangential_force(smooth, options.neighbourhood);
+  const engine::TextureField field = engine::make_texture_field(texture, options);
+  const engine::ForceField<double> stored = engine::lateral_field(field.view(), {}).force;
+  double largest = 0.0;
+  double error = 0.0;
+  for (std::size_t i = 0; i < smooth.size(); ++i) {
+    largest = std::max(largest, std::abs(smooth.samples()[i]));
+    error = std::max({error, std::abs(stored.x.samples()[i] - exact.x.samples()[i]),
+                      std::abs(stored.y.samples()[i] - exact.y.samples()[i])});
+  }
+  CAPTURE(amplitude, options.neighbourhood);
+  CHECK(error > 0.0);
+  CHECK(error <= 3e-7 * largest * (options.neighbourhood / 2.0));
+}
+
 TEST_CASE("make_texture_field takes the smallest images") {
-  CHECK(engine::make_texture_field(random_texture(1, 1, 3), {}).view().samples[0].force_x == 0.0F);
-  CHECK(engine::make_texture_field(random_texture(1, 9, 3), {}).view().samples.size() == 9);
+  const engine::TextureField pixel = engine::make_texture_field(random_texture(1, 1, 3), {});
+  CHECK(sampled(pixel.view()).samples.at(0, 0).force_x == 0.0F);
+  CHECK(engine::make_texture_field(random_texture(1, 9, 3), {}).view().heights.size() == 9);
 }
 
 TEST_CASE("make_texture_field refuses an empty texture and impossible options") {
@@ -89,6 +116,7 @@ TEST_CASE("make_texture_field refuses an empty texture and impossible options") 
                   std::invalid_argument);
   CHECK_THROWS_AS(engine::make_texture_field(texture, with(0.2, 0.4, 4)), std::invalid_argument);
   CHECK_THROWS_AS(engine::make_texture_field(texture, with(0.2, 0.4, 1)), std::invalid_argument);
+  CHECK_THROWS_AS(engine::make_texture_field(texture, with(0.2, 0.4, 33)), std::invalid_argument);
 }
 
 }  // namespace

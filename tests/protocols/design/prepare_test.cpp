@@ -54,7 +54,7 @@ TEST_CASE("prepare makes a field for every stimulus, under its code, with the ch
     CHECK(prepared.gains.tangential_n > 0.0);
     const engine::MappedField field = pack.map(code);
     CHECK(field.view().geometry.width_px == kSide);
-    CHECK(prepared.bytes > kSide * kSide * sizeof(engine::FieldSample));
+    CHECK(prepared.bytes > kSide * kSide * sizeof(float));
     const engine::FieldStatistics expected = engine::field_statistics(field.view(), prepared.gains);
     CHECK(prepared.statistics.tangential_rms_n == expected.tangential_rms_n);
     CHECK(prepared.statistics.tangential_rms_n > 0.0);

@@ -107,14 +107,13 @@ constexpr double kMidGrey = 127.5;
 constexpr double kDeviations = 2.5;
 
 std::vector<double> surface_of(engine::FieldView field) {
+  if (field.model == engine::ModelKind::paper) return {field.heights.begin(), field.heights.end()};
   std::vector<double> surface;
-  for (const engine::FieldSample& sample : field.samples) surface.push_back(sample.surface);
-  if (field.coefficients.empty()) return surface;
   const PlaneGeometry& plane = field.geometry;
   for (int y = 0; y < plane.height_px; ++y) {
     for (int x = 0; x < plane.width_px; ++x) {
       surface.push_back(
-          engine::spline_at(field.coefficients, plane.height_px, plane.width_px, x, y).value);
+          engine::spline_at(field.heights, plane.height_px, plane.width_px, x, y).value);
     }
   }
   return surface;

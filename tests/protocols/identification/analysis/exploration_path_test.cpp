@@ -33,18 +33,16 @@ TEST_CASE("a path is thinned evenly, and each point has the rms force until the 
 }
 
 TEST_CASE("a field's picture is lighter where its surface is higher, whatever its units") {
-  Plane<engine::FieldSample> samples(2, 2);
-  samples.at(0, 0).surface = 127.9F;
-  samples.at(0, 1).surface = 128.1F;
-  samples.at(1, 0).surface = 127.9F;
-  samples.at(1, 1).surface = 128.1F;
+  const engine::FieldView like{.geometry = {0.2, 2, 2}};
+  Plane<float> heights(2, 2, -0.1F);
+  heights.at(0, 1) = heights.at(1, 1) = 0.1F;
   const GreyImage picture =
-      analysis::identification::field_picture(engine::TextureField({0.2, 2, 2}, samples).view());
+      analysis::identification::field_picture(engine::TextureField(like, heights).view());
   // One standard deviation below and above the mean.
   CHECK(static_cast<int>(picture.at(0, 0)) == Approx(127.5 - 51.0).margin(1.0));
   CHECK(static_cast<int>(picture.at(1, 1)) == Approx(127.5 + 51.0).margin(1.0));
   const GreyImage flat = analysis::identification::field_picture(
-      engine::TextureField({0.2, 2, 2}, Plane<engine::FieldSample>(2, 2)).view());
+      engine::TextureField(like, Plane<float>(2, 2)).view());
   CHECK(flat.at(0, 0) == flat.at(1, 1));
   CHECK(analysis::identification::field_picture(engine::FieldView{}).empty());
 }
@@ -53,7 +51,9 @@ TEST_CASE("a field of spline coefficients has a picture too") {
   Plane<float> coefficients(8, 8, 0.0F);
   coefficients.at(4, 4) = 6.0F;
   const GreyImage picture = analysis::identification::field_picture(
-      engine::TextureField({0.2, 8, 8}, coefficients).view());
+      engine::TextureField({.geometry = {0.2, 8, 8}, .model = engine::ModelKind::surface},
+                           coefficients)
+          .view());
   CHECK(picture.at(4, 4) == 255);
   CHECK(picture.at(4, 3) > picture.at(0, 0));
 }

@@ -1,0 +1,39 @@
+/// \file Strips of a picture's rows, for kernels that use all cores on one large picture.
+#pragma once
+
+#include "core/parallel.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace touchtrial::engine {
+
+/// A range of rows, first .. last - 1.
+struct Rows {
+  int first;
+  int last;
+};
+
+/// From this size on a picture is worth several threads: a megapixel takes half a millisecond.
+inline constexpr std::int64_t kThreadsFromPixels = 1'000'000;
+
+/// Calls work(strip) for strips that together are all rows, on all cores if the picture has
+/// kThreadsFromPixels, else for one strip on the caller's thread. Strips begin at even rows. They
+/// depend on the picture's size alone, and so do results that are sums over strips.
+template <typename Work>
+void for_each_strip(int height, int width, Work work) {
+  constexpr int kStrips = 16;
+  if (std::int64_t{height} * width < kThreadsFromPixels) {
+    work(Rows{0, height});
+    return;
+  }
+  const int rows = (height + 2 * kStrips - 1) / (2 * kStrips) * 2;
+  const int strips = (height + rows - 1) / rows;
+  in_parallel(0, static_cast<std::size_t>(strips), [&](std::size_t i) {
+    const int first = static_cast<int>(i) * rows;
+    work(Rows{first, std::min(first + rows, height)});
+  });
+}
+
+}  // namespace touchtrial::engine

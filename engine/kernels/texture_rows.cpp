@@ -1,0 +1,73 @@
+#include "engine/kernels/texture_rows.hpp"
+
+#include <cstdint>
+
+// Compiled once for every target: this file includes itself.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/kernels/texture_rows.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// clang-format off: the next one is compiled for the target that those two have set.
+#include "engine/kernels/streamed_row-inl.hpp"
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace touchtrial::engine {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Rounds half up. It does not add a half first, as that would round to ties.
+template <class D>
+HWY_INLINE void picture_at(D d, const float* texture, std::uint8_t* picture) {
+  const hn::Rebind<std::uint8_t, D> bytes;
+  const hn::RebindToSigned<D> integers;
+  const auto any = hn::LoadU(d, texture);
+  const auto lowest = hn::Set(d, -128.0F);
+  const auto t = hn::IfThenElse(hn::Eq(any, any), any, lowest);
+  const auto floor = hn::Floor(t);
+  const auto upwards = hn::Ge(hn::Sub(t, floor), hn::Set(d, 0.5F));  // false for infinities
+  const auto rounded = hn::Add(floor, hn::IfThenElseZero(upwards, hn::Set(d, 1.0F)));
+  const auto level = hn::Min(hn::Max(rounded, lowest), hn::Set(d, 127.0F));
+  const auto grey = hn::Add(hn::ConvertTo(integers, level), hn::Set(integers, 128));
+  hn::StoreU(hn::DemoteTo(bytes, grey), bytes, picture);
+}
+
+void row_of_picture(const float* texture, int width, std::uint8_t* picture) {
+  const hn::ScalableTag<float> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  int x = 0;
+  for (; x + lanes <= width; x += lanes) picture_at(d, texture + x, picture + x);
+  const hn::CappedTag<float, 1> one;
+  for (; x < width; ++x) picture_at(one, texture + x, picture + x);
+}
+
+void all_of_row(const StreamedRow& row) {
+  move_samples(row, 0, row.count);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace touchtrial::engine
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace touchtrial::engine {
+namespace {
+
+HWY_EXPORT(row_of_picture);
+HWY_EXPORT(all_of_row);
+
+}  // namespace
+
+void picture_row(const float* texture, int width, std::uint8_t* picture) {
+  HWY_DYNAMIC_DISPATCH(row_of_picture)(texture, width, picture);
+}
+
+void move_row(const StreamedRow& row) {
+  HWY_DYNAMIC_DISPATCH(all_of_row)(row);
+}
+
+}  // namespace touchtrial::engine
+#endif
