@@ -1,7 +1,9 @@
 #include "core/parallel.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <thread>
+#include <vector>
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -18,6 +20,20 @@ void in_parallel(int jobs, std::size_t count, const std::function<void(std::size
   const auto cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   tbb::task_arena arena(std::min(jobs, cores));
   arena.execute(all);
+}
+
+void all_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work) {
+  std::vector<std::exception_ptr> failures(count);
+  in_parallel(0, count, [&](std::size_t i) {
+    try {
+      work(i);
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
 }
 
 }  // namespace touchtrial

@@ -12,4 +12,8 @@ namespace touchtrial {
 /// \throws what a call throws; others may then be left out
 void in_parallel(int jobs, std::size_t count, const std::function<void(std::size_t)>& work);
 
+/// The same on all cores, for work that can fail: all calls are made, and of those that throw, the
+/// first by its number decides what is thrown, whatever the number of threads.
+void all_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work);
+
 }  // namespace touchtrial

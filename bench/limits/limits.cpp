@@ -1,5 +1,6 @@
 #include "bench/limits/limits.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -146,11 +147,12 @@ float arithmetic(std::size_t pixels) {
   auto textures = hn::Zero(d);
   auto bands = hn::Zero(wide);
   auto order = hn::Set(d, 0.3F);
-  auto inner_before = hn::Load(shorts, rows[5]);
-  auto outer_before = hn::Load(shorts, rows[6]);
+  auto inner_before = hn::Load(shorts, rows[6]);
+  auto outer_before = hn::Load(shorts, rows[7]);
   auto whole_before = hn::Load(shorts, rows[7]);
   auto root_before = whole_before;
-  const auto weights = hn::Set(shorts, 97);
+  const auto low = hn::Set(shorts, 97);
+  const auto high = hn::Set(shorts, 61);
   for (std::size_t i = 0; i < pixels; i += 2 * kBlock) {
     // Two rows of a block share the sub-bands' filter, and each has rings of its own.
     const auto x0 = hn::Load(shorts, rows[0]);
@@ -158,10 +160,11 @@ float arithmetic(std::size_t pixels) {
     const auto x2 = hn::Load(shorts, rows[2]);
     const auto x3 = hn::Load(shorts, rows[3]);
     const auto x4 = hn::Load(shorts, rows[4]);
-    for (std::size_t row = 0; row < 2; ++row) {
-      const auto inner = hn::Add(hn::Add(x1, x3), x2);
-      const auto outer = hn::Add(hn::Add(x0, x4), x2);
-      const auto nine = hn::Add(hn::ShiftLeft<3>(x2), x2);
+    const auto x5 = hn::Load(shorts, rows[5]);
+    for (const auto& near : {std::array{x0, x1, x2, x3, x4}, std::array{x1, x2, x3, x4, x5}}) {
+      const auto inner = hn::Add(hn::Add(near[1], near[3]), near[2]);
+      const auto outer = hn::Add(hn::Add(near[0], near[4]), near[2]);
+      const auto nine = hn::Add(hn::ShiftLeft<3>(near[2]), near[2]);
       const auto ring_1 = hn::Sub(hn::Sub(nine, inner), hn::Add(inner_before, outer_before));
       const auto ring_2 = hn::Sub(hn::Sub(nine, outer), hn::Add(outer_before, whole_before));
       textures = hn::Add(textures, rings_of(ring_1, ring_2, order, false));
@@ -177,10 +180,10 @@ float arithmetic(std::size_t pixels) {
     const auto low_root = hn::Add(outer_difference, inner_difference);
     const auto high_whole = hn::Sub(outer_difference, tripled(inner_difference));
     const auto high_root = hn::Sub(inner_sum, outer_sum);
-    const auto ll = band_of(low_whole, low_root, whole_before, root_before, weights);
-    const auto hl = band_of(low_whole, low_root, root_before, whole_before, weights);
-    const auto lh = band_of(high_whole, high_root, whole_before, root_before, weights);
-    const auto hh = band_of(high_whole, high_root, root_before, whole_before, weights);
+    const auto ll = band_of(low_whole, low_root, whole_before, root_before, low);
+    const auto hl = band_of(low_whole, low_root, whole_before, root_before, high);
+    const auto lh = band_of(high_whole, high_root, whole_before, root_before, low);
+    const auto hh = band_of(high_whole, high_root, whole_before, root_before, high);
     bands = hn::Add(bands, hn::Xor(hn::Xor(ll, hl), hn::Xor(lh, hh)));
     whole_before = hn::Xor(low_whole, inner_before);
     root_before = hn::Xor(high_root, outer_before);

@@ -68,7 +68,7 @@ HWY_INLINE Real csgv_block(const SobelRows& rows, int i) {
 /// \param first  the column of the rows at which the result begins
 /// \param csgv  receives `count` samples; a vector behind them may be overwritten
 /// \return the largest of the samples
-float row_of_csgv(const SobelRows& rows, int first, int count, float* csgv) {
+float row_of_csgv(const SobelRows rows, int first, int count, float* csgv) {
   const Reals d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   auto largest = hn::Zero(d);
@@ -144,12 +144,12 @@ class SobelState {
   explicit SobelState(int columns)
       : samples_(16, static_cast<std::size_t>(columns), kVectorSamples) {
     std::size_t next = 0;
-    for (auto* kind : {&rows_.last, &rows_.pairs, &rows_.smoothed, &rows_.difference}) {
+    for (auto* kind : {&rows_.last_but_one, &rows_.last, &rows_.smoothed, &rows_.difference}) {
       for (std::int32_t*& row : *kind) row = samples_.row(next++);
     }
   }
 
-  [[nodiscard]] const SobelRows& rows() const noexcept { return rows_; }
+  [[nodiscard]] SobelRows& rows() noexcept { return rows_; }
 
   /// Mirrors one sample at both ends of the rows from which the gradient is computed.
   void extend(int columns) const {
@@ -187,7 +187,7 @@ HalfGradient::HalfGradient(const GreyImage& image)
 float HalfGradient::compute(const GreyImage& image, Columns columns, Rows rows) {
   const Columns wider{std::max(columns.first - 1, 0), std::min(columns.last + 1, width_)};
   ColumnFilter filter(image, wider);
-  const SobelState state(wider.count());
+  SobelState state(wider.count());
   float largest = 0.0F;
   for (int y = rows.first - 1; y <= rows.last; ++y) {
     filter_along_x(filter.row(symmetric_index(y, height_)), wider.count(), state.rows());

@@ -1,6 +1,9 @@
 #include "engine/kernels/texture_rows.hpp"
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 
 // Compiled once for every target: this file includes itself.
 #undef HWY_TARGET_INCLUDE
@@ -43,6 +46,27 @@ void row_of_picture(const float* texture, int width, std::uint8_t* picture) {
   for (; x < width; ++x) picture_at(one, texture + x, picture + x);
 }
 
+/// On the bits, which sort like whole numbers once those of negative floats are inverted.
+float highest_of_samples(const float* samples, std::size_t count) {
+  const hn::ScalableTag<std::int32_t> d;
+  const std::size_t lanes = hn::Lanes(d);
+  const auto magnitude = hn::Set(d, 0x7fffffff);
+  const hn::RebindToFloat<decltype(d)> reals;
+  auto highest = hn::Set(d, std::numeric_limits<std::int32_t>::min());
+  auto largest = hn::Zero(d);
+  std::size_t i = 0;
+  const auto take = [&](auto v) HWY_ATTR {
+    highest = hn::Max(highest, hn::Xor(v, hn::And(hn::ShiftRight<31>(v), magnitude)));
+    largest = hn::Max(largest, hn::And(v, magnitude));
+  };
+  for (; i + lanes <= count; i += lanes) take(hn::BitCast(d, hn::LoadU(reals, samples + i)));
+  for (; i < count; ++i) take(hn::Set(d, std::bit_cast<std::int32_t>(samples[i])));
+  const std::int32_t all = hn::GetLane(hn::MaxOfLanes(d, largest));
+  const std::int32_t top = hn::GetLane(hn::MaxOfLanes(d, highest));
+  constexpr std::int32_t kInfinite = 0x7f800000;
+  return std::bit_cast<float>(all >= kInfinite ? all : top ^ ((top >> 31) & 0x7fffffff));
+}
+
 void all_of_row(const StreamedRow& row) {
   move_samples(row, 0, row.count);
 }
@@ -58,11 +82,16 @@ namespace {
 
 HWY_EXPORT(row_of_picture);
 HWY_EXPORT(all_of_row);
+HWY_EXPORT(highest_of_samples);
 
 }  // namespace
 
 void picture_row(const float* texture, int width, std::uint8_t* picture) {
   HWY_DYNAMIC_DISPATCH(row_of_picture)(texture, width, picture);
+}
+
+float highest_sample(std::span<const float> samples) noexcept {
+  return HWY_DYNAMIC_DISPATCH(highest_of_samples)(samples.data(), samples.size());
 }
 
 void move_row(const StreamedRow& row) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 // Compiled once for every target: this file includes itself.
 #undef HWY_TARGET_INCLUDE
@@ -132,16 +133,17 @@ HWY_INLINE void for_each_band(const FilteredRows& rows, int i, const To& to) {
   to(3, hh);
 }
 
-void sobel_along_x(const FilteredRows& rows, int count, const SobelRows& out) {
+/// Writes the new row over the last but one.
+void sobel_along_x(const FilteredRows& rows, int count, const SobelRows out) {
   const WideIntegers d;
   for (int i = 0; i < count; i += kHalfBlock) {
     for_each_band(rows, i, [&](std::size_t band, WideInteger block) HWY_ATTR {
-      const auto pair = hn::Add(block, hn::Load(d, out.last[band] + i));
-      const auto pair_before = hn::Load(d, out.pairs[band] + i);
-      hn::Store(block, d, out.last[band] + i);
-      hn::Store(pair, d, out.pairs[band] + i);
-      hn::Store(hn::Add(pair, pair_before), d, out.smoothed[band] + i);
-      hn::Store(hn::Sub(pair, pair_before), d, out.difference[band] + i);
+      const auto middle = hn::Load(d, out.last[band] + i);
+      const auto first = hn::Load(d, out.last_but_one[band] + i);
+      hn::Store(block, d, out.last_but_one[band] + i);
+      const auto wings = hn::Add(first, block);
+      hn::Store(hn::Add(wings, hn::Add(middle, middle)), d, out.smoothed[band] + i);
+      hn::Store(hn::Sub(block, first), d, out.difference[band] + i);
     });
   }
 }
@@ -205,8 +207,9 @@ void ColumnFilter::extend(std::int16_t* row) const {
   }
 }
 
-void filter_along_x(const FilteredRows& rows, int count, const SobelRows& out) {
+void filter_along_x(const FilteredRows& rows, int count, SobelRows& out) {
   HWY_DYNAMIC_DISPATCH(sobel_along_x)(rows, count, out);
+  std::swap(out.last, out.last_but_one);
 }
 
 void filter_along_x(const FilteredRows& rows, int count, const BandRows<float>& out) {

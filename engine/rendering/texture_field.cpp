@@ -2,13 +2,12 @@
 
 #include "engine/finite_plane.hpp"
 #include "engine/gaussian_filter.hpp"
+#include "engine/kernels/texture_rows.hpp"
 #include "engine/rendering/field_statistics.hpp"
 #include "engine/rendering/model_parts.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <stdexcept>
 
 namespace touchtrial::engine {
@@ -46,19 +45,7 @@ void centre(Plane<double>& heights) {
 }  // namespace
 
 double highest_of(FieldView field) noexcept {
-  // On the bits, which sort like whole numbers once those of negative floats are inverted: such a
-  // loop vectorises, one over floats does not.
-  constexpr std::int32_t kMagnitude = 0x7fffffff;
-  constexpr std::int32_t kInfinite = 0x7f800000;
-  const auto in_order = [](std::int32_t bits) { return bits ^ ((bits >> 31) & kMagnitude); };
-  std::int32_t highest = std::numeric_limits<std::int32_t>::min();
-  std::int32_t largest = 0;
-  for (const float height : field.heights) {
-    const auto bits = std::bit_cast<std::int32_t>(height);
-    highest = std::max(highest, in_order(bits));
-    largest = std::max(largest, bits & kMagnitude);
-  }
-  return std::bit_cast<float>(largest >= kInfinite ? largest : in_order(highest));
+  return highest_sample(field.heights);
 }
 
 TextureField::TextureField(const FieldView& like, Plane<float> heights, Plane<float> other_slopes)

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/parallel.hpp"
 #include "engine/image_file.hpp"
 #include "stimuli/default_set.hpp"
 #include "stimuli/import/import_checks.hpp"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <map>
+#include <mutex>
 #include <system_error>
 
 #include <unistd.h>
@@ -144,7 +146,7 @@ class Import {
   void try_out() {
     const PhotoFolder folder = surveyed();
     const auto shares = plan_shares(classes_, options_);
-    for (std::size_t c = 0; c < classes_.size(); ++c) cut_class({}, c, shares[c]);
+    cut_all({}, shares);
   }
 
   ImportReport run() {
@@ -152,7 +154,7 @@ class Import {
     PhotoFolder folder = surveyed();
     const auto shares = plan_shares(classes_, options_);
     DraftFolder draft(options_.pictures);
-    for (std::size_t c = 0; c < classes_.size(); ++c) cut_class(draft.path(), c, shares[c]);
+    cut_all(draft.path(), shares);
     equalise(draft.path());
     finish(draft);
     return report(std::move(folder.ignored), shares);
@@ -168,18 +170,29 @@ class Import {
     return folder;
   }
 
+  /// Photographs are read on all cores, and judged in their order.
   void survey(const PhotoFolder& folder) {
+    std::vector<fs::path> files;
+    for (const PhotoClass& one : folder.classes) {
+      files.insert(files.end(), one.files.begin(), one.files.end());
+    }
+    std::vector<Photograph> photographs(files.size());
+    std::vector<PhotoSize> sizes(files.size());
+    all_in_parallel(files.size(), [&](std::size_t i) {
+      photographs[i] = read_photograph(files[i], options_);
+      sizes[i] = {photographs[i].image.height(), photographs[i].image.width()};
+      photographs[i].image = {};
+      note_done();
+    });
     Duplicates duplicates;
+    std::size_t i = 0;
     for (const PhotoClass& one : folder.classes) {
       SizedClass sized{one.label, one.files, {}};
       for (const fs::path& file : one.files) {
-        Photograph photo = read_photograph(file, options_);
-        duplicates.check(photo);
-        const PhotoSize size{photo.image.height(), photo.image.width()};
-        photo.image = {};
-        sized.sizes.push_back(size);
-        record_.photographs.push_back({name_of(file), std::move(photo), size});
-        note_done();
+        duplicates.check(photographs[i]);
+        sized.sizes.push_back(sizes[i]);
+        record_.photographs.push_back({name_of(file), std::move(photographs[i]), sizes[i]});
+        ++i;
       }
       classes_.push_back(std::move(sized));
     }
@@ -190,50 +203,67 @@ class Import {
     return file.lexically_relative(options_.photographs).generic_string();
   }
 
-  void cut_class(const fs::path& draft, std::size_t class_index, const std::vector<int>& shares) {
-    const SizedClass& one = classes_[class_index];
-    for (std::size_t i = 0; i < one.files.size(); ++i) {
-      if (shares[i] > 0) cut_photograph(draft, one, one.files[i], shares[i]);
-      ++next_photograph_;
-      note_done();
+  /// A photograph to cut, and the places of its crops in the set.
+  struct Cut {
+    const SizedClass* of_class;
+    fs::path file;
+    std::size_t photograph;
+    std::size_t first_picture;
+    int first_number;  ///< of its class, from 1
+    int count;
+  };
+
+  /// Cuts all photographs on all cores. What a crop is called does not depend on when it is cut.
+  /// \param draft  empty: the crops are only looked at
+  void cut_all(const fs::path& draft, const std::vector<std::vector<int>>& shares) {
+    std::vector<Cut> cuts;
+    std::size_t photograph = 0;
+    std::size_t pictures = 0;
+    for (std::size_t c = 0; c < classes_.size(); ++c) {
+      int number = 1;
+      for (std::size_t i = 0; i < classes_[c].files.size(); ++i, ++photograph) {
+        cuts.push_back(
+            {&classes_[c], classes_[c].files[i], photograph, pictures, number, shares[c][i]});
+        number += shares[c][i];
+        pictures += static_cast<std::size_t>(shares[c][i]);
+      }
     }
+    record_.pictures.resize(draft.empty() ? 0 : pictures);
+    all_in_parallel(cuts.size(), [&](std::size_t i) {
+      if (cuts[i].count > 0) cut_photograph(draft, cuts[i]);
+      note_done();
+    });
   }
 
-  void cut_photograph(const fs::path& draft, const SizedClass& one, const fs::path& file,
-                      int count) {
-    const Photograph photo = read_photograph(file, options_);
-    if (photo.sha256 != record_.photographs[next_photograph_].photo.sha256) {
-      throw FileError(one_line(file.string()) + ": changed while it was imported; try again");
+  void cut_photograph(const fs::path& draft, const Cut& wanted) {
+    const Photograph photo = read_photograph(wanted.file, options_);
+    if (photo.sha256 != record_.photographs[wanted.photograph].photo.sha256) {
+      throw FileError(one_line(wanted.file.string()) + ": changed while it was imported; try again");
     }
     // The stream depends on the photograph's name only, so that other photographs may come and go.
-    const Digest name = sha256(bytes_of(record_.photographs[next_photograph_].file));
+    const Digest name = sha256(bytes_of(record_.photographs[wanted.photograph].file));
     RandomStream random(options_.seed, "import crops of " + to_hex(name));
     const PhotoSize size{photo.image.height(), photo.image.width()};
-    for (const CropPlace& place : crop_places(size, options_.size_px, count, random)) {
-      write_crop(draft, one.label, place, cut(photo.image, place, options_.size_px));
+    const auto places = crop_places(size, options_.size_px, wanted.count, random);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const GreyImage crop = cut(photo.image, places[i], options_.size_px);
+      ImportedPicture picture;
+      picture.label = wanted.of_class->label;
+      picture.file = picture.label + "-" +
+                     std::to_string(wanted.first_number + static_cast<int>(i)) + ".png";
+      picture.photograph = wanted.photograph;
+      picture.place = places[i];
+      picture.levels = levels_of(crop);
+      if (picture.levels.rms_grey == 0.0) {
+        throw FileError(one_line(photo.path.string()) +
+                        ": has only one grey level in the crop at x " +
+                        std::to_string(places[i].x) + ", y " + std::to_string(places[i].y) +
+                        ", where nothing can be felt; trim the photograph, or remove it");
+      }
+      if (draft.empty()) continue;
+      put_down(draft, picture, crop);
+      record_.pictures[wanted.first_picture + i] = std::move(picture);
     }
-  }
-
-  /// \param draft  empty: the crop is only looked at
-  void write_crop(const fs::path& draft, const std::string& label, CropPlace place,
-                  const GreyImage& crop) {
-    number_of_label_ = label == last_label_ ? number_of_label_ + 1 : 1;
-    last_label_ = label;
-    ImportedPicture picture;
-    picture.label = label;
-    picture.file = label + "-" + std::to_string(number_of_label_) + ".png";
-    picture.photograph = next_photograph_;
-    picture.place = place;
-    picture.levels = levels_of(crop);
-    if (picture.levels.rms_grey == 0.0) {
-      throw FileError(one_line(record_.photographs[next_photograph_].photo.path.string()) +
-                      ": has only one grey level in the crop at x " + std::to_string(place.x) +
-                      ", y " + std::to_string(place.y) +
-                      ", where nothing can be felt; trim the photograph, or remove it");
-    }
-    if (draft.empty()) return;
-    put_down(draft, picture, crop);
-    record_.pictures.push_back(std::move(picture));
   }
 
   static void put_down(const fs::path& draft, ImportedPicture& picture, const GreyImage& pixels) {
@@ -247,12 +277,13 @@ class Import {
     std::vector<PictureLevels> set;
     for (const ImportedPicture& picture : record_.pictures) set.push_back(picture.levels);
     record_.equal = equal_levels(set, options_.equalise);
-    for (ImportedPicture& picture : record_.pictures) {
+    all_in_parallel(record_.pictures.size(), [&](std::size_t i) {
+      ImportedPicture& picture = record_.pictures[i];
       const EqualisedPicture result =
           equalised(engine::read_grey_image(draft / picture.file), picture.levels, record_.equal);
       picture.clipped_share = result.clipped_share;
       put_down(draft, picture, result.picture);
-    }
+    });
   }
 
   /// Writes the study last; if that fails, the earlier pictures return.
@@ -281,7 +312,9 @@ class Import {
     return report;
   }
 
+  /// Called from several threads.
   void note_done() {
+    const std::lock_guard lock(mutex_);
     if (progress_) progress_(++done_, total_);
   }
 
@@ -289,9 +322,7 @@ class Import {
   const ImportProgress& progress_;
   std::vector<SizedClass> classes_;
   ImportRecord record_;
-  std::size_t next_photograph_ = 0;
-  std::string last_label_;
-  int number_of_label_ = 0;
+  std::mutex mutex_;  ///< guards done_, and the progress
   int done_ = 0;
   int total_ = 0;
 };
