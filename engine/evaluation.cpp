@@ -15,6 +15,9 @@ namespace touchtrial::engine {
 namespace {
 
 constexpr int kGlcmSmallestSide = 2;
+/// Orders of larger images are evaluated one after the other, each by all cores: several at a time
+/// would take too much memory.
+constexpr std::size_t kOneOrderFromPixels = std::size_t{4} << 20;
 
 void refuse_smaller(const GreyImage& image, int side, const std::string& purpose) {
   if (std::min(image.height(), image.width()) >= side) return;
@@ -58,7 +61,8 @@ Evaluation evaluate_image(const GreyImage& image, bool sweep,
   if (!sweep) return evaluation;
   evaluation.orders.resize(kSweptOrders);
   std::mutex mutex;
-  in_parallel(0, evaluation.orders.size(), [&](std::size_t i) {
+  const int orders_at_once = image.size() < kOneOrderFromPixels ? 0 : 1;
+  in_parallel(orders_at_once, evaluation.orders.size(), [&](std::size_t i) {
     evaluation.orders[i] = figures_of_order(image, static_cast<double>(i + 1) / 20.0, adaptive);
     const std::lock_guard lock(mutex);
     if (order_done) order_done();

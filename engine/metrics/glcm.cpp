@@ -1,11 +1,14 @@
 #include "engine/metrics/glcm.hpp"
 
+#include "engine/kernels/strips.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,12 +26,18 @@ using GlcmCell = std::array<std::uint32_t, 4>;
 /// cache lines.
 class GlcmCounts {
  public:
-  explicit GlcmCounts(const GreyImage& image)
-      : cells_(static_cast<std::size_t>(kGreyLevels) * kGreyLevels) {
-    count_first_row(image);
-    for (int y = 1; y < image.height(); ++y) {
-      count_row(image.row(y).data(), image.row(y - 1).data(), image.row(y).size());
+  explicit GlcmCounts(const GreyImage& image) : GlcmCounts() {
+    if (static_cast<std::int64_t>(image.size()) < kThreadsFromPixels) {
+      count(image, {0, image.height()});
+      return;
     }
+    std::mutex mutex;
+    for_each_strip(image.height(), image.width(), [&](Rows strip) {
+      GlcmCounts part;
+      part.count(image, strip);
+      const std::lock_guard lock(mutex);
+      add(part);
+    });
   }
 
   [[nodiscard]] const GlcmCell& at(int level, int neighbour) const noexcept {
@@ -36,6 +45,21 @@ class GlcmCounts {
   }
 
  private:
+  GlcmCounts() : cells_(static_cast<std::size_t>(kGreyLevels) * kGreyLevels) {}
+
+  void count(const GreyImage& image, Rows strip) {
+    if (strip.first == 0) count_first_row(image);
+    for (int y = std::max(strip.first, 1); y < strip.last; ++y) {
+      count_row(image.row(y).data(), image.row(y - 1).data(), image.row(y).size());
+    }
+  }
+
+  void add(const GlcmCounts& part) {
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      for (std::size_t d = 0; d < cells_[i].size(); ++d) cells_[i][d] += part.cells_[i][d];
+    }
+  }
+
   /// Indices into a cell, as in kGlcmOffsets.
   enum Direction : std::size_t { kRight, kRightUp, kUp, kLeftUp };
 

@@ -1,10 +1,14 @@
 #include "engine/metrics/ssim_deficits.hpp"
 
+#include "core/parallel.hpp"
+#include "engine/kernels/strips.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 // Compiled once for every target: this file includes itself.
 #undef HWY_TARGET_INCLUDE
@@ -274,7 +278,8 @@ HWY_INLINE void add_row(D d, const Real* HWY_RESTRICT weights, const Real* const
 }
 
 template <typename Real, bool kLuminance, class Source>
-HWY_INLINE void add_tile(const Source& source, Tile tile, MeanDeficits& sum) {
+MeanDeficits sums_of_tile(const Source& source, Tile tile) {
+  MeanDeficits sum;
   const hn::ScalableTag<Real> d;
   const auto weights = window_weights<Real>();
   Workspace<Real> work{};
@@ -286,15 +291,26 @@ HWY_INLINE void add_tile(const Source& source, Tile tile, MeanDeficits& sum) {
     for (int k = 0; k < kTaps; ++k) rows[k] = work.filtered[(y + 1 + k) % kTaps];
     add_row<hn::ScalableTag<Real>, kLuminance>(d, weights.data(), rows, tile, source.offsets, sum);
   }
+  return sum;
 }
 
 template <typename Real, bool kLuminance, class Source>
 HWY_INLINE MeanDeficits deficits_of(const Source& source) {
   const int windows_x = source.width - 2 * kReach;
   const int windows_y = source.height - 2 * kReach;
+  // Sums of tiles, added in their order: the same digits for any number of threads.
+  std::vector<MeanDeficits> tiles(
+      static_cast<std::size_t>((windows_x + kTile<Real> - 1) / kTile<Real>));
+  const bool is_large = std::int64_t{source.height} * source.width >= kThreadsFromPixels;
+  in_parallel(is_large ? 0 : 1, tiles.size(), [&](std::size_t i) HWY_ATTR {
+    const int x0 = static_cast<int>(i) * kTile<Real>;
+    tiles[i] = sums_of_tile<Real, kLuminance>(
+        source, Tile{x0, std::min(kTile<Real>, windows_x - x0)});
+  });
   MeanDeficits sum;
-  for (int x0 = 0; x0 < windows_x; x0 += kTile<Real>) {
-    add_tile<Real, kLuminance>(source, Tile{x0, std::min(kTile<Real>, windows_x - x0)}, sum);
+  for (const MeanDeficits& tile : tiles) {
+    sum.structure += tile.structure;
+    sum.luminance += tile.luminance;
   }
   const double windows = static_cast<double>(windows_x) * static_cast<double>(windows_y);
   return {sum.structure / windows, sum.luminance / windows};

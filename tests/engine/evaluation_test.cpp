@@ -7,6 +7,10 @@
 #include "engine/refusal.hpp"
 #include "support/catch.hpp"
 
+#include <cstddef>
+
+#include <tbb/task_arena.h>
+
 namespace touchtrial {
 namespace {
 
@@ -33,6 +37,25 @@ TEST_CASE("an evaluation measures the image and its adaptive texture") {
     CHECK(evaluation.adaptive.glcm[i].contrast == adaptive[i].contrast);
   }
   CHECK(evaluation.orders.empty());
+}
+
+TEST_CASE("a megapixel is evaluated by several threads at once, to the same digits as by one") {
+  const GreyImage image = cloth_image({1003, 1009});
+  const engine::Evaluation all = engine::evaluate_image(image, true);
+  engine::Evaluation alone;
+  tbb::task_arena one(1);
+  one.execute([&] { alone = engine::evaluate_image(image, true); });
+  CHECK(all.original.entropy == alone.original.entropy);
+  for (std::size_t i = 0; i < engine::kGlcmOffsets.size(); ++i) {
+    CHECK(all.original.glcm[i].correlation == alone.original.glcm[i].correlation);
+    CHECK(all.adaptive.glcm[i].entropy == alone.adaptive.glcm[i].entropy);
+  }
+  REQUIRE(all.orders.size() == alone.orders.size());
+  for (std::size_t i = 0; i < all.orders.size(); ++i) {
+    CHECK(all.orders[i].order == alone.orders[i].order);
+    CHECK(all.orders[i].ms_ssim == alone.orders[i].ms_ssim);
+    CHECK(all.orders[i].entropy == alone.orders[i].entropy);
+  }
 }
 
 TEST_CASE("a sweep compares the adaptive texture with every fixed order") {

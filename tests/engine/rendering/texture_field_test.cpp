@@ -88,7 +88,7 @@ TEST_CASE("the force of stored heights is that of the exact ones, to 3e-7 of the
   }
   CAPTURE(amplitude, options.neighbourhood);
   CHECK(error > 0.0);
-  CHECK(error <= 3e-7 * largest * (options.neighbourhood / 2.0));
+  CHECK(error <= 3e-7 * largest * (options.neighbourhood / 2));
 }
 
 TEST_CASE("make_texture_field takes the smallest images") {
