@@ -60,6 +60,8 @@ template <typename Real>
 
 /// ADMM in single precision: set-up and this number of steps.
 [[nodiscard]] Case admm_case(int size_px, int steps);
+/// The transforms of as many steps and their checks, there and back, by measured plans.
+[[nodiscard]] Case transforms_case(int size_px, int steps);
 [[nodiscard]] Case fixed_point_case(int size_px, int steps);
 [[nodiscard]] Cases tv_gabor_cases(const Scope& scope);
 

@@ -1,7 +1,5 @@
 #include "engine/tv_gabor/admm.hpp"
 
-#include "engine/tv_gabor/row_kernels.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -30,41 +28,87 @@ std::vector<Real> ring_laplacian(int n, int count) {
   return spectrum;
 }
 
+/// Watches nothing of a step.
+struct Unwatched {
+  struct Sums {
+    Sums& operator+=(const Sums&) noexcept { return *this; }
+  };
+
+  explicit Unwatched(std::size_t, double) {}
+  template <typename Real>
+  void before(const AdmmRow<Real>&) {}
+  template <typename Real>
+  void after(const AdmmRow<Real>&) {}
+
+  Sums sums;
+};
+
 /// A row of z, split into the scaled multiplier b and w.
 template <typename Real>
 struct SplitRow {
   explicit SplitRow(std::size_t width) : b_x(width), b_y(width), w_x(width), w_y(width) {}
 
-  void split(std::span<const Real> z_x, std::span<const Real> z_y, double penalty) {
-    clip_row(z_x.data(), z_y.data(), z_x.size(), static_cast<Real>(penalty), b_x.data(),
-             b_y.data());
+  void split(const AdmmRow<Real>& row, double penalty) {
+    clip_row(row.z_x, row.z_y, b_x.size(), static_cast<Real>(penalty), b_x.data(), b_y.data());
     const auto unit = static_cast<Real>(1.0 / penalty);
-    for (std::size_t x = 0; x < z_x.size(); ++x) {
+    for (std::size_t x = 0; x < b_x.size(); ++x) {
       b_x[x] *= unit;
       b_y[x] *= unit;
-      w_x[x] = z_x[x] - b_x[x];
-      w_y[x] = z_y[x] - b_y[x];
+      w_x[x] = row.z_x[x] - b_x[x];
+      w_y[x] = row.z_y[x] - b_y[x];
     }
   }
 
   std::vector<Real> b_x, b_y, w_x, w_y;
 };
 
-/// Sums over the plane of squared norms.
-struct Sums {
-  double w = 0.0, b = 0.0, change_of_w = 0.0, change_of_b = 0.0;
+/// Sums, over rows, squared norms of a step.
+template <typename Real>
+class StepNorms {
+ public:
+  struct Sums {
+    double w = 0.0, b = 0.0, change_of_w = 0.0, change_of_b = 0.0;
 
-  template <typename Real>
-  void add(const SplitRow<Real>& before, const SplitRow<Real>& after) {
+    Sums& operator+=(const Sums& other) noexcept {
+      w += other.w;
+      b += other.b;
+      change_of_w += other.change_of_w;
+      change_of_b += other.change_of_b;
+      return *this;
+    }
+  };
+
+  StepNorms(std::size_t width, double penalty) : penalty_(penalty), before_(width), after_(width) {}
+
+  void before(const AdmmRow<Real>& row) { before_.split(row, penalty_); }
+  void after(const AdmmRow<Real>& row) {
+    after_.split(row, penalty_);
     const auto squared = [](double x, double y) { return x * x + y * y; };
-    for (std::size_t i = 0; i < after.w_x.size(); ++i) {
-      w += squared(after.w_x[i], after.w_y[i]);
-      b += squared(after.b_x[i], after.b_y[i]);
-      change_of_w += squared(after.w_x[i] - before.w_x[i], after.w_y[i] - before.w_y[i]);
-      change_of_b += squared(after.b_x[i] - before.b_x[i], after.b_y[i] - before.b_y[i]);
+    for (std::size_t i = 0; i < after_.w_x.size(); ++i) {
+      sums.w += squared(after_.w_x[i], after_.w_y[i]);
+      sums.b += squared(after_.b_x[i], after_.b_y[i]);
+      sums.change_of_w += squared(after_.w_x[i] - before_.w_x[i], after_.w_y[i] - before_.w_y[i]);
+      sums.change_of_b += squared(after_.b_x[i] - before_.b_x[i], after_.b_y[i] - before_.b_y[i]);
     }
   }
+
+  Sums sums;
+
+ private:
+  double penalty_;
+  SplitRow<Real> before_, after_;
 };
+
+/// Changes the penalty of z, keeping w and the unscaled multiplier. Overwrites the row's targets.
+template <typename Real>
+void rescale_row(const AdmmRow<Real>& row, std::size_t width, double from, double to) {
+  const auto change = static_cast<Real>(1.0 / to - 1.0 / from);
+  clip_row(row.z_x, row.z_y, width, static_cast<Real>(from), row.target_x, row.target_y);
+  for (std::size_t x = 0; x < width; ++x) {
+    row.z_x[x] += change * row.target_x[x];
+    row.z_y[x] += change * row.target_y[x];
+  }
+}
 
 double ratio_of_norms(double squared, double reference_squared) {
   return std::sqrt(squared / std::max(reference_squared, std::numeric_limits<double>::min()));
@@ -73,152 +117,115 @@ double ratio_of_norms(double squared, double reference_squared) {
 }  // namespace
 
 template <typename Real>
-TvGaborAdmm<Real>::TvGaborAdmm(const TvGaborProblem<Real>& problem, RealFft<Real>& fft,
-                               double penalty)
+TvGaborAdmm<Real>::TvGaborAdmm(const TvGaborProblem<Real>& problem, TorusPlane<Real>& plane)
     : problem_(problem),
-      fft_(fft),
-      penalty_(penalty),
-      laplacian_y_(ring_laplacian<Real>(problem.image.height(), problem.spectrum.height())),
-      laplacian_x_(ring_laplacian<Real>(problem.image.width(), problem.spectrum.width())),
+      plane_(plane),
+      laplacian_y_(ring_laplacian<Real>(problem.image.height(), problem.image.height())),
+      laplacian_x_(ring_laplacian<Real>(problem.image.width(), problem.image.width())),
+      factors_(problem.factors.size()),
       z_(problem.image.height(), problem.image.width()),
-      former_(problem.image.height(), problem.image.width()),
-      target_x_(static_cast<std::size_t>(problem.image.width())),
-      target_y_(target_x_.size()),
-      above_(target_x_.size()),
-      first_(target_x_.size()) {
-  for (int y = 0; y < problem.image.height(); ++y) {
-    const auto x_row = z_.x.row(y), y_row = z_.y.row(y);
-    gradient_of_row<Real>(problem.image.row(y), problem.image.row(row_below(y)), x_row, y_row);
-    const auto halve = [this](Real& sample) {
-      image_squared_ += static_cast<double>(sample) * sample;
-      sample *= static_cast<Real>(kFirstShare);
-    };
-    std::for_each(x_row.begin(), x_row.end(), halve);
-    std::for_each(y_row.begin(), y_row.end(), halve);
-  }
-}
-
-/// Writes -div target into the transform's plane, row by row, each after it has been read; the last
-/// row is above the first.
-/// \param target_row  called as target_row(y) for every row, fills target_x_ and target_y_
-template <typename Real>
-template <typename TargetRow>
-void TvGaborAdmm<Real>::load_targets(const TargetRow& target_row) {
-  std::fill(above_.begin(), above_.end(), Real{0});
-  for (int y = 0; y < problem_.image.height(); ++y) {
-    target_row(y);
-    negative_divergence_of_row<Real>(target_x_, target_y_, above_, plane_row(y));
-    std::swap(above_, target_y_);
-  }
-  const auto row = plane_row(0);
-  for (std::size_t x = 0; x < row.size(); ++x) row[x] += above_[x];
-}
-
-template <typename Real>
-void TvGaborAdmm<Real>::start_again() {
-  const auto limit = static_cast<Real>(1.0 / penalty_);
-  load_targets([&](int y) {
-    const AdmmRow<Real> row{.image = problem_.image.row(y).data(),
-                            .image_below = problem_.image.row(row_below(y)).data(),
-                            .texture = nullptr,
-                            .texture_below = nullptr,
-                            .z_x = z_.x.row(y).data(),
-                            .z_y = z_.y.row(y).data(),
-                            .former_x = nullptr,
-                            .former_y = nullptr,
-                            .target_x = target_x_.data(),
-                            .target_y = target_y_.data()};
-    admm_target_row(row, target_x_.size(), limit);
+      former_(problem.image.height(), problem.image.width()) {
+  image_squared_ = plane_.template sum_of_blocks<double>([this](const RowBlock& block) {
+    double squared = 0.0;
+    for (int y = block.begin; y < block.end; ++y) {
+      const auto x_row = z_.x.row(y), y_row = z_.y.row(y);
+      gradient_of_row<Real>(problem_.image.row(y), problem_.image.row(row_below(y)), x_row, y_row);
+      for (const auto& row : {x_row, y_row}) {
+        for (Real& sample : row) {
+          squared += static_cast<double>(sample) * sample;
+          sample *= static_cast<Real>(kFirstShare);
+        }
+      }
+    }
+    return squared;
   });
+}
+
+template <typename Real>
+void TvGaborAdmm<Real>::start_again(double penalty) {
+  const double former_penalty = penalty_;
+  penalty_ = penalty;
+  set_factors();
+  const auto limit = static_cast<Real>(1.0 / penalty);
+  plane_.in_blocks([&](const RowBlock& block) {
+    typename TorusPlane<Real>::DivergenceRows targets(plane_, block);
+    for (int y = block.begin; y < block.end; ++y) {
+      AdmmRow<Real> row = row_of(y);
+      row.target_x = targets.along_x();
+      row.target_y = targets.along_y();
+      if (former_penalty > 0.0 && penalty != former_penalty) {
+        rescale_row(row, plane_.width(), former_penalty, penalty);
+      }
+      admm_target_row(row, plane_.width(), limit);
+      targets.next();
+    }
+  });
+  plane_.finish_divergence();
   has_former_ = false;
 }
 
 template <typename Real>
 void TvGaborAdmm<Real>::step(AdmmPace pace) {
-  const auto row_alone = [](int, const auto& map_row) { map_row(); };
   if (pace == AdmmPace::eager) {
-    map(kEagerRelaxation, has_former_ ? kEagerMomentum : 0.0, row_alone);
+    map<Unwatched>(kEagerRelaxation, has_former_ ? kEagerMomentum : 0.0);
   } else {
-    map(kCautiousRelaxation, 0.0, row_alone);
+    map<Unwatched>(kCautiousRelaxation, 0.0);
   }
 }
 
 template <typename Real>
 AdmmResiduals TvGaborAdmm<Real>::measured_step() {
-  SplitRow<Real> before(target_x_.size()), after(target_x_.size());
-  Sums sums;
-  map(kCautiousRelaxation, 0.0, [&](int y, const auto& map_row) {
-    before.split(z_.x.row(y), z_.y.row(y), penalty_);
-    map_row();
-    after.split(z_.x.row(y), z_.y.row(y), penalty_);
-    sums.add(before, after);
-  });
+  const auto sums = map<StepNorms<Real>>(kCautiousRelaxation, 0.0);
   return {ratio_of_norms(sums.change_of_b, std::max(sums.w, image_squared_)),
           ratio_of_norms(sums.change_of_w, sums.b)};
 }
 
-/// One step.
-/// \param around  called as around(y, map_row) for every row; calls map_row
+/// One step. The u-step in terms of v = f - u is diagonal in the Fourier basis, and without K =
+/// M^-1, so that frequencies that M removes are exact.
 template <typename Real>
-template <typename Around>
-void TvGaborAdmm<Real>::map(double relaxation, double momentum, const Around& around) {
-  filter();
+template <typename Watch>
+typename Watch::Sums TvGaborAdmm<Real>::map(double relaxation, double momentum) {
+  plane_.filter(factors_);
   const AdmmNumbers<Real> numbers{.relaxation = static_cast<Real>(relaxation),
                                   .limit = static_cast<Real>(1.0 / penalty_),
                                   .momentum = static_cast<Real>(momentum)};
-  const auto first = plane_row(0);
-  std::copy(first.begin(), first.end(), first_.begin());
-  load_targets([&](int y) {
-    const int below = row_below(y);
-    const AdmmRow<Real> row{.image = problem_.image.row(y).data(),
-                            .image_below = problem_.image.row(below).data(),
-                            .texture = plane_row(y).data(),
-                            .texture_below = below == 0 ? first_.data() : plane_row(below).data(),
-                            .z_x = z_.x.row(y).data(),
-                            .z_y = z_.y.row(y).data(),
-                            .former_x = former_.x.row(y).data(),
-                            .former_y = former_.y.row(y).data(),
-                            .target_x = target_x_.data(),
-                            .target_y = target_y_.data()};
-    around(y, [&] { admm_row(row, target_x_.size(), numbers); });
+  const auto sums = plane_.template sum_of_blocks<typename Watch::Sums>([&](const RowBlock& block) {
+    typename TorusPlane<Real>::Rows texture(plane_, block);
+    typename TorusPlane<Real>::DivergenceRows targets(plane_, block);
+    Watch watch(plane_.width(), penalty_);
+    for (int y = block.begin; y < block.end; ++y) {
+      texture.go_to(y);
+      AdmmRow<Real> row = row_of(y);
+      row.texture = texture.row();
+      row.texture_below = texture.below();
+      row.target_x = targets.along_x();
+      row.target_y = targets.along_y();
+      watch.before(row);
+      admm_row(row, plane_.width(), numbers);
+      watch.after(row);
+      targets.next();
+    }
+    return watch.sums;
   });
+  plane_.finish_divergence();
   has_former_ = true;
+  return sums;
 }
 
-/// The u-step in terms of v = f - u: diagonal in the Fourier basis, and without K = M^-1, so that
-/// frequencies that M removes are exact. Writes v into the transform's plane.
 template <typename Real>
-void TvGaborAdmm<Real>::filter() {
-  fft_.forward();
+void TvGaborAdmm<Real>::set_factors() {
   const auto lambda = static_cast<Real>(problem_.lambda);
   const auto penalty = static_cast<Real>(penalty_);
-  const auto scale = Real{1} / static_cast<Real>(problem_.image.size());
-  const auto spectrum = fft_.spectrum();
-  std::size_t i = 0;
-  for (const Real laplacian_y : laplacian_y_) {
-    for (const Real laplacian_x : laplacian_x_) {
-      const Real weight = penalty * problem_.spectrum.samples()[i];
-      const Real divisor = lambda + weight * (laplacian_y + laplacian_x);
-      spectrum[i] *= scale * weight / divisor;
-      ++i;
-    }
-  }
-  fft_.inverse();
-}
-
-template <typename Real>
-void TvGaborAdmm<Real>::set_penalty(double penalty) {
-  const auto former = static_cast<Real>(penalty_);
-  const auto change = static_cast<Real>(1.0 / penalty - 1.0 / penalty_);
-  penalty_ = penalty;
-  for (int y = 0; y < z_.x.height(); ++y) {
-    const auto z_x = z_.x.row(y), z_y = z_.y.row(y);
-    clip_row(z_x.data(), z_y.data(), z_x.size(), former, target_x_.data(), target_y_.data());
-    for (std::size_t x = 0; x < z_x.size(); ++x) {
-      z_x[x] += change * target_x_[x];
-      z_y[x] += change * target_y_[x];
-    }
-  }
+  const Real* const spectrum = problem_.factors.data();
+  const Real* const along_x = laplacian_x_.data();
+  Real* const factors = factors_.data();
+  plane_.in_column_blocks([&](std::size_t block) {
+    plane_.column_blocks().for_each(block, [&](std::size_t i, int y, int x) {
+      const Real weight = penalty * spectrum[i];
+      const Real laplacian = laplacian_y_[static_cast<std::size_t>(y)] + along_x[x];
+      factors[i] = weight / (lambda + weight * laplacian);
+    });
+  });
 }
 
 template <typename Real>
@@ -226,10 +233,19 @@ int TvGaborAdmm<Real>::row_below(int y) const noexcept {
   return y + 1 == problem_.image.height() ? 0 : y + 1;
 }
 
+/// Without texture and targets.
 template <typename Real>
-std::span<Real> TvGaborAdmm<Real>::plane_row(int y) const {
-  const auto width = static_cast<std::size_t>(problem_.image.width());
-  return fft_.plane().subspan(static_cast<std::size_t>(y) * width, width);
+AdmmRow<Real> TvGaborAdmm<Real>::row_of(int y) noexcept {
+  return {.image = problem_.image.row(y).data(),
+          .image_below = problem_.image.row(row_below(y)).data(),
+          .texture = nullptr,
+          .texture_below = nullptr,
+          .z_x = z_.x.row(y).data(),
+          .z_y = z_.y.row(y).data(),
+          .former_x = former_.x.row(y).data(),
+          .former_y = former_.y.row(y).data(),
+          .target_x = nullptr,
+          .target_y = nullptr};
 }
 
 template class TvGaborAdmm<float>;

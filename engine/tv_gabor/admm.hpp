@@ -3,10 +3,10 @@
 #pragma once
 
 #include "core/plane.hpp"
-#include "engine/fourier/real_fft.hpp"
 #include "engine/tv_gabor/problem.hpp"
+#include "engine/tv_gabor/row_kernels.hpp"
+#include "engine/tv_gabor/torus_plane.hpp"
 
-#include <span>
 #include <vector>
 
 namespace touchtrial::engine {
@@ -29,28 +29,27 @@ struct AdmmResiduals {
 /// iteration works on the texture v, not on the cartoon u: the image enters through its gradient
 /// only, which is exact, so that rounding is relative to the texture and not to the image's 255
 /// grey levels. (Float needs that: an error of u reaches v multiplied by penalty / lambda, about
-/// 100.) Besides its two transforms, a step reads and writes each plane once. Memory with problem
-/// and transform: 30 bytes a sample of the torus in float, 60 in double.
+/// 100.) A step is one pass over the columns of the half transformed texture, and one over rows,
+/// which reads and writes each plane once. Memory with problem and transform: 28 bytes a sample of
+/// the torus in float, 56 in double.
 template <typename Real>
 class TvGaborAdmm {
  public:
-  /// Starts at z = grad f / 2. Keeps references to problem and transform; others may use the
-  /// transform between steps, see start_again().
-  /// \param fft  of the problem's size
-  /// \param penalty  rho, 1 / grey levels, > 0
-  TvGaborAdmm(const TvGaborProblem<Real>& problem, RealFft<Real>& fft, double penalty);
+  /// Starts at z = grad f / 2. Keeps references to problem and plane; others may use the plane
+  /// between steps, see start_again().
+  /// \param plane  of the problem's size
+  TvGaborAdmm(const TvGaborProblem<Real>& problem, TorusPlane<Real>& plane);
 
-  /// Call this before the first step, and again before a step if others have used the transform, or
-  /// the penalty or z has changed. Forgets the momentum.
-  void start_again();
+  /// Call this before the first step, and again before a step if others have used the plane, or z
+  /// has changed. Forgets the momentum. If the penalty changes, w and the unscaled multiplier stay.
+  /// \param penalty  rho, 1 / grey levels, > 0
+  void start_again(double penalty);
   void step(AdmmPace pace);
   /// A step without momentum, with its residuals.
   [[nodiscard]] AdmmResiduals measured_step();
 
-  /// Changes the penalty, keeping w and the unscaled multiplier.
-  void set_penalty(double penalty);
-
-  /// Continues an iteration on the same image from another precision.
+  /// Continues an iteration on the same image from another precision, where z() and penalty() were
+  /// these.
   template <typename Other>
   void resume(const VectorField<Other>& z, double penalty) {
     penalty_ = penalty;
@@ -63,23 +62,21 @@ class TvGaborAdmm {
   [[nodiscard]] const VectorField<Real>& z() const noexcept { return z_; }
 
  private:
-  template <typename Around>
-  void map(double relaxation, double momentum, const Around& around);
-  void filter();
-  template <typename TargetRow>
-  void load_targets(const TargetRow& target_row);
+  template <typename Watch>
+  typename Watch::Sums map(double relaxation, double momentum);
+  void set_factors();
   [[nodiscard]] int row_below(int y) const noexcept;
-  [[nodiscard]] std::span<Real> plane_row(int y) const;
+  [[nodiscard]] AdmmRow<Real> row_of(int y) noexcept;
 
   const TvGaborProblem<Real>& problem_;
-  RealFft<Real>& fft_;
-  double penalty_;
+  TorusPlane<Real>& plane_;
+  double penalty_ = 0.0;                         // none yet
   std::vector<Real> laplacian_y_, laplacian_x_;  // |grad^|^2 is their sum
+  std::vector<Real> factors_;                    // of a step's filter
   VectorField<Real> z_;
   VectorField<Real> former_;  // the map's last value
   bool has_former_ = false;
-  double image_squared_ = 0.0;                             // sum of |grad f|^2
-  std::vector<Real> target_x_, target_y_, above_, first_;  // rows
+  double image_squared_ = 0.0;  // sum of |grad f|^2
 };
 
 }  // namespace touchtrial::engine

@@ -1,12 +1,12 @@
 #include "engine/tv_gabor/problem.hpp"
 
-#include "engine/fourier/real_fft.hpp"
+#include "engine/fourier/plane_filter.hpp"
 #include "engine/symmetric_extension.hpp"
+#include "engine/tv_gabor/row_kernels.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <numbers>
 #include <numeric>
@@ -45,12 +45,72 @@ Patch zero_mean_gabor_patch(const GaborComponent& component) {
   return patch;
 }
 
-/// Places the patch in the corner of the torus: a shift does not change |g^|.
-void place_in_corner(const Patch& patch, std::span<double> plane, int width) {
-  std::fill(plane.begin(), plane.end(), 0.0);
-  for (int y = 0; y < kPatchSide; ++y) {
-    const auto row = plane.subspan(static_cast<std::size_t>(y) * static_cast<std::size_t>(width));
-    std::copy_n(patch.begin() + y * kPatchSide, kPatchSide, row.begin());
+/// cos or sin of 2 pi offset frequency / length, for all `frequencies`.
+template <typename Function>
+std::vector<double> wave(Function function, int offset, int frequencies, int length) {
+  std::vector<double> samples(static_cast<std::size_t>(frequencies));
+  for (int i = 0; i < frequencies; ++i) {
+    samples[static_cast<std::size_t>(i)] =
+        function(2.0 * std::numbers::pi * (offset * i % length) / length);
+  }
+  return samples;
+}
+
+double cosine(double angle) {
+  return std::cos(angle);
+}
+double sine(double angle) {
+  return std::sin(angle);
+}
+
+/// The transforms of a patch's rows at distance y from its centre, by their definition.
+struct TransformedRow {
+  std::vector<double> real, imaginary;
+};
+
+TransformedRow transformed_row(const Patch& patch, int y, int width) {
+  const int count = width / 2 + 1;
+  TransformedRow row{std::vector<double>(static_cast<std::size_t>(count)),
+                     std::vector<double>(static_cast<std::size_t>(count))};
+  for (int x = -kPatchRadius; x <= kPatchRadius; ++x) {
+    const double sample =
+        patch[static_cast<std::size_t>((y + kPatchRadius) * kPatchSide + x + kPatchRadius)];
+    const std::vector<double> along = wave(cosine, x, count, width);
+    const std::vector<double> across = wave(sine, x, count, width);
+    for (std::size_t i = 0; i < along.size(); ++i) {
+      row.real[i] += sample * along[i];
+      row.imaginary[i] += sample * across[i];
+    }
+  }
+  return row;
+}
+
+/// Adds |g^|^2. A patch is the same in opposite places, so its transform is real, and rows above
+/// the centre add what those below it add.
+void add_power(const Patch& patch, Plane<double>& spectrum, int width) {
+  const int height = spectrum.height();
+  std::array<TransformedRow, kPatchRadius + 1> rows;
+  std::array<std::vector<double>, kPatchRadius + 1> cosines, sines;
+  for (int y = 0; y <= kPatchRadius; ++y) {
+    const auto at = static_cast<std::size_t>(y);
+    rows[at] = transformed_row(patch, y, width);
+    cosines[at] = wave(cosine, y, height, height);
+    sines[at] = wave(sine, y, height, height);
+  }
+  std::vector<double> transform(static_cast<std::size_t>(spectrum.width()));
+  for (int i = 0; i < height; ++i) {
+    transform = rows[0].real;
+    for (std::size_t y = 1; y < rows.size(); ++y) {
+      const double cosine_of_row = 2.0 * cosines[y][static_cast<std::size_t>(i)];
+      const double sine_of_row = 2.0 * sines[y][static_cast<std::size_t>(i)];
+      const double* const real = rows[y].real.data();
+      const double* const imaginary = rows[y].imaginary.data();
+      for (std::size_t x = 0; x < transform.size(); ++x) {
+        transform[x] += cosine_of_row * real[x] - sine_of_row * imaginary[x];
+      }
+    }
+    const auto row = spectrum.row(i);
+    for (std::size_t x = 0; x < transform.size(); ++x) row[x] += transform[x] * transform[x];
   }
 }
 
@@ -87,14 +147,9 @@ Plane<Real> cropped_from_torus(const Plane<Real>& torus, int height, int width) 
 }
 
 Plane<double> gabor_spectrum(std::span<const GaborComponent> components, int height, int width) {
-  RealFft<double> fft(height, width);
   Plane<double> spectrum(height, width / 2 + 1);
   for (const GaborComponent& component : components) {
-    place_in_corner(zero_mean_gabor_patch(component), fft.plane(), width);
-    fft.forward();
-    for (std::size_t i = 0; i < spectrum.size(); ++i) {
-      spectrum.samples()[i] += std::norm(fft.spectrum()[i]);
-    }
+    add_power(zero_mean_gabor_patch(component), spectrum, width);
   }
   spectrum.at(0, 0) = 0.0;  // the patches have no mean; anything here is rounding
   const double largest = *std::max_element(spectrum.samples().begin(), spectrum.samples().end());
@@ -107,7 +162,8 @@ TvGaborProblem<Real> tv_gabor_problem(const GreyImage& image, const TvGaborOptio
   const int height = torus_length(image.height());
   const int width = torus_length(image.width());
   return {extended_to_torus<Real>(image),
-          converted<Real>(gabor_spectrum(options.components, height, width)), options.lambda};
+          arranged_factors<Real>(gabor_spectrum(options.components, height, width), width),
+          options.lambda};
 }
 
 template <typename Real>
@@ -117,7 +173,8 @@ double mean_gradient(const Plane<Real>& torus) {
   for (int y = 0; y < torus.height(); ++y) {
     const int below = y + 1 == torus.height() ? 0 : y + 1;
     gradient_of_row<Real>(torus.row(y), torus.row(below), along_x, along_y);
-    for (std::size_t x = 0; x < along_x.size(); ++x) sum += std::hypot(along_x[x], along_y[x]);
+    norm_row(along_x.data(), along_y.data(), along_x.size(), along_x.data());
+    for (const Real norm : along_x) sum += norm;
   }
   return sum / static_cast<double>(torus.size());
 }

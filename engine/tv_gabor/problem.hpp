@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace touchtrial::engine {
 
@@ -39,9 +40,9 @@ template <typename Real>
 
 template <typename Real>
 struct TvGaborProblem {
-  Plane<Real> image;     ///< f, grey levels
-  Plane<Real> spectrum;  ///< of M, in [0, 1], as gabor_spectrum gives it
-  double lambda;         ///< weight of the texture norm
+  Plane<Real> image;          ///< f, grey levels
+  std::vector<Real> factors;  ///< the spectrum of M, in [0, 1], as arranged_factors arranges it
+  double lambda;              ///< weight of the texture norm
 };
 
 /// \param image  at least 1 x 1

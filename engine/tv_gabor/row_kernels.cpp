@@ -100,13 +100,17 @@ HWY_INLINE void target_samples(D d, const AdmmRow<Real>& row, Real bound, std::s
 }
 
 /// Calls visit(descriptor, index, distance to the right neighbour) for whole vectors, then for
-/// single samples; the last one's neighbour is the first.
+/// shorter ones and single samples; the last one's neighbour is the first.
 template <typename Real, class Visit>
 HWY_INLINE void over_row(std::size_t width, const Visit& visit) {
   const hn::ScalableTag<Real> d;
+  const hn::CappedTag<Real, 8> shorter;
+  const hn::CappedTag<Real, 4> short_one;
   const hn::CappedTag<Real, 1> one;
   std::size_t i = 0;
   for (; i + hn::Lanes(d) < width; i += hn::Lanes(d)) visit(d, i, 1);
+  for (; i + hn::Lanes(shorter) < width; i += hn::Lanes(shorter)) visit(shorter, i, 1);
+  for (; i + hn::Lanes(short_one) < width; i += hn::Lanes(short_one)) visit(short_one, i, 1);
   for (; i + 1 < width; ++i) visit(one, i, 1);
   visit(one, width - 1, -static_cast<std::ptrdiff_t>(width - 1));
 }
@@ -140,7 +144,58 @@ void norms_of_row(const Real* x, const Real* y, std::size_t width, Real* out) {
                             HWY_ATTR { hn::StoreU(norm(load(d, x + i, y + i)), d, out + i); });
 }
 
+/// Samples as double, whatever they are stored as.
+template <class D>
+HWY_INLINE hn::Vec<D> load_wide(D d, const float* from) {
+  return hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, D>(), from));
+}
+template <class D>
+HWY_INLINE hn::Vec<D> load_wide(D d, const double* from) {
+  return hn::LoadU(d, from);
+}
+
+template <class D, typename Real>
+HWY_INLINE PairOf<D> wide_gradient(D d, const Real* here, const Real* below, std::ptrdiff_t right) {
+  const auto centre = load_wide(d, here);
+  return {hn::Sub(load_wide(d, here + right), centre), hn::Sub(load_wide(d, below), centre)};
+}
+
+/// Adds as many samples as d has lanes, from i on.
+template <class D, typename Real>
+HWY_INLINE void add_gap(D d, const GapRow<Real>& row, std::size_t i, std::ptrdiff_t right,
+                        hn::Vec<D>& primal, hn::Vec<D>& difference) {
+  const auto f = wide_gradient(d, row.image + i, row.image_below + i, right);
+  const auto v = wide_gradient(d, row.texture + i, row.texture_below + i, right);
+  const PairOf<D> u = {hn::Sub(f.x, v.x), hn::Sub(f.y, v.y)};
+  const PairOf<D> q = {load_wide(d, row.q_x + i), load_wide(d, row.q_y + i)};
+  const auto steepness = norm(u);
+  const auto q_v = hn::MulAdd(q.x, v.x, hn::Mul(q.y, v.y));
+  const auto q_u = hn::MulAdd(q.x, u.x, hn::Mul(q.y, u.y));
+  primal = hn::Add(primal, hn::MulAdd(hn::Set(d, 0.5), q_v, steepness));
+  difference = hn::Add(difference, hn::Max(hn::Sub(steepness, q_u), hn::Zero(d)));
+}
+
+template <typename Real>
+GapSums gap_of_row(const GapRow<Real>& row, std::size_t width) {
+  const hn::ScalableTag<double> d;
+  const hn::CappedTag<double, 1> one;
+  auto primal = hn::Zero(d), difference = hn::Zero(d);
+  auto last_primal = hn::Zero(one), last_difference = hn::Zero(one);
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) < width; i += hn::Lanes(d)) add_gap(d, row, i, 1, primal, difference);
+  for (; i + 1 < width; ++i) add_gap(one, row, i, 1, last_primal, last_difference);
+  add_gap(one, row, i, -static_cast<std::ptrdiff_t>(i), last_primal, last_difference);
+  return {hn::GetLane(hn::SumOfLanes(d, primal)) + hn::GetLane(last_primal),
+          hn::GetLane(hn::SumOfLanes(d, difference)) + hn::GetLane(last_difference)};
+}
+
 // Dispatch tables hold functions, not templates.
+GapSums gap_f32(const GapRow<float>& row, std::size_t width) {
+  return gap_of_row(row, width);
+}
+GapSums gap_f64(const GapRow<double>& row, std::size_t width) {
+  return gap_of_row(row, width);
+}
 void map_row_f32(const AdmmRow<float>& row, std::size_t width, const AdmmNumbers<float>& numbers) {
   map_row(row, width, numbers);
 }
@@ -186,6 +241,8 @@ HWY_EXPORT(clip_f32);
 HWY_EXPORT(clip_f64);
 HWY_EXPORT(norms_f32);
 HWY_EXPORT(norms_f64);
+HWY_EXPORT(gap_f32);
+HWY_EXPORT(gap_f64);
 
 }  // namespace
 
@@ -222,6 +279,15 @@ void norm_row(const float* x, const float* y, std::size_t width, float* out) {
 template <>
 void norm_row(const double* x, const double* y, std::size_t width, double* out) {
   HWY_DYNAMIC_DISPATCH(norms_f64)(x, y, width, out);
+}
+
+template <>
+GapSums gap_row(const GapRow<float>& row, std::size_t width) {
+  return HWY_DYNAMIC_DISPATCH(gap_f32)(row, width);
+}
+template <>
+GapSums gap_row(const GapRow<double>& row, std::size_t width) {
+  return HWY_DYNAMIC_DISPATCH(gap_f64)(row, width);
 }
 
 }  // namespace touchtrial::engine

@@ -45,4 +45,31 @@ void clip_row(const Real* x, const Real* y, std::size_t width, Real scale, Real*
 template <typename Real>
 void norm_row(const Real* x, const Real* y, std::size_t width, Real* out);
 
+/// One row of a certificate; see certify. `image_below` and `texture_below` are the next row on the
+/// torus.
+template <typename Real>
+struct GapRow {
+  const Real* image;
+  const Real* image_below;
+  const Real* texture;
+  const Real* texture_below;
+  const Real* q_x;
+  const Real* q_y;
+};
+
+/// Sums over samples, in double.
+struct GapSums {
+  double primal = 0.0;      ///< |grad u| + <q, grad v> / 2, with u = f - v
+  double difference = 0.0;  ///< |grad u| - <q, grad u>, 0 where rounding makes it negative
+
+  GapSums& operator+=(const GapSums& other) noexcept {
+    primal += other.primal;
+    difference += other.difference;
+    return *this;
+  }
+};
+
+template <typename Real>
+[[nodiscard]] GapSums gap_row(const GapRow<Real>& row, std::size_t width);
+
 }  // namespace touchtrial::engine

@@ -5,114 +5,58 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <span>
-#include <utility>
 #include <vector>
 
 namespace touchtrial::engine {
-namespace {
-
-/// Rows of q = -p, computed on demand: the field itself stays as the solver needs it.
-template <typename Real>
-class DualRows {
- public:
-  DualRows(const VectorField<Real>& field, double scale)
-      : field_(field),
-        scale_(static_cast<Real>(scale)),
-        x_(static_cast<std::size_t>(field.x.width())),
-        y_(x_.size()) {}
-
-  void go_to(int y) {
-    clip_row(field_.x.row(y).data(), field_.y.row(y).data(), x_.size(), scale_, x_.data(),
-             y_.data());
-  }
-  [[nodiscard]] std::vector<Real>& x() noexcept { return x_; }
-  [[nodiscard]] std::vector<Real>& y() noexcept { return y_; }
-
- private:
-  const VectorField<Real>& field_;
-  Real scale_;
-  std::vector<Real> x_, y_;
-};
-
-template <typename Real>
-void load_divergence(const VectorField<Real>& field, double scale, std::span<Real> plane) {
-  DualRows<Real> q(field, scale);
-  const int height = field.x.height();
-  const auto width = static_cast<std::size_t>(field.x.width());
-  q.go_to(height - 1);
-  std::vector<Real> above = q.y();
-  for (int y = 0; y < height; ++y) {
-    q.go_to(y);
-    negative_divergence_of_row<Real>(q.x(), q.y(), above,
-                                     plane.subspan(static_cast<std::size_t>(y) * width, width));
-    std::swap(above, q.y());
-  }
-}
-
-template <typename Real>
-Plane<Real> texture_of(const TvGaborProblem<Real>& problem, const VectorField<Real>& field,
-                       double scale, RealFft<Real>& fft) {
-  load_divergence(field, scale, fft.plane());
-  fft.forward();
-  const auto factor =
-      static_cast<Real>(1.0 / (problem.lambda * static_cast<double>(problem.image.size())));
-  const auto spectrum = fft.spectrum();
-  for (std::size_t i = 0; i < spectrum.size(); ++i) {
-    spectrum[i] *= factor * problem.spectrum.samples()[i];
-  }
-  fft.inverse();
-  Plane<Real> texture(problem.image.height(), problem.image.width());
-  std::copy(fft.plane().begin(), fft.plane().end(), texture.samples().begin());
-  return texture;
-}
 
 /// With q = -p and u = f - v, the primal value is the sum of |grad u| + <q, grad v> / 2, and primal
 /// minus dual is the sum of |grad u| - <q, grad u>: no term is negative, so nothing cancels between
 /// pixels and the gap keeps its digits.
 template <typename Real>
-double relative_gap(const TvGaborProblem<Real>& problem, const Plane<Real>& texture,
-                    const VectorField<Real>& field, double scale) {
-  const std::size_t width = static_cast<std::size_t>(texture.width());
-  std::vector<Real> u_x(width), u_y(width), v_x(width), v_y(width), steepness(width);
-  DualRows<Real> q(field, scale);
-  double primal = 0.0;
-  double difference = 0.0;
-  for (int y = 0; y < texture.height(); ++y) {
-    const int below = y + 1 == texture.height() ? 0 : y + 1;
-    gradient_of_row<Real>(problem.image.row(y), problem.image.row(below), u_x, u_y);
-    gradient_of_row<Real>(texture.row(y), texture.row(below), v_x, v_y);
-    for (std::size_t x = 0; x < width; ++x) {
-      u_x[x] -= v_x[x];
-      u_y[x] -= v_y[x];
+void certify(const TvGaborProblem<Real>& problem, const VectorField<Real>& field, double scale,
+             TorusPlane<Real>& plane, TvGaborCertificate<Real>& certificate) {
+  const int height = plane.height();
+  const std::size_t width = plane.width();
+  const auto write_q = [&](int y, Real* q_x, Real* q_y) {
+    clip_row(field.x.row(y).data(), field.y.row(y).data(), width, static_cast<Real>(scale), q_x,
+             q_y);
+  };
+  plane.in_blocks([&](const RowBlock& block) {
+    typename TorusPlane<Real>::DivergenceRows q(plane, block);
+    for (int y = block.begin; y < block.end; ++y) {
+      write_q(y, q.along_x(), q.along_y());
+      q.next();
     }
-    norm_row(u_x.data(), u_y.data(), width, steepness.data());
-    q.go_to(y);
-    for (std::size_t x = 0; x < width; ++x) {
-      const double q_x = q.x()[x];
-      const double q_y = q.y()[x];
-      primal += steepness[x] + 0.5 * (q_x * v_x[x] + q_y * v_y[x]);
-      difference += std::max(0.0, steepness[x] - (q_x * u_x[x] + q_y * u_y[x]));
+  });
+  plane.finish_divergence();
+  plane.filter(problem.factors);
+  Plane<Real>& texture = certificate.texture;
+  if (texture.empty()) texture = Plane<Real>(height, problem.image.width());
+  const GapSums sums = plane.template sum_of_blocks<GapSums>([&](const RowBlock& block) {
+    typename TorusPlane<Real>::Rows v(plane, block, static_cast<Real>(1.0 / problem.lambda));
+    std::vector<Real> q_x(width), q_y(width);
+    GapSums of_block;
+    for (int y = block.begin; y < block.end; ++y) {
+      v.go_to(y);
+      std::copy_n(v.row(), width, texture.row(y).data());
+      write_q(y, q_x.data(), q_y.data());
+      of_block += gap_row<Real>({.image = problem.image.row(y).data(),
+                                 .image_below = problem.image.row((y + 1) % height).data(),
+                                 .texture = v.row(),
+                                 .texture_below = v.below(),
+                                 .q_x = q_x.data(),
+                                 .q_y = q_y.data()},
+                                width);
     }
-  }
-  return primal > 0.0 ? difference / primal : 0.0;
+    return of_block;
+  });
+  certificate.gap = sums.primal > 0.0 ? sums.difference / sums.primal : 0.0;
 }
 
-}  // namespace
-
-template <typename Real>
-TvGaborCertificate<Real> certify(const TvGaborProblem<Real>& problem,
-                                 const VectorField<Real>& field, double scale, RealFft<Real>& fft) {
-  TvGaborCertificate<Real> certificate;
-  certificate.texture = texture_of(problem, field, scale, fft);
-  certificate.gap = relative_gap(problem, certificate.texture, field, scale);
-  return certificate;
-}
-
-template TvGaborCertificate<float> certify(const TvGaborProblem<float>&, const VectorField<float>&,
-                                           double, RealFft<float>&);
-template TvGaborCertificate<double> certify(const TvGaborProblem<double>&,
-                                            const VectorField<double>&, double, RealFft<double>&);
+template void certify(const TvGaborProblem<float>&, const VectorField<float>&, double,
+                      TorusPlane<float>&, TvGaborCertificate<float>&);
+template void certify(const TvGaborProblem<double>&, const VectorField<double>&, double,
+                      TorusPlane<double>&, TvGaborCertificate<double>&);
 
 namespace {
 
@@ -166,14 +110,12 @@ void PenaltySchedule::balance(const AdmmResiduals& residuals) {
 }
 
 template <typename Real>
-TvGaborSolver<Real>::TvGaborSolver(const GreyImage& image, const TvGaborOptions& options)
+TvGaborSolver<Real>::TvGaborSolver(const GreyImage& image, const TvGaborOptions& options, int jobs)
     : wanted_gap_(options.gap),
       problem_(tv_gabor_problem<Real>(image, options)),
-      fft_(problem_.image.height(), problem_.image.width(), FftPlan::measured),
+      plane_(problem_.image.height(), problem_.image.width(), jobs, FftPlan::measured),
       schedule_(mean_gradient(problem_.image)),
-      admm_(problem_, fft_, schedule_.penalty()) {
-  admm_.start_again();
-}
+      admm_(problem_, plane_) {}
 
 template <typename Real>
 SolverStop TvGaborSolver<Real>::run(int max_steps, Patience patience) {
@@ -193,6 +135,7 @@ template <typename Real>
 void TvGaborSolver<Real>::step_to_check(int last) {
   const int left = PenaltySchedule::kStepsBetweenChecks;
   const int check = std::min(last, steps_ + left - steps_ % left);
+  admm_.start_again(schedule_.penalty());
   for (; steps_ < check - 1; ++steps_) admm_.step(schedule_.pace());
   AdmmResiduals residuals;
   if (schedule_.wants_residuals()) {
@@ -201,11 +144,9 @@ void TvGaborSolver<Real>::step_to_check(int last) {
     admm_.step(AdmmPace::cautious);  // uninterrupted momentum can go round in circles
   }
   ++steps_;
-  certificate_ = certify(problem_, admm_.z(), admm_.penalty(), fft_);
+  certify(problem_, admm_.z(), admm_.penalty(), plane_, certificate_);
   gaps_.push_back(certificate_.gap);
   schedule_.next(certificate_.gap, residuals);
-  if (schedule_.penalty() != admm_.penalty()) admm_.set_penalty(schedule_.penalty());
-  admm_.start_again();
 }
 
 template <typename Real>

@@ -5,9 +5,9 @@
 
 #include "core/plane.hpp"
 #include "engine/extraction.hpp"
-#include "engine/fourier/real_fft.hpp"
 #include "engine/tv_gabor/admm.hpp"
 #include "engine/tv_gabor/problem.hpp"
+#include "engine/tv_gabor/torus_plane.hpp"
 
 #include <vector>
 
@@ -20,11 +20,11 @@ struct TvGaborCertificate {
 };
 
 /// \param field,scale  the dual point: p = -scale * field, its vectors shortened to 1 if longer
-/// \param fft  of the problem's size; its buffers are overwritten
+/// \param plane  of the problem's size; overwritten
+/// \param certificate  its former texture's memory is used again
 template <typename Real>
-[[nodiscard]] TvGaborCertificate<Real> certify(const TvGaborProblem<Real>& problem,
-                                               const VectorField<Real>& field, double scale,
-                                               RealFft<Real>& fft);
+void certify(const TvGaborProblem<Real>& problem, const VectorField<Real>& field, double scale,
+             TorusPlane<Real>& plane, TvGaborCertificate<Real>& certificate);
 
 /// The penalty of the iteration, check by check. It starts high and falls by the same factor at
 /// each of 20 checks, which suits photographs: they converge meanwhile. From then on it balances
@@ -68,21 +68,30 @@ enum class SolverStop {
 /// Whether a run may stop because the gap hardly shrinks any more.
 enum class Patience { limited, unlimited };
 
+/// Where a solver stopped.
+template <typename Real>
+struct TvGaborState {
+  VectorField<Real> z;
+  double penalty;  ///< of z; the schedule may have gone on
+  PenaltySchedule schedule;
+  int steps;
+};
+
 template <typename Real>
 class TvGaborSolver {
  public:
   /// \param image  neither flat nor empty
   /// \param options  max_steps has no effect
-  TvGaborSolver(const GreyImage& image, const TvGaborOptions& options);
+  /// \param jobs  number of threads, as for in_parallel; results do not depend on it
+  TvGaborSolver(const GreyImage& image, const TvGaborOptions& options, int jobs = 1);
   /// Continues where a solver of the same image and options, but of another precision, stopped.
   template <typename Other>
-  TvGaborSolver(const GreyImage& image, const TvGaborOptions& options, const VectorField<Other>& z,
-                const PenaltySchedule& schedule, int steps)
-      : TvGaborSolver(image, options) {
-    schedule_ = schedule;
-    admm_.resume(z, schedule.penalty());
-    steps_ = steps;
-    admm_.start_again();
+  TvGaborSolver(const GreyImage& image, const TvGaborOptions& options, int jobs,
+                const TvGaborState<Other>& state)
+      : TvGaborSolver(image, options, jobs) {
+    schedule_ = state.schedule;
+    admm_.resume(state.z, state.penalty);
+    steps_ = state.steps;
   }
 
   TvGaborSolver(const TvGaborSolver&) = delete;
@@ -98,8 +107,9 @@ class TvGaborSolver {
   }
   /// Steps taken, including those of the solver that this one continues.
   [[nodiscard]] int steps() const noexcept { return steps_; }
-  [[nodiscard]] const VectorField<Real>& z() const noexcept { return admm_.z(); }
-  [[nodiscard]] const PenaltySchedule& schedule() const noexcept { return schedule_; }
+  [[nodiscard]] TvGaborState<Real> state() const {
+    return {admm_.z(), admm_.penalty(), schedule_, steps_};
+  }
 
  private:
   void step_to_check(int last);
@@ -107,7 +117,7 @@ class TvGaborSolver {
 
   double wanted_gap_;
   TvGaborProblem<Real> problem_;
-  RealFft<Real> fft_;
+  TorusPlane<Real> plane_;
   PenaltySchedule schedule_;
   TvGaborAdmm<Real> admm_;
   TvGaborCertificate<Real> certificate_;

@@ -24,6 +24,9 @@ namespace {
 constexpr double kLowestPeakFrequency = 0.04;
 constexpr double kHighestPeakFrequency = 0.45;
 
+/// From this size on, an image is worked on by all cores.
+constexpr std::size_t kPixelsWorthThreads = std::size_t{1} << 20U;
+
 /// sin^2(pi (n + 0.5) / N).
 std::vector<double> hann_window(int length) {
   std::vector<double> window(static_cast<std::size_t>(length));
@@ -73,18 +76,17 @@ TvGaborResult<Real> result_of(const TvGaborSolver<Precision>& solver, SolverStop
 /// parts, whose gradients are small.
 template <typename Real>
 TvGaborResult<Real> solved(const GreyImage& image, const TvGaborOptions& options) {
+  const int jobs = image.size() >= kPixelsWorthThreads ? 0 : 1;
   if constexpr (std::is_same_v<Real, double>) {
-    TvGaborSolver<double> solver(image, options);
+    TvGaborSolver<double> solver(image, options, jobs);
     return result_of<double>(solver, solver.run(options.max_steps, Patience::unlimited), image);
   } else {
-    auto solver = std::make_optional<TvGaborSolver<float>>(image, options);
+    auto solver = std::make_optional<TvGaborSolver<float>>(image, options, jobs);
     const SolverStop stop = solver->run(options.max_steps, Patience::limited);
     if (stop != SolverStop::stalled) return result_of<float>(*solver, stop, image);
-    const VectorField<float> z = solver->z();
-    const PenaltySchedule schedule = solver->schedule();
-    const int steps = solver->steps();
+    const TvGaborState<float> state = solver->state();
     solver.reset();  // frees its memory before double's larger planes need some
-    TvGaborSolver<double> finisher(image, options, z, schedule, steps);
+    TvGaborSolver<double> finisher(image, options, jobs, state);
     return result_of<float>(finisher, finisher.run(options.max_steps, Patience::unlimited), image);
   }
 }

@@ -36,9 +36,12 @@ constexpr double kLongestDualStep = 0.125;
 template <typename Real>
 class DualSlope {
  public:
-  /// Keeps references to both; the transform has the image's size.
-  DualSlope(const engine::TvGaborProblem<Real>& problem, engine::RealFft<Real>& fft)
+  /// Keeps references to all; the transform has the image's size.
+  /// \param spectrum  of M, in the layout of the transform's
+  DualSlope(const engine::TvGaborProblem<Real>& problem, const Plane<Real>& spectrum,
+            engine::RealFft<Real>& fft)
       : problem_(problem),
+        spectrum_(spectrum),
         fft_(fft),
         x_(static_cast<std::size_t>(problem.image.width())),
         y_(x_.size()) {}
@@ -51,7 +54,7 @@ class DualSlope {
     const auto spectrum = fft_.spectrum();
     const auto scale = Real{1} / static_cast<Real>(problem_.image.size());
     for (std::size_t i = 0; i < spectrum.size(); ++i) {
-      spectrum[i] *= scale * problem_.spectrum.samples()[i];
+      spectrum[i] *= scale * spectrum_.samples()[i];
     }
     fft_.inverse();
     const auto lambda = static_cast<Real>(problem_.lambda);
@@ -73,6 +76,7 @@ class DualSlope {
 
  private:
   const engine::TvGaborProblem<Real>& problem_;
+  const Plane<Real>& spectrum_;
   engine::RealFft<Real>& fft_;
   std::vector<Real> x_, y_;
 };
@@ -81,9 +85,10 @@ class DualSlope {
 template <typename Real>
 class Fista {
  public:
-  /// Keeps references to both; others may use the transform between steps.
-  Fista(const engine::TvGaborProblem<Real>& problem, engine::RealFft<Real>& fft)
-      : slope_(problem, fft),
+  /// Keeps references to all; others may use the transform between steps.
+  Fista(const engine::TvGaborProblem<Real>& problem, const Plane<Real>& spectrum,
+        engine::RealFft<Real>& fft)
+      : slope_(problem, spectrum, fft),
         q_(problem.image.height(), problem.image.width()),
         ahead_(problem.image.height(), problem.image.width()),
         next_x_(static_cast<std::size_t>(problem.image.width())),
@@ -129,9 +134,10 @@ class Fista {
 template <typename Real>
 class FixedPoint {
  public:
-  /// Keeps references to both; others may use the transform between steps.
-  FixedPoint(const engine::TvGaborProblem<Real>& problem, engine::RealFft<Real>& fft)
-      : slope_(problem, fft),
+  /// Keeps references to all; others may use the transform between steps.
+  FixedPoint(const engine::TvGaborProblem<Real>& problem, const Plane<Real>& spectrum,
+             engine::RealFft<Real>& fft)
+      : slope_(problem, spectrum, fft),
         q_(problem.image.height(), problem.image.width()),
         norms_(static_cast<std::size_t>(problem.image.width())) {}
 
@@ -162,6 +168,16 @@ class FixedPoint {
 engine::TvGaborOptions with_components(const GreyImage& image, engine::TvGaborOptions options) {
   if (options.automatic) options.components = {engine::strongest_component(image)};
   return options;
+}
+
+template <typename Real>
+engine::TvGaborCertificate<Real> certificate_of(const engine::TvGaborProblem<Real>& problem,
+                                                const engine::VectorField<Real>& field,
+                                                double scale) {
+  engine::TorusPlane<Real> plane(problem.image.height(), problem.image.width(), 1);
+  engine::TvGaborCertificate<Real> certificate;
+  engine::certify(problem, field, scale, plane, certificate);
+  return certificate;
 }
 
 void refuse_flat(const GreyImage& image) {
@@ -195,8 +211,8 @@ class TvGaborCourse<Real>::Admm final : public Solver {
   engine::TvGaborCertificate<Real> certificate() override {
     if (solver_.steps() > 0) return solver_.certificate();
     const auto problem = engine::tv_gabor_problem<Real>(image_, options_);
-    engine::RealFft<Real> fft(problem.image.height(), problem.image.width());
-    return engine::certify(problem, solver_.z(), solver_.schedule().penalty(), fft);
+    const engine::TvGaborState<Real> state = solver_.state();
+    return certificate_of(problem, state.z, state.schedule.penalty());
   }
 
  private:
@@ -216,18 +232,21 @@ class TvGaborCourse<Real>::OnDual final : public Solver {
  public:
   OnDual(const GreyImage& image, const engine::TvGaborOptions& options)
       : problem_(engine::tv_gabor_problem<Real>(image, options)),
+        spectrum_(converted<Real>(engine::gabor_spectrum(
+            options.components, problem_.image.height(), problem_.image.width()))),
         fft_(problem_.image.height(), problem_.image.width(), engine::FftPlan::measured),
-        method_(problem_, fft_) {}
+        method_(problem_, spectrum_, fft_) {}
 
   void advance(int steps) override {
     for (int step = 0; step < steps; ++step) method_.step();
   }
   engine::TvGaborCertificate<Real> certificate() override {
-    return engine::certify(problem_, method_.q(), 1.0, fft_);
+    return certificate_of(problem_, method_.q(), 1.0);
   }
 
  private:
   engine::TvGaborProblem<Real> problem_;
+  Plane<Real> spectrum_;
   engine::RealFft<Real> fft_;
   Method method_;
 };

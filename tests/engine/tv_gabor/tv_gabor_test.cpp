@@ -4,6 +4,7 @@
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/tv_gabor_reference.hpp"
 #include "engine/refusal.hpp"
+#include "engine/tv_gabor/solver.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
@@ -123,6 +124,26 @@ TEST_CASE("tv_gabor in float continues in double where float's digits end") {
 TEST_CASE("tv_gabor gives the same samples every time") {
   const GreyImage image = cloth_image({30, 31});
   CHECK(engine::tv_gabor<float>(image, {}).texture == engine::tv_gabor<float>(image, {}).texture);
+}
+
+TEMPLATE_TEST_CASE("TV-Gabor's digits are the same whatever the number of jobs", "", float,
+                   double) {
+  const GreyImage image = cloth_image({180, 70});
+  engine::TvGaborOptions options;
+  options.gap = 1e-300;
+  engine::TvGaborSolver<TestType> alone(image, options, 1), two(image, options, 2),
+      all(image, options, 0);
+  // Past the checks that need no residuals.
+  for (auto* const solver : {&alone, &two, &all}) {
+    CHECK(solver->run(230, engine::Patience::unlimited) == engine::SolverStop::exhausted);
+  }
+  for (auto* const solver : {&two, &all}) {
+    CHECK(solver->certificate().texture == alone.certificate().texture);
+    CHECK(solver->certificate().gap == alone.certificate().gap);
+    CHECK(solver->state().z.x == alone.state().z.x);
+    CHECK(solver->state().z.y == alone.state().z.y);
+    CHECK(solver->state().penalty == alone.state().penalty);
+  }
 }
 
 TEST_CASE("tv_gabor of a negative is the negative texture") {

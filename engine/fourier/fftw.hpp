@@ -1,0 +1,187 @@
+/// \file FFTW's two libraries behind one name, and plans that are made together and kept. Private to
+/// engine/fourier. Source: docs/decisions/0012-measured-transforms.md.
+#pragma once
+
+#include "engine/fourier/planning.hpp"
+#include "engine/fourier/real_fft.hpp"
+
+#include <cstddef>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fftw3.h>
+
+namespace touchtrial::engine {
+
+/// The functions of FFTW's two libraries, by precision.
+template <typename Real>
+struct Fftw;
+
+template <>
+struct Fftw<double> {
+  using Complex = fftw_complex;
+  using Plan = fftw_plan;
+  static constexpr auto* plan_real_forward = &fftw_plan_dft_r2c_2d;
+  static constexpr auto* plan_real_inverse = &fftw_plan_dft_c2r_2d;
+  static constexpr auto* plan_many = &fftw_plan_many_dft;
+  static constexpr auto* real_forward = &fftw_execute_dft_r2c;
+  static constexpr auto* real_inverse = &fftw_execute_dft_c2r;
+  static constexpr auto* transform = &fftw_execute_dft;
+  static constexpr auto* destroy = &fftw_destroy_plan;
+  static constexpr auto* forget = &fftw_forget_wisdom;
+  static constexpr auto* learned = &fftw_export_wisdom_to_string;
+  static constexpr auto* import = &fftw_import_wisdom_from_string;
+  static std::string version() { return fftw_version; }
+  static constexpr const char* kPrecision = "f64";
+};
+
+template <>
+struct Fftw<float> {
+  using Complex = fftwf_complex;
+  using Plan = fftwf_plan;
+  static constexpr auto* plan_real_forward = &fftwf_plan_dft_r2c_2d;
+  static constexpr auto* plan_real_inverse = &fftwf_plan_dft_c2r_2d;
+  static constexpr auto* plan_many = &fftwf_plan_many_dft;
+  static constexpr auto* real_forward = &fftwf_execute_dft_r2c;
+  static constexpr auto* real_inverse = &fftwf_execute_dft_c2r;
+  static constexpr auto* transform = &fftwf_execute_dft;
+  static constexpr auto* destroy = &fftwf_destroy_plan;
+  static constexpr auto* forget = &fftwf_forget_wisdom;
+  static constexpr auto* learned = &fftwf_export_wisdom_to_string;
+  static constexpr auto* import = &fftwf_import_wisdom_from_string;
+  static std::string version() { return fftwf_version; }
+  static constexpr const char* kPrecision = "f32";
+};
+
+/// FFTW's planner has global state: only the execution of a plan is thread-safe.
+inline std::mutex& planner_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// Memory that starts at a cache line, as all plans expect. Its content is undefined at first.
+template <typename Element>
+class FftwBuffer {
+ public:
+  explicit FftwBuffer(std::size_t size)
+      : size_(size),
+        elements_(static_cast<Element*>(::operator new(size * sizeof(Element), kAlignment))) {}
+  ~FftwBuffer() { ::operator delete(elements_, kAlignment); }
+  FftwBuffer(const FftwBuffer&) = delete;
+  FftwBuffer& operator=(const FftwBuffer&) = delete;
+
+  [[nodiscard]] Element* data() const noexcept { return elements_; }
+  [[nodiscard]] std::span<Element> span() const noexcept { return {elements_, size_}; }
+
+ private:
+  static constexpr std::align_val_t kAlignment{64};
+
+  std::size_t size_;
+  Element* elements_;
+};
+
+/// std::complex<Real> is laid out as FFTW's pair of reals (C++ standard, [complex.numbers]).
+template <typename Real>
+[[nodiscard]] typename Fftw<Real>::Complex* as_fftw(std::complex<Real>* numbers) noexcept {
+  return reinterpret_cast<typename Fftw<Real>::Complex*>(numbers);
+}
+
+/// Plans that belong together, for any buffers of FftwBuffer. Those of up to 4096 samples take
+/// longer to make than to execute, so they are kept for reuse where they are estimated: a new sense
+/// of touch, for instance, is created for every exploration.
+template <typename Real>
+class FftwPlans {
+ public:
+  using Plan = typename Fftw<Real>::Plan;
+  /// Makes all plans with FFTW's planner flags; nullptr where FFTW has none.
+  using Make = std::function<std::vector<Plan>(unsigned flags)>;
+
+  /// \param name  of these plans among all of this precision; part of a file's name
+  /// \param samples  that are transformed
+  /// \throws std::invalid_argument if FFTW has no such plan
+  FftwPlans(const std::string& name, std::size_t samples, FftPlan way, const Make& make) {
+    const std::lock_guard lock(planner_mutex());
+    const bool keep = way == FftPlan::estimated && samples <= kKeptUpToSamples;
+    if (keep) plans_ = kept()[name];
+    if (plans_) return;
+    Fftw<Real>::forget();
+    if (way == FftPlan::estimated || !plan_by_file(name, samples, make)) {
+      plans_ = std::make_shared<Plans>(make(FFTW_ESTIMATE));
+    }
+    // Otherwise plans would depend on the order in which transforms are created.
+    Fftw<Real>::forget();
+    if (!plans_->are_complete()) {
+      plans_.reset();
+      throw std::invalid_argument("no Fourier transform for this size of plane");
+    }
+    if (keep) kept()[name] = plans_;
+  }
+  ~FftwPlans() {
+    const std::lock_guard lock(planner_mutex());
+    plans_.reset();
+  }
+  FftwPlans(const FftwPlans&) = delete;
+  FftwPlans& operator=(const FftwPlans&) = delete;
+
+  [[nodiscard]] Plan operator[](std::size_t index) const noexcept { return plans_->all[index]; }
+
+ private:
+  static constexpr std::size_t kKeptUpToSamples = 4096;
+
+  struct Plans {
+    explicit Plans(std::vector<Plan> made) : all(std::move(made)) {}
+    ~Plans() {
+      for (const Plan plan : all) Fftw<Real>::destroy(plan);
+    }
+    Plans(const Plans&) = delete;
+    Plans& operator=(const Plans&) = delete;
+
+    [[nodiscard]] bool are_complete() const {
+      for (const Plan plan : all) {
+        if (plan == nullptr) return false;
+      }
+      return true;
+    }
+
+    std::vector<Plan> all;
+  };
+
+  static std::map<std::string, std::shared_ptr<Plans>>& kept() {
+    static std::map<std::string, std::shared_ptr<Plans>> plans;
+    return plans;
+  }
+
+  bool plan_by_file(const std::string& name, std::size_t samples, const Make& make) {
+    const std::string file = as_file_name(Fftw<Real>::version() + '-' + Fftw<Real>::kPrecision +
+                                          '-' + name + '-' + processor_name() + ".wisdom");
+    const auto fits = [&](const std::string& wisdom) {
+      Fftw<Real>::forget();
+      if (Fftw<Real>::import(wisdom.c_str()) == 0) return false;
+      plans_ = std::make_shared<Plans>(make(FFTW_MEASURE | FFTW_WISDOM_ONLY));
+      return plans_->are_complete();
+    };
+    const auto learn = [&] {
+      Fftw<Real>::forget();
+      plans_ = std::make_shared<Plans>(make(FFTW_MEASURE));
+      const std::unique_ptr<char, decltype(&std::free)> text(Fftw<Real>::learned(), &std::free);
+      return text == nullptr ? std::string() : std::string(text.get());
+    };
+    const auto text = wisdom_files().text_for(file, samples, fits, learn);
+    if (text && fits(*text)) return true;
+    Fftw<Real>::forget();
+    return false;
+  }
+
+  std::shared_ptr<Plans> plans_;  // changed under the planner's mutex
+};
+
+}  // namespace touchtrial::engine

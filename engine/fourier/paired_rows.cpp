@@ -1,0 +1,223 @@
+#include "engine/fourier/paired_rows.hpp"
+
+// Compiled once for every target: this file includes itself.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/fourier/paired_rows.cpp"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace touchtrial::engine {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Coefficients in a line.
+template <typename Real>
+constexpr std::size_t kLine = 64 / (2 * sizeof(Real));
+
+template <typename Real>
+const Real* reals(const std::complex<Real>* numbers) {
+  return reinterpret_cast<const Real*>(numbers);
+}
+
+template <typename Real>
+Real* reals(std::complex<Real>* numbers) {
+  return reinterpret_cast<Real*>(numbers);
+}
+
+/// Calls visit(descriptor, index) for whole vectors, then for single samples.
+template <typename Real, class Visit>
+HWY_INLINE void over_samples(std::size_t count, const Visit& visit) {
+  const hn::ScalableTag<Real> d;
+  const hn::CappedTag<Real, 1> one;
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) visit(d, i);
+  for (; i < count; ++i) visit(one, i);
+}
+
+template <typename Real>
+void join_samples(const Real* a, const Real* b, std::size_t width, std::complex<Real>* z) {
+  over_samples<Real>(width, [&](auto d, std::size_t i) HWY_ATTR {
+    hn::StoreInterleaved2(hn::LoadU(d, a + i), hn::LoadU(d, b + i), d, reals(z + i));
+  });
+}
+
+template <typename Real>
+void part_samples(const std::complex<Real>* z, std::size_t width, Real scale, Real* a, Real* b) {
+  over_samples<Real>(width, [&](auto d, std::size_t i) HWY_ATTR {
+    hn::Vec<decltype(d)> real, imaginary;
+    hn::LoadInterleaved2(d, reals(z + i), real, imaginary);
+    const auto factor = hn::Set(d, scale);
+    hn::StoreU(hn::Mul(factor, real), d, a + i);
+    hn::StoreU(hn::Mul(factor, imaginary), d, b + i);
+  });
+}
+
+/// Calls visit(descriptor, coefficient, place of the upper row's, place of the lower row's) for all
+/// lines, by vectors that divide a line.
+template <typename Real, class Visit>
+HWY_INLINE void over_lines(const PairedLines<Real>& lines, const Visit& visit) {
+  const hn::CappedTag<Real, kLine<Real>> d;
+  for (std::size_t block = 0; block < lines.blocks; ++block) {
+    std::complex<Real>* const upper = lines.first + block * lines.stride;
+    for (std::size_t i = 0; i < kLine<Real>; i += hn::Lanes(d)) {
+      visit(d, block * kLine<Real> + i, reals(upper + i), reals(upper + kLine<Real> + i));
+    }
+  }
+}
+
+/// With z' the conjugate of the opposite coefficient, 2 F(a) = z + z' and 2 F(b) = -i (z - z').
+template <typename Real>
+void part_coefficients(const std::complex<Real>* z, std::size_t width,
+                       const PairedLines<Real>& lines) {
+  over_lines(lines, [&](auto d, std::size_t i, Real* upper, Real* lower) HWY_ATTR {
+    hn::Vec<decltype(d)> real, imaginary, opposite_real, opposite_imaginary;
+    hn::LoadInterleaved2(d, reals(z + i), real, imaginary);
+    hn::LoadInterleaved2(d, reals(z + width + 1 - hn::Lanes(d) - i), opposite_real,
+                         opposite_imaginary);
+    opposite_real = hn::Reverse(d, opposite_real);
+    opposite_imaginary = hn::Reverse(d, opposite_imaginary);
+    hn::StoreInterleaved2(hn::Add(real, opposite_real), hn::Sub(imaginary, opposite_imaginary), d,
+                          upper);
+    hn::StoreInterleaved2(hn::Add(imaginary, opposite_imaginary), hn::Sub(opposite_real, real), d,
+                          lower);
+  });
+}
+
+template <typename Real>
+void join_coefficients(const PairedLines<Real>& lines, std::size_t width, std::complex<Real>* z) {
+  over_lines(lines, [&](auto d, std::size_t i, const Real* upper, const Real* lower) HWY_ATTR {
+    hn::Vec<decltype(d)> a_real, a_imaginary, b_real, b_imaginary;
+    hn::LoadInterleaved2(d, upper, a_real, a_imaginary);
+    hn::LoadInterleaved2(d, lower, b_real, b_imaginary);
+    hn::StoreInterleaved2(hn::Sub(a_real, b_imaginary), hn::Add(a_imaginary, b_real), d,
+                          reals(z + i));
+    hn::StoreInterleaved2(hn::Reverse(d, hn::Add(a_real, b_imaginary)),
+                          hn::Reverse(d, hn::Sub(b_real, a_imaginary)), d,
+                          reals(z + width + 1 - hn::Lanes(d) - i));
+  });
+}
+
+template <typename Real>
+void multiply(const Real* factors, std::size_t count, std::complex<Real>* coefficients) {
+  over_samples<Real>(count, [&](auto d, std::size_t i) HWY_ATTR {
+    hn::Vec<decltype(d)> real, imaginary;
+    Real* const place = reals(coefficients + i);
+    hn::LoadInterleaved2(d, place, real, imaginary);
+    const auto factor = hn::LoadU(d, factors + i);
+    hn::StoreInterleaved2(hn::Mul(factor, real), hn::Mul(factor, imaginary), d, place);
+  });
+}
+
+// Dispatch tables hold functions, not templates.
+void join_samples_f32(const float* a, const float* b, std::size_t width, std::complex<float>* z) {
+  join_samples(a, b, width, z);
+}
+void join_samples_f64(const double* a, const double* b, std::size_t width,
+                      std::complex<double>* z) {
+  join_samples(a, b, width, z);
+}
+void part_samples_f32(const std::complex<float>* z, std::size_t width, float scale, float* a,
+                      float* b) {
+  part_samples(z, width, scale, a, b);
+}
+void part_samples_f64(const std::complex<double>* z, std::size_t width, double scale, double* a,
+                      double* b) {
+  part_samples(z, width, scale, a, b);
+}
+void part_coefficients_f32(const std::complex<float>* z, std::size_t width,
+                           const PairedLines<float>& lines) {
+  part_coefficients(z, width, lines);
+}
+void part_coefficients_f64(const std::complex<double>* z, std::size_t width,
+                           const PairedLines<double>& lines) {
+  part_coefficients(z, width, lines);
+}
+void join_coefficients_f32(const PairedLines<float>& lines, std::size_t width,
+                           std::complex<float>* z) {
+  join_coefficients(lines, width, z);
+}
+void join_coefficients_f64(const PairedLines<double>& lines, std::size_t width,
+                           std::complex<double>* z) {
+  join_coefficients(lines, width, z);
+}
+void multiply_f32(const float* factors, std::size_t count, std::complex<float>* coefficients) {
+  multiply(factors, count, coefficients);
+}
+void multiply_f64(const double* factors, std::size_t count, std::complex<double>* coefficients) {
+  multiply(factors, count, coefficients);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace touchtrial::engine
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace touchtrial::engine {
+namespace {
+
+HWY_EXPORT(join_samples_f32);
+HWY_EXPORT(join_samples_f64);
+HWY_EXPORT(part_samples_f32);
+HWY_EXPORT(part_samples_f64);
+HWY_EXPORT(part_coefficients_f32);
+HWY_EXPORT(part_coefficients_f64);
+HWY_EXPORT(join_coefficients_f32);
+HWY_EXPORT(join_coefficients_f64);
+HWY_EXPORT(multiply_f32);
+HWY_EXPORT(multiply_f64);
+
+}  // namespace
+
+template <>
+void join_rows(const float* a, const float* b, std::size_t width, std::complex<float>* z) {
+  HWY_DYNAMIC_DISPATCH(join_samples_f32)(a, b, width, z);
+}
+template <>
+void join_rows(const double* a, const double* b, std::size_t width, std::complex<double>* z) {
+  HWY_DYNAMIC_DISPATCH(join_samples_f64)(a, b, width, z);
+}
+template <>
+void part_rows(const std::complex<float>* z, std::size_t width, float scale, float* a, float* b) {
+  HWY_DYNAMIC_DISPATCH(part_samples_f32)(z, width, scale, a, b);
+}
+template <>
+void part_rows(const std::complex<double>* z, std::size_t width, double scale, double* a,
+               double* b) {
+  HWY_DYNAMIC_DISPATCH(part_samples_f64)(z, width, scale, a, b);
+}
+template <>
+void part_spectra(const std::complex<float>* z, std::size_t width,
+                  const PairedLines<float>& lines) {
+  HWY_DYNAMIC_DISPATCH(part_coefficients_f32)(z, width, lines);
+}
+template <>
+void part_spectra(const std::complex<double>* z, std::size_t width,
+                  const PairedLines<double>& lines) {
+  HWY_DYNAMIC_DISPATCH(part_coefficients_f64)(z, width, lines);
+}
+template <>
+void join_spectra(const PairedLines<float>& lines, std::size_t width, std::complex<float>* z) {
+  HWY_DYNAMIC_DISPATCH(join_coefficients_f32)(lines, width, z);
+}
+template <>
+void join_spectra(const PairedLines<double>& lines, std::size_t width, std::complex<double>* z) {
+  HWY_DYNAMIC_DISPATCH(join_coefficients_f64)(lines, width, z);
+}
+template <>
+void multiply_by_factors(const float* factors, std::size_t count,
+                         std::complex<float>* coefficients) {
+  HWY_DYNAMIC_DISPATCH(multiply_f32)(factors, count, coefficients);
+}
+template <>
+void multiply_by_factors(const double* factors, std::size_t count,
+                         std::complex<double>* coefficients) {
+  HWY_DYNAMIC_DISPATCH(multiply_f64)(factors, count, coefficients);
+}
+
+}  // namespace touchtrial::engine
+#endif

@@ -1,0 +1,41 @@
+/// \file Kernels of PlaneFilter, on the best instruction set of the machine. Two rows a and b are
+/// transformed together as Z = F(a + i b). Real is float or double.
+#pragma once
+
+#include <complex>
+#include <cstddef>
+
+namespace touchtrial::engine {
+
+/// Where the coefficients of two rows lie: in blocks of a cache line's coefficients of the upper
+/// row, followed by those of the lower row.
+template <typename Real>
+struct PairedLines {
+  std::complex<Real>* first;  ///< of the upper row
+  std::size_t stride;         ///< between blocks
+  std::size_t blocks;
+};
+
+/// z = a + i b
+template <typename Real>
+void join_rows(const Real* a, const Real* b, std::size_t width, std::complex<Real>* z);
+
+/// a + i b = scale * z
+template <typename Real>
+void part_rows(const std::complex<Real>* z, std::size_t width, Real scale, Real* a, Real* b);
+
+/// Writes the lines of 2 F(a) and 2 F(b).
+/// \param z  F(a + i b), width + 1 coefficients, the last one equal to the first
+template <typename Real>
+void part_spectra(const std::complex<Real>* z, std::size_t width, const PairedLines<Real>& lines);
+
+/// The inverse: z = A + i B, where lines hold A and B, the spectra of real rows.
+/// \param z  width + 1 coefficients, of which the last is to be ignored
+template <typename Real>
+void join_spectra(const PairedLines<Real>& lines, std::size_t width, std::complex<Real>* z);
+
+/// coefficients *= factors
+template <typename Real>
+void multiply_by_factors(const Real* factors, std::size_t count, std::complex<Real>* coefficients);
+
+}  // namespace touchtrial::engine

@@ -1,0 +1,156 @@
+#include "engine/fourier/plane_filter.hpp"
+
+#include "engine/fourier/fftw.hpp"
+#include "engine/fourier/paired_rows.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace touchtrial::engine {
+namespace {
+
+enum PlanIndex : std::size_t { rows_forward, rows_inverse, columns_forward, columns_inverse };
+
+/// Even sides; and the coefficients that fill the last block have an opposite one.
+int checked_side(int side) {
+  if (side < 16 || side % 2 != 0) {
+    throw std::invalid_argument("a filtered plane needs even sides of 16 or more");
+  }
+  return side;
+}
+
+/// Two rows joined as one of complex numbers, before and after their transform.
+template <typename Real>
+struct JoinedRows {
+  explicit JoinedRows(int width)
+      : samples(static_cast<std::size_t>(width)), spectrum(samples.span().size() + 1) {}
+
+  FftwBuffer<std::complex<Real>> samples;
+  FftwBuffer<std::complex<Real>> spectrum;  // and the first coefficient again
+};
+
+}  // namespace
+
+template <typename Real>
+struct PlaneFilter<Real>::Workspace::Buffers : JoinedRows<Real> {
+  using JoinedRows<Real>::JoinedRows;
+};
+
+template <typename Real>
+PlaneFilter<Real>::Workspace::Workspace(int width) : buffers_(std::make_unique<Buffers>(width)) {}
+
+template <typename Real>
+PlaneFilter<Real>::Workspace::~Workspace() = default;
+
+template <typename Real>
+struct PlaneFilter<Real>::State {
+  State(int rows, int columns, FftPlan way)
+      : blocks{checked_side(rows), checked_side(columns)},
+        // A line more than rows: the same row of all blocks should not fall on one place of caches.
+        stride(blocks.block_size() + kLanes),
+        spectrum(blocks.count() * stride),
+        plans(std::to_string(rows) + 'x' + std::to_string(columns) + "-filter",
+              static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), way,
+              [this](unsigned flags) { return make_plans(flags); }) {}
+
+  /// Plans overwrite what they are measured on: rows of a workspace, and the first block.
+  [[nodiscard]] std::vector<typename Fftw<Real>::Plan> make_plans(unsigned flags) const {
+    const JoinedRows<Real> rows(blocks.width);
+    auto* const samples = as_fftw(rows.samples.data());
+    auto* const coefficients = as_fftw(rows.spectrum.data());
+    auto* const block = as_fftw(spectrum.data());
+    const auto row = [&](auto* from, auto* to, int sign, unsigned more_flags) {
+      return Fftw<Real>::plan_many(1, &blocks.width, 1, from, nullptr, 1, 0, to, nullptr, 1, 0,
+                                   sign, flags | more_flags);
+    };
+    const auto columns = [&](int sign) {
+      return Fftw<Real>::plan_many(1, &blocks.height, kLanes, block, nullptr, kLanes, 1, block,
+                                   nullptr, kLanes, 1, sign, flags);
+    };
+    return {row(samples, coefficients, FFTW_FORWARD, FFTW_DESTROY_INPUT),
+            row(coefficients, samples, FFTW_BACKWARD, FFTW_DESTROY_INPUT), columns(FFTW_FORWARD),
+            columns(FFTW_BACKWARD)};
+  }
+
+  [[nodiscard]] PairedLines<Real> lines(int y) const {
+    return {spectrum.data() + static_cast<std::size_t>(y) * kLanes, stride, blocks.count()};
+  }
+
+  static constexpr int kLanes = ColumnBlocks<Real>::kLanes;
+
+  ColumnBlocks<Real> blocks;
+  std::size_t stride;
+  FftwBuffer<std::complex<Real>> spectrum;
+  FftwPlans<Real> plans;
+};
+
+template <typename Real>
+PlaneFilter<Real>::PlaneFilter(int height, int width, FftPlan plan)
+    : state_(std::make_unique<State>(height, width, plan)) {}
+
+template <typename Real>
+PlaneFilter<Real>::~PlaneFilter() = default;
+
+template <typename Real>
+const ColumnBlocks<Real>& PlaneFilter<Real>::blocks() const noexcept {
+  return state_->blocks;
+}
+
+template <typename Real>
+void PlaneFilter<Real>::write_rows(int y, const Real* upper, const Real* lower,
+                                   Workspace& workspace) noexcept {
+  const auto width = static_cast<std::size_t>(state_->blocks.width);
+  std::complex<Real>* const samples = workspace.buffers_->samples.data();
+  std::complex<Real>* const spectrum = workspace.buffers_->spectrum.data();
+  join_rows(upper, lower, width, samples);
+  Fftw<Real>::transform(state_->plans[rows_forward], as_fftw(samples), as_fftw(spectrum));
+  spectrum[width] = spectrum[0];
+  part_spectra(spectrum, width, state_->lines(y));
+}
+
+template <typename Real>
+void PlaneFilter<Real>::read_rows(int y, Real scale, Real* upper, Real* lower,
+                                  Workspace& workspace) const noexcept {
+  const auto width = static_cast<std::size_t>(state_->blocks.width);
+  std::complex<Real>* const samples = workspace.buffers_->samples.data();
+  std::complex<Real>* const spectrum = workspace.buffers_->spectrum.data();
+  join_spectra(state_->lines(y), width, spectrum);
+  Fftw<Real>::transform(state_->plans[rows_inverse], as_fftw(spectrum), as_fftw(samples));
+  // There and back, transforms multiply by the number of samples, and part_spectra by 2.
+  const double gain = 2.0 * state_->blocks.height * state_->blocks.width;
+  part_rows(samples, width, static_cast<Real>(scale / gain), upper, lower);
+}
+
+template <typename Real>
+void PlaneFilter<Real>::filter_columns(std::size_t block, std::span<const Real> factors) noexcept {
+  std::complex<Real>* const columns = state_->spectrum.data() + block * state_->stride;
+  const std::size_t count = state_->blocks.block_size();
+  Fftw<Real>::transform(state_->plans[columns_forward], as_fftw(columns), as_fftw(columns));
+  multiply_by_factors(factors.data() + block * count, count, columns);
+  Fftw<Real>::transform(state_->plans[columns_inverse], as_fftw(columns), as_fftw(columns));
+}
+
+template <typename Real>
+std::vector<Real> arranged_factors(const Plane<double>& spectrum, int width) {
+  const ColumnBlocks<Real> blocks{spectrum.height(), width};
+  std::vector<Real> factors(blocks.count() * blocks.block_size());
+  for (std::size_t block = 0; block < blocks.count(); ++block) {
+    blocks.for_each(block, [&](std::size_t i, int y, int x) {
+      const bool is_listed = x < spectrum.width();
+      const int opposite_y = y == 0 ? 0 : blocks.height - y;
+      factors[i] =
+          static_cast<Real>(is_listed ? spectrum.at(y, x) : spectrum.at(opposite_y, width - x));
+    });
+  }
+  return factors;
+}
+
+template class PlaneFilter<float>;
+template class PlaneFilter<double>;
+template std::vector<float> arranged_factors(const Plane<double>&, int);
+template std::vector<double> arranged_factors(const Plane<double>&, int);
+
+}  // namespace touchtrial::engine

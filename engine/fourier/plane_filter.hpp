@@ -1,0 +1,104 @@
+/// \file Linear filters of real planes, diagonal in the Fourier basis, for callers that work on the
+/// rows before and after. Source: docs/decisions/0005-tv-gabor-solver.md.
+#pragma once
+
+#include "core/plane.hpp"
+#include "engine/fourier/real_fft.hpp"
+
+#include <complex>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace touchtrial::engine {
+
+/// How a filter's factors are arranged: blocks of as many columns as a cache line has coefficients,
+/// and in each block row after row.
+template <typename Real>
+struct ColumnBlocks {
+  static constexpr int kLanes = 64 / sizeof(std::complex<Real>);
+
+  int height, width;  ///< of the plane, samples
+
+  [[nodiscard]] std::size_t count() const noexcept {
+    return static_cast<std::size_t>((width / 2 + kLanes) / kLanes);
+  }
+  /// Factors of one block.
+  [[nodiscard]] std::size_t block_size() const noexcept {
+    return static_cast<std::size_t>(height) * kLanes;
+  }
+  /// Calls visit(i, y, x) for each factor i of a block, which is that of frequency y along columns
+  /// and x along rows. Some x of the last block exceed width / 2: they stand for x - width.
+  template <typename Visit>
+  void for_each(std::size_t block, const Visit& visit) const {
+    std::size_t i = block * block_size();
+    for (int y = 0; y < height; ++y) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        visit(i + static_cast<std::size_t>(lane), y, static_cast<int>(block) * kLanes + lane);
+      }
+      i += kLanes;
+    }
+  }
+};
+
+/// Arranges the factors of a filter.
+/// \param spectrum  real factors, the same for opposite frequencies, height x (width / 2 + 1) in the
+///   layout of RealFft's spectrum
+/// \param width  of the plane, even, >= 16
+template <typename Real>
+[[nodiscard]] std::vector<Real> arranged_factors(const Plane<double>& spectrum, int width);
+
+/// A plane that is filtered in place on a torus. Between the steps it holds the transforms of its
+/// rows. So one pass filters all columns, block by block, and one pass reads rows, works on them
+/// and writes the next ones, both while a block is in the processor's cache. Two rows are
+/// transformed together, as real and imaginary part of one. Real is float or double.
+///
+/// Threads: different blocks of columns, and different pairs of rows, may be worked on at the same
+/// time, but not rows beside columns. Blocks have one size and all blocks one plan, so the digits
+/// do not depend on who does what.
+template <typename Real>
+class PlaneFilter {
+ public:
+  /// \param height,width  samples, even, >= 16
+  /// \throws std::bad_alloc if there is no memory for the plane
+  /// \throws std::invalid_argument if a side is odd or too small, or FFTW has no transform of it
+  PlaneFilter(int height, int width, FftPlan plan = FftPlan::estimated);
+  ~PlaneFilter();
+  PlaneFilter(const PlaneFilter&) = delete;
+  PlaneFilter& operator=(const PlaneFilter&) = delete;
+
+  [[nodiscard]] const ColumnBlocks<Real>& blocks() const noexcept;
+
+  /// Buffers for two rows, of one thread at a time.
+  class Workspace {
+   public:
+    explicit Workspace(int width);
+    ~Workspace();
+    Workspace(const Workspace&) = delete;
+    Workspace& operator=(const Workspace&) = delete;
+
+   private:
+    friend class PlaneFilter;
+    struct Buffers;
+    std::unique_ptr<Buffers> buffers_;
+  };
+
+  /// Writes two rows.
+  /// \param y  of the upper one; even
+  /// \param upper,lower  width samples each
+  void write_rows(int y, const Real* upper, const Real* lower, Workspace& workspace) noexcept;
+  /// Reads two rows, multiplied by `scale`: after filter_columns with factors of 1 and with a scale
+  /// of 1, those that were written. Reading changes nothing.
+  void read_rows(int y, Real scale, Real* upper, Real* lower, Workspace& workspace) const noexcept;
+
+  /// Filters the columns of one block.
+  /// \param factors  of all blocks, arranged
+  void filter_columns(std::size_t block, std::span<const Real> factors) noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace touchtrial::engine
