@@ -4,6 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/fourier/paired_rows.cpp"
 
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -90,6 +91,9 @@ void part_coefficients(const std::complex<Real>* z, std::size_t width,
 template <typename Real>
 void join_coefficients(const PairedLines<Real>& lines, std::size_t width, std::complex<Real>* z) {
   over_lines(lines, [&](auto d, std::size_t i, const Real* upper, const Real* lower) HWY_ATTR {
+    // The next pair's: its lines lie behind this one's.
+    hwy::Prefetch(upper + 4 * kLine<Real>);
+    hwy::Prefetch(lower + 4 * kLine<Real>);
     hn::Vec<decltype(d)> a_real, a_imaginary, b_real, b_imaginary;
     hn::LoadInterleaved2(d, upper, a_real, a_imaginary);
     hn::LoadInterleaved2(d, lower, b_real, b_imaginary);

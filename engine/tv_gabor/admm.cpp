@@ -67,13 +67,14 @@ template <typename Real>
 class StepNorms {
  public:
   struct Sums {
-    double w = 0.0, b = 0.0, change_of_w = 0.0, change_of_b = 0.0;
+    double w = 0.0, b = 0.0, change_of_w = 0.0, change_of_b = 0.0, image = 0.0;
 
     Sums& operator+=(const Sums& other) noexcept {
       w += other.w;
       b += other.b;
       change_of_w += other.change_of_w;
       change_of_b += other.change_of_b;
+      image += other.image;
       return *this;
     }
   };
@@ -89,6 +90,8 @@ class StepNorms {
       sums.b += squared(after_.b_x[i], after_.b_y[i]);
       sums.change_of_w += squared(after_.w_x[i] - before_.w_x[i], after_.w_y[i] - before_.w_y[i]);
       sums.change_of_b += squared(after_.b_x[i] - before_.b_x[i], after_.b_y[i] - before_.b_y[i]);
+      const Real right = row.image[i + 1 == after_.w_x.size() ? 0 : i + 1];
+      sums.image += squared(right - row.image[i], row.image_below[i] - row.image[i]);
     }
   }
 
@@ -98,17 +101,6 @@ class StepNorms {
   double penalty_;
   SplitRow<Real> before_, after_;
 };
-
-/// Changes the penalty of z, keeping w and the unscaled multiplier. Overwrites the row's targets.
-template <typename Real>
-void rescale_row(const AdmmRow<Real>& row, std::size_t width, double from, double to) {
-  const auto change = static_cast<Real>(1.0 / to - 1.0 / from);
-  clip_row(row.z_x, row.z_y, width, static_cast<Real>(from), row.target_x, row.target_y);
-  for (std::size_t x = 0; x < width; ++x) {
-    row.z_x[x] += change * row.target_x[x];
-    row.z_y[x] += change * row.target_y[x];
-  }
-}
 
 double ratio_of_norms(double squared, double reference_squared) {
   return std::sqrt(squared / std::max(reference_squared, std::numeric_limits<double>::min()));
@@ -125,38 +117,30 @@ TvGaborAdmm<Real>::TvGaborAdmm(const TvGaborProblem<Real>& problem, TorusPlane<R
       factors_(problem.factors.size()),
       z_(problem.image.height(), problem.image.width()),
       former_(problem.image.height(), problem.image.width()) {
-  image_squared_ = plane_.template sum_of_blocks<double>([this](const RowBlock& block) {
-    double squared = 0.0;
+  plane_.in_blocks([this](const RowBlock& block) {
     for (int y = block.begin; y < block.end; ++y) {
       const auto x_row = z_.x.row(y), y_row = z_.y.row(y);
       gradient_of_row<Real>(problem_.image.row(y), problem_.image.row(row_below(y)), x_row, y_row);
-      for (const auto& row : {x_row, y_row}) {
-        for (Real& sample : row) {
-          squared += static_cast<double>(sample) * sample;
-          sample *= static_cast<Real>(kFirstShare);
-        }
-      }
+      for (Real& sample : x_row) sample *= static_cast<Real>(kFirstShare);
+      for (Real& sample : y_row) sample *= static_cast<Real>(kFirstShare);
     }
-    return squared;
   });
 }
 
 template <typename Real>
 void TvGaborAdmm<Real>::start_again(double penalty) {
-  const double former_penalty = penalty_;
+  const RestartNumbers<Real> numbers{
+      .former_limit = static_cast<Real>(1.0 / (penalty_ > 0.0 ? penalty_ : penalty)),
+      .limit = static_cast<Real>(1.0 / penalty)};
   penalty_ = penalty;
   set_factors();
-  const auto limit = static_cast<Real>(1.0 / penalty);
   plane_.in_blocks([&](const RowBlock& block) {
     typename TorusPlane<Real>::DivergenceRows targets(plane_, block);
     for (int y = block.begin; y < block.end; ++y) {
       AdmmRow<Real> row = row_of(y);
       row.target_x = targets.along_x();
       row.target_y = targets.along_y();
-      if (former_penalty > 0.0 && penalty != former_penalty) {
-        rescale_row(row, plane_.width(), former_penalty, penalty);
-      }
-      admm_target_row(row, plane_.width(), limit);
+      admm_restart_row(row, plane_.width(), numbers);
       targets.next();
     }
   });
@@ -176,7 +160,7 @@ void TvGaborAdmm<Real>::step(AdmmPace pace) {
 template <typename Real>
 AdmmResiduals TvGaborAdmm<Real>::measured_step() {
   const auto sums = map<StepNorms<Real>>(kCautiousRelaxation, 0.0);
-  return {ratio_of_norms(sums.change_of_b, std::max(sums.w, image_squared_)),
+  return {ratio_of_norms(sums.change_of_b, std::max(sums.w, sums.image)),
           ratio_of_norms(sums.change_of_w, sums.b)};
 }
 

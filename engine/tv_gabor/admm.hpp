@@ -76,7 +76,6 @@ class TvGaborAdmm {
   VectorField<Real> z_;
   VectorField<Real> former_;  // the map's last value
   bool has_former_ = false;
-  double image_squared_ = 0.0;  // sum of |grad f|^2
 };
 
 }  // namespace touchtrial::engine

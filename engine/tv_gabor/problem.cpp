@@ -45,69 +45,54 @@ Patch zero_mean_gabor_patch(const GaborComponent& component) {
   return patch;
 }
 
-/// cos or sin of 2 pi offset frequency / length, for all `frequencies`.
-template <typename Function>
-std::vector<double> wave(Function function, int offset, int frequencies, int length) {
-  std::vector<double> samples(static_cast<std::size_t>(frequencies));
-  for (int i = 0; i < frequencies; ++i) {
-    samples[static_cast<std::size_t>(i)] =
-        function(2.0 * std::numbers::pi * (offset * i % length) / length);
-  }
-  return samples;
-}
-
-double cosine(double angle) {
-  return std::cos(angle);
-}
-double sine(double angle) {
-  return std::sin(angle);
-}
-
-/// The transforms of a patch's rows at distance y from its centre, by their definition.
-struct TransformedRow {
-  std::vector<double> real, imaginary;
-};
-
-TransformedRow transformed_row(const Patch& patch, int y, int width) {
-  const int count = width / 2 + 1;
-  TransformedRow row{std::vector<double>(static_cast<std::size_t>(count)),
-                     std::vector<double>(static_cast<std::size_t>(count))};
-  for (int x = -kPatchRadius; x <= kPatchRadius; ++x) {
-    const double sample =
-        patch[static_cast<std::size_t>((y + kPatchRadius) * kPatchSide + x + kPatchRadius)];
-    const std::vector<double> along = wave(cosine, x, count, width);
-    const std::vector<double> across = wave(sine, x, count, width);
-    for (std::size_t i = 0; i < along.size(); ++i) {
-      row.real[i] += sample * along[i];
-      row.imaginary[i] += sample * across[i];
+/// cos and sin of 2 pi offset i / length for each i < count.
+struct Wave {
+  Wave(int offset, int count, int length)
+      : cosine(static_cast<std::size_t>(count)), sine(cosine.size()) {
+    for (int i = 0; i < count; ++i) {
+      const double angle = 2.0 * std::numbers::pi * (offset * i % length) / length;
+      cosine[static_cast<std::size_t>(i)] = std::cos(angle);
+      sine[static_cast<std::size_t>(i)] = std::sin(angle);
     }
   }
-  return row;
+
+  std::vector<double> cosine, sine;
+};
+
+/// Waves of all offsets from a patch's centre to its edge.
+std::vector<Wave> waves(int count, int length) {
+  std::vector<Wave> all;
+  for (int offset = 0; offset <= kPatchRadius; ++offset) all.emplace_back(offset, count, length);
+  return all;
 }
 
-/// Adds |g^|^2. A patch is the same in opposite places, so its transform is real, and rows above
-/// the centre add what those below it add.
-void add_power(const Patch& patch, Plane<double>& spectrum, int width) {
-  const int height = spectrum.height();
-  std::array<TransformedRow, kPatchRadius + 1> rows;
-  std::array<std::vector<double>, kPatchRadius + 1> cosines, sines;
-  for (int y = 0; y <= kPatchRadius; ++y) {
-    const auto at = static_cast<std::size_t>(y);
-    rows[at] = transformed_row(patch, y, width);
-    cosines[at] = wave(cosine, y, height, height);
-    sines[at] = wave(sine, y, height, height);
+/// to += factor * from
+void add(double factor, const std::vector<double>& from, std::vector<double>& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * from[i];
+}
+
+/// Adds |g^|^2, by the sum that defines it. A patch is the same in opposite places, so its
+/// transform is real, and rows above the centre add what those below it add.
+void add_power(const Patch& patch, const std::vector<Wave>& along_x,
+               const std::vector<Wave>& along_y, Plane<double>& spectrum) {
+  const std::vector<double> none(static_cast<std::size_t>(spectrum.width()));
+  std::array<std::vector<double>, kPatchRadius + 1> real, imaginary;  // rows' transforms
+  for (std::size_t y = 0; y <= kPatchRadius; ++y) {
+    real[y] = imaginary[y] = none;
+    const double* const centre = patch.data() + (y + kPatchRadius) * kPatchSide + kPatchRadius;
+    add(centre[0], along_x[0].cosine, real[y]);
+    for (std::size_t x = 1; x <= kPatchRadius; ++x) {
+      const double right = centre[x], left = *(centre - x);
+      add(right + left, along_x[x].cosine, real[y]);
+      add(right - left, along_x[x].sine, imaginary[y]);
+    }
   }
-  std::vector<double> transform(static_cast<std::size_t>(spectrum.width()));
-  for (int i = 0; i < height; ++i) {
-    transform = rows[0].real;
-    for (std::size_t y = 1; y < rows.size(); ++y) {
-      const double cosine_of_row = 2.0 * cosines[y][static_cast<std::size_t>(i)];
-      const double sine_of_row = 2.0 * sines[y][static_cast<std::size_t>(i)];
-      const double* const real = rows[y].real.data();
-      const double* const imaginary = rows[y].imaginary.data();
-      for (std::size_t x = 0; x < transform.size(); ++x) {
-        transform[x] += cosine_of_row * real[x] - sine_of_row * imaginary[x];
-      }
+  std::vector<double> transform;
+  for (int i = 0; i < spectrum.height(); ++i) {
+    transform = real[0];
+    for (std::size_t y = 1; y <= kPatchRadius; ++y) {
+      add(2.0 * along_y[y].cosine[static_cast<std::size_t>(i)], real[y], transform);
+      add(-2.0 * along_y[y].sine[static_cast<std::size_t>(i)], imaginary[y], transform);
     }
     const auto row = spectrum.row(i);
     for (std::size_t x = 0; x < transform.size(); ++x) row[x] += transform[x] * transform[x];
@@ -148,8 +133,10 @@ Plane<Real> cropped_from_torus(const Plane<Real>& torus, int height, int width) 
 
 Plane<double> gabor_spectrum(std::span<const GaborComponent> components, int height, int width) {
   Plane<double> spectrum(height, width / 2 + 1);
+  const std::vector<Wave> along_x = waves(spectrum.width(), width);
+  const std::vector<Wave> along_y = waves(height, height);
   for (const GaborComponent& component : components) {
-    add_power(zero_mean_gabor_patch(component), spectrum, width);
+    add_power(zero_mean_gabor_patch(component), along_x, along_y, spectrum);
   }
   spectrum.at(0, 0) = 0.0;  // the patches have no mean; anything here is rounding
   const double largest = *std::max_element(spectrum.samples().begin(), spectrum.samples().end());
@@ -168,13 +155,18 @@ TvGaborProblem<Real> tv_gabor_problem(const GreyImage& image, const TvGaborOptio
 
 template <typename Real>
 double mean_gradient(const Plane<Real>& torus) {
-  std::vector<Real> along_x(static_cast<std::size_t>(torus.width())), along_y(along_x.size());
+  const auto width = static_cast<std::size_t>(torus.width());
+  const std::vector<Real> none(width);  // as texture and dual point
   double sum = 0.0;
   for (int y = 0; y < torus.height(); ++y) {
     const int below = y + 1 == torus.height() ? 0 : y + 1;
-    gradient_of_row<Real>(torus.row(y), torus.row(below), along_x, along_y);
-    norm_row(along_x.data(), along_y.data(), along_x.size(), along_x.data());
-    for (const Real norm : along_x) sum += norm;
+    const GapRow<Real> row{.image = torus.row(y).data(),
+                           .image_below = torus.row(below).data(),
+                           .texture = none.data(),
+                           .texture_below = none.data(),
+                           .q_x = none.data(),
+                           .q_y = none.data()};
+    sum += gap_row(row, width).primal;
   }
   return sum / static_cast<double>(torus.size());
 }

@@ -75,15 +75,4 @@ void gradient_of_row(std::span<const Real> row, std::span<const Real> below,
   for (std::size_t x = 0; x <= last; ++x) along_y[x] = below[x] - row[x];
 }
 
-/// out = -div field for one row: the adjoint of the gradient.
-/// \param above  along_y of the row above
-template <typename Real>
-void negative_divergence_of_row(std::span<const Real> along_x, std::span<const Real> along_y,
-                                std::span<const Real> above, std::span<Real> out) noexcept {
-  out[0] = (along_x.back() - along_x[0]) + (above[0] - along_y[0]);
-  for (std::size_t x = 1; x < out.size(); ++x) {
-    out[x] = (along_x[x - 1] - along_x[x]) + (above[x] - along_y[x]);
-  }
-}
-
 }  // namespace touchtrial::engine

@@ -4,6 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/tv_gabor/row_kernels.cpp"
 
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -47,9 +48,30 @@ HWY_INLINE V norm(const Pair<V>& pair) {
   return hn::Sqrt(hn::MulAdd(pair.x, pair.x, hn::Mul(pair.y, pair.y)));
 }
 
-template <class V>
-HWY_INLINE Pair<V> clipped(const Pair<V>& pair, V limit) {
-  const V share = hn::Div(limit, hn::Max(norm(pair), limit));
+/// limit / max(|pair|, limit)
+template <class D, class V = hn::Vec<D>, hwy::EnableIf<sizeof(hn::TFromD<D>) == 8>* = nullptr>
+HWY_INLINE V share_within(D, const Pair<V>& pair, V limit) {
+  return hn::Div(limit, hn::Max(norm(pair), limit));
+}
+
+/// The same to the last digit or two, at a third of the time of a square root and a division: an
+/// approximate root and a step of Newton's method. Exactly 1 within the limit.
+template <class D, class V = hn::Vec<D>, hwy::EnableIf<sizeof(hn::TFromD<D>) == 4>* = nullptr>
+HWY_INLINE V share_within(D d, const Pair<V>& pair, V limit) {
+  const V one = hn::Set(d, 1.0F);
+  const V squared = hn::MulAdd(pair.x, pair.x, hn::Mul(pair.y, pair.y));
+  const V limit_squared = hn::Mul(limit, limit);
+  const V safe = hn::Max(squared, limit_squared);
+  const V root = hn::ApproximateReciprocalSqrt(safe);
+  const V halved = hn::Mul(hn::Mul(hn::Set(d, 0.5F), safe), root);
+  const V share =
+      hn::Mul(limit, hn::MulAdd(root, hn::NegMulAdd(halved, root, hn::Set(d, 0.5F)), root));
+  return hn::IfThenElse(hn::Gt(squared, limit_squared), share, one);
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Pair<V> clipped(D d, const Pair<V>& pair, V limit) {
+  const V share = share_within(d, pair, limit);
   return {hn::Mul(share, pair.x), hn::Mul(share, pair.y)};
 }
 
@@ -65,18 +87,30 @@ HWY_INLINE V mapped(V u, V z, V b, V relaxation) {
   return hn::Add(hn::MulAdd(relaxation, hn::Sub(u, w), w), b);
 }
 
+/// Asks for the sample that lies `width` further on, in the next row: by the time that it is
+/// reached, the transforms between two rows have hidden the way from memory.
+template <typename Real>
+HWY_INLINE void prefetch(const Real* sample, std::size_t width) {
+  hwy::Prefetch(sample + width);
+}
+
 /// Maps as many samples of a row as d has lanes, from i on; `right` is the distance to the right
 /// neighbour.
 template <class D, typename Real>
-HWY_INLINE void map_samples(D d, const AdmmRow<Real>& row, const AdmmNumbers<Real>& numbers,
-                            std::size_t i, std::ptrdiff_t right) {
+HWY_INLINE void map_samples(D d, const AdmmRow<Real>& row, std::size_t width,
+                            const AdmmNumbers<Real>& numbers, std::size_t i, std::ptrdiff_t right) {
+  prefetch(row.z_x + i, width);
+  prefetch(row.z_y + i, width);
+  prefetch(row.former_x + i, width);
+  prefetch(row.former_y + i, width);
+  prefetch(row.image_below + i, width);
   const auto relaxation = hn::Set(d, numbers.relaxation);
   const auto momentum = hn::Set(d, numbers.momentum);
   const auto limit = hn::Set(d, numbers.limit);
   const auto f = gradient(d, row.image + i, row.image + i + right, row.image_below + i);
   const auto v = gradient(d, row.texture + i, row.texture + i + right, row.texture_below + i);
   const auto z = load(d, row.z_x + i, row.z_y + i);
-  const auto b = clipped(z, limit);
+  const auto b = clipped(d, z, limit);
   const auto former = load(d, row.former_x + i, row.former_y + i);
   const PairOf<D> next = {mapped(hn::Sub(f.x, v.x), z.x, b.x, relaxation),
                           mapped(hn::Sub(f.y, v.y), z.y, b.y, relaxation)};
@@ -84,47 +118,73 @@ HWY_INLINE void map_samples(D d, const AdmmRow<Real>& row, const AdmmNumbers<Rea
   const PairOf<D> ahead = {hn::MulAdd(momentum, hn::Sub(next.x, former.x), next.x),
                            hn::MulAdd(momentum, hn::Sub(next.y, former.y), next.y)};
   store(d, ahead, row.z_x + i, row.z_y + i);
-  const auto next_b = clipped(ahead, limit);
+  const auto next_b = clipped(d, ahead, limit);
   store(d, PairOf<D>{target(f.x, ahead.x, next_b.x), target(f.y, ahead.y, next_b.y)},
         row.target_x + i, row.target_y + i);
 }
 
 template <class D, typename Real>
-HWY_INLINE void target_samples(D d, const AdmmRow<Real>& row, Real bound, std::size_t i,
-                               std::ptrdiff_t right) {
+HWY_INLINE void restart_samples(D d, const AdmmRow<Real>& row, const RestartNumbers<Real>& numbers,
+                                std::size_t i, std::ptrdiff_t right) {
   const auto f = gradient(d, row.image + i, row.image + i + right, row.image_below + i);
-  const auto z = load(d, row.z_x + i, row.z_y + i);
-  const auto b = clipped(z, hn::Set(d, bound));
+  const auto former = load(d, row.z_x + i, row.z_y + i);
+  const auto former_b = clipped(d, former, hn::Set(d, numbers.former_limit));
+  const auto ratio = hn::Set(d, numbers.limit / numbers.former_limit);
+  const PairOf<D> b = {hn::Mul(ratio, former_b.x), hn::Mul(ratio, former_b.y)};
+  const PairOf<D> z = {hn::Add(hn::Sub(former.x, former_b.x), b.x),
+                       hn::Add(hn::Sub(former.y, former_b.y), b.y)};
+  store(d, z, row.z_x + i, row.z_y + i);
   store(d, PairOf<D>{target(f.x, z.x, b.x), target(f.y, z.y, b.y)}, row.target_x + i,
         row.target_y + i);
 }
 
-/// Calls visit(descriptor, index, distance to the right neighbour) for whole vectors, then for
-/// shorter ones and single samples; the last one's neighbour is the first.
+/// Calls visit(descriptor, index) for whole vectors, then for shorter ones and single samples.
 template <typename Real, class Visit>
-HWY_INLINE void over_row(std::size_t width, const Visit& visit) {
+HWY_INLINE void over_samples(std::size_t count, const Visit& visit) {
   const hn::ScalableTag<Real> d;
   const hn::CappedTag<Real, 8> shorter;
   const hn::CappedTag<Real, 4> short_one;
   const hn::CappedTag<Real, 1> one;
   std::size_t i = 0;
-  for (; i + hn::Lanes(d) < width; i += hn::Lanes(d)) visit(d, i, 1);
-  for (; i + hn::Lanes(shorter) < width; i += hn::Lanes(shorter)) visit(shorter, i, 1);
-  for (; i + hn::Lanes(short_one) < width; i += hn::Lanes(short_one)) visit(short_one, i, 1);
-  for (; i + 1 < width; ++i) visit(one, i, 1);
-  visit(one, width - 1, -static_cast<std::ptrdiff_t>(width - 1));
+  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) visit(d, i);
+  for (; i + hn::Lanes(shorter) <= count; i += hn::Lanes(shorter)) visit(shorter, i);
+  for (; i + hn::Lanes(short_one) <= count; i += hn::Lanes(short_one)) visit(short_one, i);
+  for (; i < count; ++i) visit(one, i);
+}
+
+/// Calls visit(descriptor, index, distance to the right neighbour); the last sample's neighbour is
+/// the first.
+template <typename Real, class Visit>
+HWY_INLINE void over_row(std::size_t width, const Visit& visit) {
+  const std::size_t last = width - 1;
+  over_samples<Real>(last, [&](auto d, std::size_t i) HWY_ATTR { visit(d, i, 1); });
+  visit(hn::CappedTag<Real, 1>(), last, -static_cast<std::ptrdiff_t>(last));
 }
 
 template <typename Real>
 void map_row(const AdmmRow<Real>& row, std::size_t width, const AdmmNumbers<Real>& numbers) {
   over_row<Real>(width, [&](auto d, std::size_t i, std::ptrdiff_t right)
-                            HWY_ATTR { map_samples(d, row, numbers, i, right); });
+                            HWY_ATTR { map_samples(d, row, width, numbers, i, right); });
 }
 
 template <typename Real>
-void targets_of_row(const AdmmRow<Real>& row, std::size_t width, Real limit) {
+void restarted_row(const AdmmRow<Real>& row, std::size_t width,
+                   const RestartNumbers<Real>& numbers) {
   over_row<Real>(width, [&](auto d, std::size_t i, std::ptrdiff_t right)
-                            HWY_ATTR { target_samples(d, row, limit, i, right); });
+                            HWY_ATTR { restart_samples(d, row, numbers, i, right); });
+}
+
+template <typename Real>
+void divergence_of_row(const Real* x, const Real* y, const Real* above, std::size_t width,
+                       Real* out) {
+  const std::size_t last = width - 1;
+  out[0] = (x[last] - x[0]) + (above[0] - y[0]);
+  over_samples<Real>(last, [&](auto d, std::size_t left) HWY_ATTR {
+    const std::size_t i = left + 1;
+    const auto along_x = hn::Sub(hn::LoadU(d, x + left), hn::LoadU(d, x + i));
+    const auto along_y = hn::Sub(hn::LoadU(d, above + i), hn::LoadU(d, y + i));
+    hn::StoreU(hn::Add(along_x, along_y), d, out + i);
+  });
 }
 
 template <typename Real>
@@ -134,7 +194,7 @@ void clipped_row(const Real* x, const Real* y, std::size_t width, Real scale, Re
     const auto factor = hn::Set(d, scale);
     const auto from = load(d, x + i, y + i);
     const PairOf<decltype(d)> scaled = {hn::Mul(factor, from.x), hn::Mul(factor, from.y)};
-    store(d, clipped(scaled, hn::Set(d, Real{1})), out_x + i, out_y + i);
+    store(d, clipped(d, scaled, hn::Set(d, Real{1})), out_x + i, out_y + i);
   });
 }
 
@@ -203,11 +263,21 @@ void map_row_f64(const AdmmRow<double>& row, std::size_t width,
                  const AdmmNumbers<double>& numbers) {
   map_row(row, width, numbers);
 }
-void targets_f32(const AdmmRow<float>& row, std::size_t width, float limit) {
-  targets_of_row(row, width, limit);
+void restarted_f32(const AdmmRow<float>& row, std::size_t width,
+                   const RestartNumbers<float>& numbers) {
+  restarted_row(row, width, numbers);
 }
-void targets_f64(const AdmmRow<double>& row, std::size_t width, double limit) {
-  targets_of_row(row, width, limit);
+void restarted_f64(const AdmmRow<double>& row, std::size_t width,
+                   const RestartNumbers<double>& numbers) {
+  restarted_row(row, width, numbers);
+}
+void divergence_f32(const float* x, const float* y, const float* above, std::size_t width,
+                    float* out) {
+  divergence_of_row(x, y, above, width, out);
+}
+void divergence_f64(const double* x, const double* y, const double* above, std::size_t width,
+                    double* out) {
+  divergence_of_row(x, y, above, width, out);
 }
 void clip_f32(const float* x, const float* y, std::size_t width, float scale, float* out_x,
               float* out_y) {
@@ -235,8 +305,10 @@ namespace {
 
 HWY_EXPORT(map_row_f32);
 HWY_EXPORT(map_row_f64);
-HWY_EXPORT(targets_f32);
-HWY_EXPORT(targets_f64);
+HWY_EXPORT(restarted_f32);
+HWY_EXPORT(restarted_f64);
+HWY_EXPORT(divergence_f32);
+HWY_EXPORT(divergence_f64);
 HWY_EXPORT(clip_f32);
 HWY_EXPORT(clip_f64);
 HWY_EXPORT(norms_f32);
@@ -255,12 +327,24 @@ void admm_row(const AdmmRow<double>& row, std::size_t width, const AdmmNumbers<d
   HWY_DYNAMIC_DISPATCH(map_row_f64)(row, width, numbers);
 }
 template <>
-void admm_target_row(const AdmmRow<float>& row, std::size_t width, float limit) {
-  HWY_DYNAMIC_DISPATCH(targets_f32)(row, width, limit);
+void admm_restart_row(const AdmmRow<float>& row, std::size_t width,
+                      const RestartNumbers<float>& numbers) {
+  HWY_DYNAMIC_DISPATCH(restarted_f32)(row, width, numbers);
 }
 template <>
-void admm_target_row(const AdmmRow<double>& row, std::size_t width, double limit) {
-  HWY_DYNAMIC_DISPATCH(targets_f64)(row, width, limit);
+void admm_restart_row(const AdmmRow<double>& row, std::size_t width,
+                      const RestartNumbers<double>& numbers) {
+  HWY_DYNAMIC_DISPATCH(restarted_f64)(row, width, numbers);
+}
+template <>
+void negative_divergence_row(const float* x, const float* y, const float* above, std::size_t width,
+                             float* out) {
+  HWY_DYNAMIC_DISPATCH(divergence_f32)(x, y, above, width, out);
+}
+template <>
+void negative_divergence_row(const double* x, const double* y, const double* above,
+                             std::size_t width, double* out) {
+  HWY_DYNAMIC_DISPATCH(divergence_f64)(x, y, above, width, out);
 }
 template <>
 void clip_row(const float* x, const float* y, std::size_t width, float scale, float* out_x,

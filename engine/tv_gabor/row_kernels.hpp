@@ -32,9 +32,23 @@ struct AdmmNumbers {
 template <typename Real>
 void admm_row(const AdmmRow<Real>& row, std::size_t width, const AdmmNumbers<Real>& numbers);
 
-/// target = grad f - z + 2 clip(z) of a row; texture and former are not read.
 template <typename Real>
-void admm_target_row(const AdmmRow<Real>& row, std::size_t width, Real limit);
+struct RestartNumbers {
+  Real former_limit;  ///< of |b| until now
+  Real limit;         ///< from now on
+};
+
+/// Rescales b, and with it z, from one limit to another, keeping w, and writes the targets of a
+/// row; texture and former are not read.
+template <typename Real>
+void admm_restart_row(const AdmmRow<Real>& row, std::size_t width,
+                      const RestartNumbers<Real>& numbers);
+
+/// out = -div of a row of a field on the torus: the adjoint of the gradient.
+/// \param above  y of the row above
+template <typename Real>
+void negative_divergence_row(const Real* x, const Real* y, const Real* above, std::size_t width,
+                             Real* out);
 
 /// out = the point with norm <= 1 nearest to scale * (x, y). The outputs may be the inputs.
 template <typename Real>

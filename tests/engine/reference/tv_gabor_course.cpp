@@ -23,9 +23,10 @@ void negative_divergence(const engine::VectorField<Real>& field, std::span<Real>
   const int height = field.x.height();
   const std::size_t width = static_cast<std::size_t>(field.x.width());
   for (int y = 0; y < height; ++y) {
-    engine::negative_divergence_of_row<Real>(
-        field.x.row(y), field.y.row(y), field.y.row(y == 0 ? height - 1 : y - 1),
-        out.subspan(static_cast<std::size_t>(y) * width, width));
+    const int above = y == 0 ? height - 1 : y - 1;
+    engine::negative_divergence_row(field.x.row(y).data(), field.y.row(y).data(),
+                                    field.y.row(above).data(), width,
+                                    out.data() + static_cast<std::size_t>(y) * width);
   }
 }
 

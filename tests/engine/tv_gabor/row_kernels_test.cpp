@@ -57,6 +57,64 @@ TEMPLATE_TEST_CASE("TV-Gabor's row kernels agree with their definition on every 
   });
 }
 
+TEMPLATE_TEST_CASE(
+    "a row that starts again at another limit keeps w and rescales b on every target", "", float,
+    double) {
+  on_every_simd_target([] {
+    for (const std::size_t width : {1U, 2U, 5U, 16U, 37U}) {
+      const auto f = noise<TestType>(width, "f"), below = noise<TestType>(width, "below");
+      const auto old_x = noise<TestType>(width, "x"), old_y = noise<TestType>(width, "y");
+      auto z_x = old_x, z_y = old_y;
+      std::vector<TestType> target_x(width), target_y(width);
+      engine::admm_restart_row<TestType>(
+          {f.data(), below.data(), nullptr, nullptr, z_x.data(), z_y.data(), nullptr, nullptr,
+           target_x.data(), target_y.data()},
+          width, {TestType(0.75), TestType(1.25)});
+      for (std::size_t i = 0; i < width; ++i) {
+        const std::size_t right = i + 1 == width ? 0 : i + 1;
+        const double share = 0.75 / std::max<double>(0.75, std::hypot(old_x[i], old_y[i]));
+        const double change = share * (1.25 / 0.75 - 1.0);
+        REQUIRE(z_x[i] == Approx(old_x[i] * (1.0 + change)).margin(1e-5));
+        REQUIRE(z_y[i] == Approx(old_y[i] * (1.0 + change)).margin(1e-5));
+        const double f_x = static_cast<double>(f[right]) - f[i];
+        const double f_y = static_cast<double>(below[i]) - f[i];
+        REQUIRE(target_x[i] == Approx(target_of(f_x, z_x[i], z_y[i], 1.25)).margin(1e-5));
+        REQUIRE(target_y[i] == Approx(target_of(f_y, z_y[i], z_x[i], 1.25)).margin(1e-5));
+      }
+    }
+  });
+}
+
+TEMPLATE_TEST_CASE(
+    "the divergence and the gap of a row agree with their definition on every target", "", float,
+    double) {
+  on_every_simd_target([] {
+    for (const std::size_t width : {2U, 5U, 16U, 37U}) {
+      const auto f = noise<TestType>(width, "f"), below = noise<TestType>(width, "below");
+      const auto v = noise<TestType>(width, "v"), v_below = noise<TestType>(width, "v below");
+      const auto q_x = noise<TestType>(width, "x"), q_y = noise<TestType>(width, "y");
+      std::vector<TestType> divergence(width);
+      engine::negative_divergence_row(q_x.data(), q_y.data(), v.data(), width, divergence.data());
+      const engine::GapSums sums = engine::gap_row<TestType>(
+          {f.data(), below.data(), v.data(), v_below.data(), q_x.data(), q_y.data()}, width);
+      double primal = 0.0, difference = 0.0;
+      for (std::size_t i = 0; i < width; ++i) {
+        const std::size_t left = i == 0 ? width - 1 : i - 1, right = i + 1 == width ? 0 : i + 1;
+        REQUIRE(divergence[i] ==
+                Approx(static_cast<double>(q_x[left]) - q_x[i] + v[i] - q_y[i]).margin(2e-6));
+        const double v_x = static_cast<double>(v[right]) - v[i];
+        const double v_y = static_cast<double>(v_below[i]) - v[i];
+        const double u_x = static_cast<double>(f[right]) - f[i] - v_x;
+        const double u_y = static_cast<double>(below[i]) - f[i] - v_y;
+        primal += std::hypot(u_x, u_y) + 0.5 * (q_x[i] * v_x + q_y[i] * v_y);
+        difference += std::max(0.0, std::hypot(u_x, u_y) - (q_x[i] * u_x + q_y[i] * u_y));
+      }
+      CHECK(sums.primal == Approx(primal).epsilon(1e-12));
+      CHECK(sums.difference == Approx(difference).epsilon(1e-12));
+    }
+  });
+}
+
 TEMPLATE_TEST_CASE("a clipped row is nowhere longer than 1 on any target", "", float, double) {
   on_every_simd_target([] {
     const auto x = noise<TestType>(41, "x"), y = noise<TestType>(41, "y");
