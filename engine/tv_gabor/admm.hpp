@@ -45,8 +45,10 @@ class TvGaborAdmm {
   /// \param penalty  rho, 1 / grey levels, > 0
   void start_again(double penalty);
   void step(AdmmPace pace);
-  /// A step without momentum, with its residuals.
-  [[nodiscard]] AdmmResiduals measured_step();
+  /// A step without momentum, after which the plane holds -div b for a certificate: start again.
+  void last_step();
+  /// The same, with residuals.
+  [[nodiscard]] AdmmResiduals measured_last_step();
 
   /// Continues an iteration on the same image from another precision, where z() and penalty() were
   /// these.
@@ -63,7 +65,7 @@ class TvGaborAdmm {
 
  private:
   template <typename Watch>
-  typename Watch::Sums map(double relaxation, double momentum);
+  typename Watch::Sums map(double relaxation, double momentum, bool is_last);
   void set_factors();
   [[nodiscard]] int row_below(int y) const noexcept;
   [[nodiscard]] AdmmRow<Real> row_of(int y) noexcept;

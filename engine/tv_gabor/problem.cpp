@@ -87,15 +87,25 @@ void add_power(const Patch& patch, const std::vector<Wave>& along_x,
       add(right - left, along_x[x].sine, imaginary[y]);
     }
   }
-  std::vector<double> transform;
+  std::array<const double*, kPatchRadius + 1> re{}, im{};
+  for (std::size_t y = 0; y <= kPatchRadius; ++y) {
+    re[y] = real[y].data();
+    im[y] = imaginary[y].data();
+  }
   for (int i = 0; i < spectrum.height(); ++i) {
-    transform = real[0];
+    std::array<double, kPatchRadius + 1> cosine{}, sine{};
     for (std::size_t y = 1; y <= kPatchRadius; ++y) {
-      add(2.0 * along_y[y].cosine[static_cast<std::size_t>(i)], real[y], transform);
-      add(-2.0 * along_y[y].sine[static_cast<std::size_t>(i)], imaginary[y], transform);
+      cosine[y] = 2.0 * along_y[y].cosine[static_cast<std::size_t>(i)];
+      sine[y] = 2.0 * along_y[y].sine[static_cast<std::size_t>(i)];
     }
     const auto row = spectrum.row(i);
-    for (std::size_t x = 0; x < transform.size(); ++x) row[x] += transform[x] * transform[x];
+    for (std::size_t x = 0; x < row.size(); ++x) {
+      double transform = re[0][x];
+      for (std::size_t y = 1; y <= kPatchRadius; ++y) {
+        transform += cosine[y] * re[y][x] - sine[y] * im[y][x];
+      }
+      row[x] += transform * transform;
+    }
   }
 }
 
@@ -119,16 +129,6 @@ Plane<Real> extended_to_torus(const GreyImage& image) {
     }
   }
   return torus;
-}
-
-template <typename Real>
-Plane<Real> cropped_from_torus(const Plane<Real>& torus, int height, int width) {
-  Plane<Real> image(height, width);
-  for (int y = 0; y < height; ++y) {
-    const auto from = torus.row(y + kTorusMargin).subspan(kTorusMargin, width);
-    std::copy(from.begin(), from.end(), image.row(y).begin());
-  }
-  return image;
 }
 
 Plane<double> gabor_spectrum(std::span<const GaborComponent> components, int height, int width) {
@@ -173,8 +173,6 @@ double mean_gradient(const Plane<Real>& torus) {
 
 template Plane<float> extended_to_torus<float>(const GreyImage&);
 template Plane<double> extended_to_torus<double>(const GreyImage&);
-template Plane<float> cropped_from_torus<float>(const Plane<float>&, int, int);
-template Plane<double> cropped_from_torus<double>(const Plane<double>&, int, int);
 
 template TvGaborProblem<float> tv_gabor_problem<float>(const GreyImage&, const TvGaborOptions&);
 template TvGaborProblem<double> tv_gabor_problem<double>(const GreyImage&, const TvGaborOptions&);

@@ -24,10 +24,6 @@ inline constexpr int kTorusMargin = 16;
 template <typename Real>
 [[nodiscard]] Plane<Real> extended_to_torus(const GreyImage& image);
 
-/// The part of a torus plane that belongs to an image of the given shape.
-template <typename Real>
-[[nodiscard]] Plane<Real> cropped_from_torus(const Plane<Real>& torus, int height, int width);
-
 /// The spectrum of M, which decides which oscillations count as texture: the sum over the
 /// components of |g^|^2, scaled so that its maximum is 1, where g is an 11 x 11 even Gabor patch of
 /// standard deviation 2 px minus its own mean. Non-negative by construction, and zero at frequency

@@ -119,6 +119,7 @@ HWY_INLINE void map_samples(D d, const AdmmRow<Real>& row, std::size_t width,
                            hn::MulAdd(momentum, hn::Sub(next.y, former.y), next.y)};
   store(d, ahead, row.z_x + i, row.z_y + i);
   const auto next_b = clipped(d, ahead, limit);
+  if (numbers.b_alone) return store(d, next_b, row.target_x + i, row.target_y + i);
   store(d, PairOf<D>{target(f.x, ahead.x, next_b.x), target(f.y, ahead.y, next_b.y)},
         row.target_x + i, row.target_y + i);
 }

@@ -18,7 +18,7 @@ struct AdmmRow {
   Real* z_y;
   Real* former_x;  ///< the map's previous value, in and out
   Real* former_y;
-  Real* target_x;  ///< out: grad f - z + 2 clip(z)
+  Real* target_x;  ///< out: grad f - z + 2 b, or b alone, with b = clip(z)
   Real* target_y;
 };
 
@@ -27,6 +27,7 @@ struct AdmmNumbers {
   Real relaxation;
   Real limit;     ///< of |b|, 1 / penalty
   Real momentum;  ///< share of the last change to add again
+  bool b_alone;   ///< as target
 };
 
 template <typename Real>

@@ -13,33 +13,20 @@ namespace touchtrial::engine {
 /// minus dual is the sum of |grad u| - <q, grad u>: no term is negative, so nothing cancels between
 /// pixels and the gap keeps its digits.
 template <typename Real>
-void certify(const TvGaborProblem<Real>& problem, const VectorField<Real>& field, double scale,
-             TorusPlane<Real>& plane, TvGaborCertificate<Real>& certificate) {
+double certified_gap(const TvGaborProblem<Real>& problem, const VectorField<Real>& field,
+                     double scale, TorusPlane<Real>& plane, double gain) {
   const int height = plane.height();
   const std::size_t width = plane.width();
-  const auto write_q = [&](int y, Real* q_x, Real* q_y) {
-    clip_row(field.x.row(y).data(), field.y.row(y).data(), width, static_cast<Real>(scale), q_x,
-             q_y);
-  };
-  plane.in_blocks([&](const RowBlock& block) {
-    typename TorusPlane<Real>::DivergenceRows q(plane, block);
-    for (int y = block.begin; y < block.end; ++y) {
-      write_q(y, q.along_x(), q.along_y());
-      q.next();
-    }
-  });
-  plane.finish_divergence();
+  const auto unit = static_cast<Real>(1.0 / (problem.lambda * gain));
   plane.filter(problem.factors);
-  Plane<Real>& texture = certificate.texture;
-  if (texture.empty()) texture = Plane<Real>(height, problem.image.width());
   const GapSums sums = plane.template sum_of_blocks<GapSums>([&](const RowBlock& block) {
-    typename TorusPlane<Real>::Rows v(plane, block, static_cast<Real>(1.0 / problem.lambda));
+    typename TorusPlane<Real>::Rows v(plane, block, unit);
     std::vector<Real> q_x(width), q_y(width);
     GapSums of_block;
     for (int y = block.begin; y < block.end; ++y) {
       v.go_to(y);
-      std::copy_n(v.row(), width, texture.row(y).data());
-      write_q(y, q_x.data(), q_y.data());
+      clip_row(field.x.row(y).data(), field.y.row(y).data(), width, static_cast<Real>(scale),
+               q_x.data(), q_y.data());
       of_block += gap_row<Real>({.image = problem.image.row(y).data(),
                                  .image_below = problem.image.row((y + 1) % height).data(),
                                  .texture = v.row(),
@@ -50,13 +37,13 @@ void certify(const TvGaborProblem<Real>& problem, const VectorField<Real>& field
     }
     return of_block;
   });
-  certificate.gap = sums.primal > 0.0 ? sums.difference / sums.primal : 0.0;
+  return sums.primal > 0.0 ? sums.difference / sums.primal : 0.0;
 }
 
-template void certify(const TvGaborProblem<float>&, const VectorField<float>&, double,
-                      TorusPlane<float>&, TvGaborCertificate<float>&);
-template void certify(const TvGaborProblem<double>&, const VectorField<double>&, double,
-                      TorusPlane<double>&, TvGaborCertificate<double>&);
+template double certified_gap(const TvGaborProblem<float>&, const VectorField<float>&, double,
+                              TorusPlane<float>&, double);
+template double certified_gap(const TvGaborProblem<double>&, const VectorField<double>&, double,
+                              TorusPlane<double>&, double);
 
 namespace {
 
@@ -111,7 +98,9 @@ void PenaltySchedule::balance(const AdmmResiduals& residuals) {
 
 template <typename Real>
 TvGaborSolver<Real>::TvGaborSolver(const GreyImage& image, const TvGaborOptions& options, int jobs)
-    : wanted_gap_(options.gap),
+    : height_(image.height()),
+      width_(image.width()),
+      wanted_gap_(options.gap),
       problem_(tv_gabor_problem<Real>(image, options)),
       plane_(problem_.image.height(), problem_.image.width(), jobs, FftPlan::measured),
       schedule_(mean_gradient(problem_.image)),
@@ -121,7 +110,7 @@ template <typename Real>
 SolverStop TvGaborSolver<Real>::run(int max_steps, Patience patience) {
   while (steps_ < max_steps) {
     step_to_check(max_steps);
-    if (certificate_.gap <= wanted_gap_) return SolverStop::converged;
+    if (gap_ <= wanted_gap_) return SolverStop::converged;
     // Without steps left nobody can continue: the steps are exhausted, not stalled.
     const bool may_stall = patience == Patience::limited && steps_ < max_steps;
     if (may_stall && is_stalled()) return SolverStop::stalled;
@@ -139,14 +128,21 @@ void TvGaborSolver<Real>::step_to_check(int last) {
   for (; steps_ < check - 1; ++steps_) admm_.step(schedule_.pace());
   AdmmResiduals residuals;
   if (schedule_.wants_residuals()) {
-    residuals = admm_.measured_step();
+    residuals = admm_.measured_last_step();
   } else {
-    admm_.step(AdmmPace::cautious);  // uninterrupted momentum can go round in circles
+    admm_.last_step();  // uninterrupted momentum can go round in circles
   }
   ++steps_;
-  certify(problem_, admm_.z(), admm_.penalty(), plane_, certificate_);
-  gaps_.push_back(certificate_.gap);
-  schedule_.next(certificate_.gap, residuals);
+  // The plane holds -div b, and -p = penalty b.
+  gap_ = certified_gap(problem_, admm_.z(), admm_.penalty(), plane_, 1.0 / admm_.penalty());
+  gaps_.push_back(gap_);
+  schedule_.next(gap_, residuals);
+}
+
+/// The plane still holds what the last check filtered.
+template <typename Real>
+Plane<Real> TvGaborSolver<Real>::texture() const {
+  return cropped_texture(plane_, admm_.penalty() / problem_.lambda, height_, width_);
 }
 
 template <typename Real>

@@ -1,5 +1,5 @@
 /// \file The course of a TV-Gabor decomposition: steps, checks, and the schedule of the penalty; and
-/// the certificate of how far a result is from the optimum.
+/// the gap that certifies how far a result is from the optimum.
 /// Source: docs/method.md, "TV-Gabor".
 #pragma once
 
@@ -9,22 +9,39 @@
 #include "engine/tv_gabor/problem.hpp"
 #include "engine/tv_gabor/torus_plane.hpp"
 
+#include <algorithm>
 #include <vector>
 
 namespace touchtrial::engine {
 
+/// The relative gap (primal - dual) / primal, >= 0, of a dual point p, and with it v = M div p /
+/// lambda; 0 where the primal value is 0.
+/// \param field,scale  p = -scale * field, its vectors shortened to 1 if longer
+/// \param plane  holds -div p, multiplied by any factor; afterwards v, multiplied by lambda and that
+///   factor
+/// \param gain  that factor
 template <typename Real>
-struct TvGaborCertificate {
-  Plane<Real> texture;  ///< v = M div p / lambda on the torus, grey levels
-  double gap = 0.0;     ///< (primal - dual) / primal, >= 0; 0 where the primal value is 0
-};
+[[nodiscard]] double certified_gap(const TvGaborProblem<Real>& problem,
+                                   const VectorField<Real>& field, double scale,
+                                   TorusPlane<Real>& plane, double gain);
 
-/// \param field,scale  the dual point: p = -scale * field, its vectors shortened to 1 if longer
-/// \param plane  of the problem's size; overwritten
-/// \param certificate  its former texture's memory is used again
+/// The part of the plane that belongs to an image of the given shape.
+/// \param scale  of all samples
 template <typename Real>
-void certify(const TvGaborProblem<Real>& problem, const VectorField<Real>& field, double scale,
-             TorusPlane<Real>& plane, TvGaborCertificate<Real>& certificate);
+[[nodiscard]] Plane<Real> cropped_texture(const TorusPlane<Real>& plane, double scale, int height,
+                                          int width) {
+  Plane<Real> texture(height, width);
+  plane.in_blocks([&](const RowBlock& block) {
+    typename TorusPlane<Real>::Rows rows(plane, block, static_cast<Real>(scale));
+    for (int y = block.begin; y < block.end; ++y) {
+      rows.go_to(y);
+      const int in_image = y - kTorusMargin;
+      if (in_image < 0 || in_image >= height) continue;
+      std::copy_n(rows.row() + kTorusMargin, width, texture.row(in_image).data());
+    }
+  });
+  return texture;
+}
 
 /// The penalty of the iteration, check by check. It starts high and falls by the same factor at
 /// each of 20 checks, which suits photographs: they converge meanwhile. From then on it balances
@@ -97,14 +114,15 @@ class TvGaborSolver {
   TvGaborSolver(const TvGaborSolver&) = delete;
   TvGaborSolver& operator=(const TvGaborSolver&) = delete;
 
-  /// Takes steps until there is a reason to stop; the certificate is then that of the last step.
+  /// Takes steps until there is a reason to stop; gap and texture are then those of the last step.
   /// \param max_steps  the number of steps() at which they are exhausted
   [[nodiscard]] SolverStop run(int max_steps, Patience patience);
 
-  /// Texture on the torus and gap at the last check; empty before the first.
-  [[nodiscard]] const TvGaborCertificate<Real>& certificate() const noexcept {
-    return certificate_;
-  }
+  /// The gap at the last check; 1 before the first.
+  [[nodiscard]] double gap() const noexcept { return gap_; }
+  /// v of the last check, without the torus' margins, grey levels.
+  /// \pre steps() > 0
+  [[nodiscard]] Plane<Real> texture() const;
   /// Steps taken, including those of the solver that this one continues.
   [[nodiscard]] int steps() const noexcept { return steps_; }
   [[nodiscard]] TvGaborState<Real> state() const {
@@ -115,13 +133,14 @@ class TvGaborSolver {
   void step_to_check(int last);
   [[nodiscard]] bool is_stalled() const;
 
+  int height_, width_;  // of the image
   double wanted_gap_;
   TvGaborProblem<Real> problem_;
   TorusPlane<Real> plane_;
   PenaltySchedule schedule_;
   TvGaborAdmm<Real> admm_;
-  TvGaborCertificate<Real> certificate_;
   std::vector<double> gaps_;  // of this solver, at every check
+  double gap_ = 1.0;
   int steps_ = 0;
 };
 

@@ -63,11 +63,8 @@ bool in_range(const GaborComponent& component) {
 
 /// The result without the cartoon and the components.
 template <typename Real, typename Precision>
-TvGaborResult<Real> result_of(const TvGaborSolver<Precision>& solver, SolverStop stop,
-                              const GreyImage& image) {
-  const Plane<Precision> texture =
-      cropped_from_torus(solver.certificate().texture, image.height(), image.width());
-  return {converted<Real>(texture),     {}, {}, solver.certificate().gap, solver.steps(),
+TvGaborResult<Real> result_of(const TvGaborSolver<Precision>& solver, SolverStop stop) {
+  return {converted<Real>(solver.texture()), {}, {}, solver.gap(), solver.steps(),
           stop == SolverStop::converged};
 }
 
@@ -79,15 +76,15 @@ TvGaborResult<Real> solved(const GreyImage& image, const TvGaborOptions& options
   const int jobs = image.size() >= kPixelsWorthThreads ? 0 : 1;
   if constexpr (std::is_same_v<Real, double>) {
     TvGaborSolver<double> solver(image, options, jobs);
-    return result_of<double>(solver, solver.run(options.max_steps, Patience::unlimited), image);
+    return result_of<double>(solver, solver.run(options.max_steps, Patience::unlimited));
   } else {
     auto solver = std::make_optional<TvGaborSolver<float>>(image, options, jobs);
     const SolverStop stop = solver->run(options.max_steps, Patience::limited);
-    if (stop != SolverStop::stalled) return result_of<float>(*solver, stop, image);
+    if (stop != SolverStop::stalled) return result_of<float>(*solver, stop);
     const TvGaborState<float> state = solver->state();
     solver.reset();  // frees its memory before double's larger planes need some
     TvGaborSolver<double> finisher(image, options, jobs, state);
-    return result_of<float>(finisher, finisher.run(options.max_steps, Patience::unlimited), image);
+    return result_of<float>(finisher, finisher.run(options.max_steps, Patience::unlimited));
   }
 }
 

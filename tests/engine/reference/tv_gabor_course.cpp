@@ -1,6 +1,7 @@
 #include "engine/reference/tv_gabor_course.hpp"
 
 #include "engine/fourier/real_fft.hpp"
+#include "engine/reference/tv_gabor_certificate.hpp"
 #include "engine/tv_gabor/problem.hpp"
 #include "engine/tv_gabor/row_kernels.hpp"
 #include "engine/tv_gabor/solver.hpp"
@@ -11,6 +12,7 @@
 #include <cstddef>
 #include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::reference {
@@ -172,13 +174,9 @@ engine::TvGaborOptions with_components(const GreyImage& image, engine::TvGaborOp
 }
 
 template <typename Real>
-engine::TvGaborCertificate<Real> certificate_of(const engine::TvGaborProblem<Real>& problem,
-                                                const engine::VectorField<Real>& field,
-                                                double scale) {
-  engine::TorusPlane<Real> plane(problem.image.height(), problem.image.width(), 1);
-  engine::TvGaborCertificate<Real> certificate;
-  engine::certify(problem, field, scale, plane, certificate);
-  return certificate;
+TvGaborCertificate<Real> cropped(const TvGaborCertificate<Real>& certificate, int height,
+                                 int width) {
+  return {cropped_from_torus(certificate.texture, height, width), certificate.gap};
 }
 
 void refuse_flat(const GreyImage& image) {
@@ -196,7 +194,8 @@ class TvGaborCourse<Real>::Solver {
  public:
   virtual ~Solver() = default;
   virtual void advance(int steps) = 0;
-  [[nodiscard]] virtual engine::TvGaborCertificate<Real> certificate() = 0;
+  /// Of an image of this shape, without the torus' margins.
+  [[nodiscard]] virtual TvGaborCertificate<Real> certificate(int height, int width) = 0;
 };
 
 template <typename Real>
@@ -209,11 +208,11 @@ class TvGaborCourse<Real>::Admm final : public Solver {
     static_cast<void>(solver_.run(solver_.steps() + steps, engine::Patience::unlimited));
   }
   /// The solver checks only after its first steps, so the start is certified here.
-  engine::TvGaborCertificate<Real> certificate() override {
-    if (solver_.steps() > 0) return solver_.certificate();
+  TvGaborCertificate<Real> certificate(int height, int width) override {
+    if (solver_.steps() > 0) return {solver_.texture(), solver_.gap()};
     const auto problem = engine::tv_gabor_problem<Real>(image_, options_);
     const engine::TvGaborState<Real> state = solver_.state();
-    return certificate_of(problem, state.z, state.schedule.penalty());
+    return cropped(certificate_of(problem, state.z, state.schedule.penalty()), height, width);
   }
 
  private:
@@ -241,8 +240,8 @@ class TvGaborCourse<Real>::OnDual final : public Solver {
   void advance(int steps) override {
     for (int step = 0; step < steps; ++step) method_.step();
   }
-  engine::TvGaborCertificate<Real> certificate() override {
-    return certificate_of(problem_, method_.q(), 1.0);
+  TvGaborCertificate<Real> certificate(int height, int width) override {
+    return cropped(certificate_of(problem_, method_.q(), 1.0), height, width);
   }
 
  private:
@@ -282,9 +281,8 @@ void TvGaborCourse<Real>::advance(int steps) {
 
 template <typename Real>
 TvGaborPoint<Real> TvGaborCourse<Real>::point() {
-  const engine::TvGaborCertificate<Real> certificate = solver_->certificate();
-  return {steps_, certificate.gap,
-          engine::cropped_from_torus(certificate.texture, height_, width_)};
+  TvGaborCertificate<Real> certificate = solver_->certificate(height_, width_);
+  return {steps_, certificate.gap, std::move(certificate.texture)};
 }
 
 template class TvGaborCourse<float>;

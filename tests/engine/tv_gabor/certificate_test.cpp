@@ -1,6 +1,7 @@
 #include "core/random.hpp"
 #include "engine/example_images.hpp"
 #include "engine/plane_comparison.hpp"
+#include "engine/reference/tv_gabor_certificate.hpp"
 #include "engine/reference/tv_gabor_reference.hpp"
 #include "engine/tv_gabor/solver.hpp"
 #include "support/catch.hpp"
@@ -17,15 +18,6 @@ engine::TvGaborProblem<double> problem_of(const GreyImage& image,
   const Plane<double> spectrum =
       engine::gabor_spectrum(options.components, torus.height(), torus.width());
   return {torus, engine::arranged_factors<double>(spectrum, torus.width()), options.lambda};
-}
-
-engine::TvGaborCertificate<double> certificate_of(const engine::TvGaborProblem<double>& problem,
-                                                  const engine::VectorField<double>& field,
-                                                  double scale) {
-  engine::TorusPlane<double> plane(problem.image.height(), problem.image.width(), 1);
-  engine::TvGaborCertificate<double> certificate;
-  engine::certify(problem, field, scale, plane, certificate);
-  return certificate;
 }
 
 engine::VectorField<double> random_multiplier(int height, int width) {
@@ -52,7 +44,7 @@ TEST_CASE("a certificate agrees with the definitions of primal and dual") {
   const int height = problem.image.height();
   const int width = problem.image.width();
   const engine::VectorField<double> half = random_multiplier(height, width);  // of norm < 1
-  const auto certificate = certificate_of(problem, half, 0.9);
+  const auto certificate = reference::certificate_of(problem, half, 0.9);
 
   const reference::TvGabor definition(image, options);
   const reference::Dual p{scaled(half.x, -0.9), scaled(half.y, -0.9)};
@@ -63,7 +55,7 @@ TEST_CASE("a certificate agrees with the definitions of primal and dual") {
 
 TEST_CASE("a certificate of no multiplier has no texture and the whole gap") {
   const engine::TvGaborProblem<double> problem = problem_of(noise_image({8, 8}), {});
-  const auto certificate = certificate_of(
+  const auto certificate = reference::certificate_of(
       problem, engine::VectorField<double>(problem.image.height(), problem.image.width()), 1.0);
   CHECK(largest_magnitude(certificate.texture) == 0.0);
   CHECK(certificate.gap == Approx(1.0).epsilon(1e-14));
@@ -71,7 +63,7 @@ TEST_CASE("a certificate of no multiplier has no texture and the whole gap") {
 
 TEST_CASE("a certificate of a flat image has gap zero") {
   const engine::TvGaborProblem<double> problem = problem_of(flat_image({8, 8}, 90), {});
-  const auto certificate = certificate_of(
+  const auto certificate = reference::certificate_of(
       problem, engine::VectorField<double>(problem.image.height(), problem.image.width()), 1.0);
   CHECK(certificate.gap == 0.0);
 }

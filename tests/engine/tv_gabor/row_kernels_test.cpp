@@ -35,7 +35,8 @@ TEMPLATE_TEST_CASE("TV-Gabor's row kernels agree with their definition on every 
       const auto was_x = noise<TestType>(width, "was x"), was_y = noise<TestType>(width, "was y");
       auto z_x = old_x, z_y = old_y, former_x = was_x, former_y = was_y;
       std::vector<TestType> target_x(width), target_y(width);
-      const engine::AdmmNumbers<TestType> numbers{TestType(1.5), TestType(0.75), TestType(0.25)};
+      const engine::AdmmNumbers<TestType> numbers{TestType(1.5), TestType(0.75), TestType(0.25),
+                                                  false};
       engine::admm_row<TestType>(
           {f.data(), below.data(), v.data(), v_below.data(), z_x.data(), z_y.data(),
            former_x.data(), former_y.data(), target_x.data(), target_y.data()},
