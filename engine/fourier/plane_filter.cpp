@@ -56,23 +56,26 @@ struct PlaneFilter<Real>::State {
               static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), way,
               [this](unsigned flags) { return make_plans(flags); }) {}
 
-  /// Plans overwrite what they are measured on: rows of a workspace, and the first block.
+  /// Plans overwrite what they are measured on. Transformed columns are contiguous: FFTW then needs
+  /// no buffer of its own.
   [[nodiscard]] std::vector<typename Fftw<Real>::Plan> make_plans(unsigned flags) const {
     const JoinedRows<Real> rows(blocks.width);
     auto* const samples = as_fftw(rows.samples.data());
     auto* const coefficients = as_fftw(rows.spectrum.data());
+    const FftwBuffer<std::complex<Real>> transformed(blocks.block_size());
     auto* const block = as_fftw(spectrum.data());
-    const auto row = [&](auto* from, auto* to, int sign, unsigned more_flags) {
+    auto* const columns = as_fftw(transformed.data());
+    flags |= FFTW_DESTROY_INPUT;
+    const auto row = [&](auto* from, auto* to, int sign) {
       return Fftw<Real>::plan_many(1, &blocks.width, 1, from, nullptr, 1, 0, to, nullptr, 1, 0,
-                                   sign, flags | more_flags);
+                                   sign, flags);
     };
-    const auto columns = [&](int sign) {
-      return Fftw<Real>::plan_many(1, &blocks.height, kLanes, block, nullptr, kLanes, 1, block,
-                                   nullptr, kLanes, 1, sign, flags);
-    };
-    return {row(samples, coefficients, FFTW_FORWARD, FFTW_DESTROY_INPUT),
-            row(coefficients, samples, FFTW_BACKWARD, FFTW_DESTROY_INPUT), columns(FFTW_FORWARD),
-            columns(FFTW_BACKWARD)};
+    const int height = blocks.height;
+    return {row(samples, coefficients, FFTW_FORWARD), row(coefficients, samples, FFTW_BACKWARD),
+            Fftw<Real>::plan_many(1, &height, kLanes, block, nullptr, kLanes, 1, columns, nullptr,
+                                  1, height, FFTW_FORWARD, flags),
+            Fftw<Real>::plan_many(1, &height, kLanes, columns, nullptr, 1, height, block, nullptr,
+                                  kLanes, 1, FFTW_BACKWARD, flags)};
   }
 
   [[nodiscard]] PairedLines<Real> lines(int y) const {
@@ -125,12 +128,14 @@ void PlaneFilter<Real>::read_rows(int y, Real scale, Real* upper, Real* lower,
 }
 
 template <typename Real>
-void PlaneFilter<Real>::filter_columns(std::size_t block, std::span<const Real> factors) noexcept {
+void PlaneFilter<Real>::filter_columns(std::size_t block, std::span<const Real> factors) {
   std::complex<Real>* const columns = state_->spectrum.data() + block * state_->stride;
   const std::size_t count = state_->blocks.block_size();
-  Fftw<Real>::transform(state_->plans[columns_forward], as_fftw(columns), as_fftw(columns));
-  multiply_by_factors(factors.data() + block * count, count, columns);
-  Fftw<Real>::transform(state_->plans[columns_inverse], as_fftw(columns), as_fftw(columns));
+  const FftwBuffer<std::complex<Real>> transformed(count);
+  std::complex<Real>* const coefficients = transformed.data();
+  Fftw<Real>::transform(state_->plans[columns_forward], as_fftw(columns), as_fftw(coefficients));
+  multiply_by_factors(factors.data() + block * count, count, coefficients);
+  Fftw<Real>::transform(state_->plans[columns_inverse], as_fftw(coefficients), as_fftw(columns));
 }
 
 template <typename Real>

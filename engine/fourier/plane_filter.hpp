@@ -13,8 +13,8 @@
 
 namespace touchtrial::engine {
 
-/// How a filter's factors are arranged: blocks of as many columns as a cache line has coefficients,
-/// and in each block row after row.
+/// How a filter's factors are arranged: column after column, in blocks of as many columns as a
+/// cache line has coefficients.
 template <typename Real>
 struct ColumnBlocks {
   static constexpr int kLanes = 64 / sizeof(std::complex<Real>);
@@ -33,11 +33,9 @@ struct ColumnBlocks {
   template <typename Visit>
   void for_each(std::size_t block, const Visit& visit) const {
     std::size_t i = block * block_size();
-    for (int y = 0; y < height; ++y) {
-      for (int lane = 0; lane < kLanes; ++lane) {
-        visit(i + static_cast<std::size_t>(lane), y, static_cast<int>(block) * kLanes + lane);
-      }
-      i += kLanes;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int x = static_cast<int>(block) * kLanes + lane;
+      for (int y = 0; y < height; ++y, ++i) visit(i, y, x);
     }
   }
 };
@@ -94,7 +92,8 @@ class PlaneFilter {
 
   /// Filters the columns of one block.
   /// \param factors  of all blocks, arranged
-  void filter_columns(std::size_t block, std::span<const Real> factors) noexcept;
+  /// \throws std::bad_alloc if there is no memory for a block
+  void filter_columns(std::size_t block, std::span<const Real> factors);
 
  private:
   struct State;

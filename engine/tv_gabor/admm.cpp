@@ -207,12 +207,12 @@ void TvGaborAdmm<Real>::set_factors() {
   const auto lambda = static_cast<Real>(problem_.lambda);
   const auto penalty = static_cast<Real>(penalty_);
   const Real* const spectrum = problem_.factors.data();
-  const Real* const along_x = laplacian_x_.data();
+  const Real* const along_y = laplacian_y_.data();
   Real* const factors = factors_.data();
   plane_.in_column_blocks([&](std::size_t block) {
     plane_.column_blocks().for_each(block, [&](std::size_t i, int y, int x) {
       const Real weight = penalty * spectrum[i];
-      const Real laplacian = laplacian_y_[static_cast<std::size_t>(y)] + along_x[x];
+      const Real laplacian = along_y[y] + laplacian_x_[static_cast<std::size_t>(x)];
       factors[i] = weight / (lambda + weight * laplacian);
     });
   });
