@@ -28,8 +28,9 @@ struct TvGaborResult {
 ///   grid has no frequency in that range
 [[nodiscard]] GaborComponent strongest_component(const GreyImage& image);
 
-/// Decomposes an image. Thread-safe. A step costs two Fourier transforms of the torus (540 x 540
-/// samples for 500 x 500 pixels).
+/// Decomposes an image. Thread-safe; from 2^20 pixels on, it uses all cores, and digits do not
+/// depend on their number. A step costs two Fourier transforms of the torus (540 x 540 samples for
+/// 500 x 500 pixels).
 /// \param image  8-bit grey, at least 1 x 1
 /// \param options  in the ranges that extraction.hpp states; not checked here
 /// \throws std::invalid_argument if the image is empty, or too small to choose a component
