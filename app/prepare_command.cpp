@@ -418,9 +418,8 @@ int prepare(const PrepareArguments& arguments) {
   key.pack_folder = place.pack;
   save_key(arguments, key, place.key);
   save_station_files(key, place);
-  design::PrepareReport report = design::prepare_pack(key, place.pack, progress_bar("preparing"),
-                                                      {.explain = arguments.explain});
-  const simulation::StimulusLevels levels = levels_of_pack(key);
+  design::PrepareReport report = prepare_here(key, {.explain = arguments.explain});
+  const simulation::StimulusLevels levels = levels_as_prepared(key);
   for (std::string& warning : planning::level_warnings(study, levels)) {
     report.warnings.push_back(std::move(warning));
   }

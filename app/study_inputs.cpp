@@ -8,11 +8,13 @@
 #include "core/files.hpp"
 #include "core/public_keys.hpp"
 #include "device/device_settings.hpp"
+#include "engine/fourier/planning.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
 #include "protocols/design/key_protection.hpp"
 #include "protocols/session/stimulus_source.hpp"
+#include "protocols/simulation/kept_levels.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -260,10 +262,28 @@ design::StudyKey simulated_key(const design::Study& study,
   return key;
 }
 
+namespace {
+
+/// Of design::PrivateNotes; empty if the user has no cache.
+std::filesystem::path notes_folder() {
+  const std::filesystem::path cache = engine::user_cache_folder();
+  return cache.empty() ? cache : cache / "notes";
+}
+
+int cores() {
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+}  // namespace
+
+design::PrepareReport prepare_here(const design::StudyKey& key, design::PrepareOptions options) {
+  options.notes = notes_folder();
+  return design::prepare_pack(key, key.pack_folder, progress_bar("preparing"), options);
+}
+
 void prepare_simulated_pack(const design::StudyKey& key, bool wait) {
   static_cast<void>(design::plane_of(key.study));
-  const design::PrepareReport prepared = design::prepare_pack(
-      key, key.pack_folder, progress_bar("preparing"), {.statistics = false, .wait = wait});
+  const design::PrepareReport prepared = prepare_here(key, {.statistics = false, .wait = wait});
   for (const std::string& warning : prepared.warnings) spdlog::warn("{}", warning);
 }
 
@@ -289,8 +309,12 @@ std::optional<design::StudyKey> open_key_of(const design::Study& study,
 simulation::StimulusLevels levels_of_pack(const design::StudyCodes& key) {
   const engine::Pack pack(key.pack_folder);
   const session::StimulusSource source(pack, key.study.rendering);
-  const auto cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  return simulation::levels_of(key, source, simulation::level_devices(key.study), cores);
+  return simulation::levels_of(key, source, simulation::level_devices(key.study), cores());
+}
+
+simulation::StimulusLevels levels_as_prepared(const design::StudyKey& key) {
+  return simulation::kept_levels_of(key, engine::Pack(key.pack_folder),
+                                    simulation::level_devices(key.study), cores(), notes_folder());
 }
 
 simulation::SubjectModel subject_for(const std::filesystem::path& path, const design::Study& study,

@@ -101,6 +101,11 @@ void save_station_files(const design::StudyKey& key, const design::PackPlace& pl
 [[nodiscard]] design::StudyKey simulated_key(const design::Study& study,
                                              const std::filesystem::path& study_file);
 
+/// design::prepare_pack into the key's pack_folder, with a progress bar and notes in the user's
+/// cache.
+[[nodiscard]] design::PrepareReport prepare_here(const design::StudyKey& key,
+                                                 design::PrepareOptions options);
+
 /// Makes what is missing of the key's pack, with a progress bar, and prints the warnings.
 /// \param wait  whether to wait while another process prepares the pack
 /// \throws as plane_of and prepare_pack
@@ -117,6 +122,9 @@ void prepare_simulated_pack(const design::StudyKey& key, bool wait = false);
 /// \throws FileError if the key's pack is not there or lacks a stimulus
 /// \throws StudyError if the study names a device that is not there
 [[nodiscard]] simulation::StimulusLevels levels_of_pack(const design::StudyCodes& key);
+
+/// The same for a pack that was just prepared: looked up if they were computed before.
+[[nodiscard]] simulation::StimulusLevels levels_as_prepared(const design::StudyKey& key);
 
 /// Refuses to overwrite another key, of which there may be no copy. The same key may stay when its
 /// database was removed.

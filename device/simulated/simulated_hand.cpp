@@ -149,17 +149,42 @@ SimulatedHand::SimulatedHand(const HandOptions& options, ExplorationPath path,
   held_.place({first_mm.x, first_mm.y, options.start_height_mm});
 }
 
-void SimulatedHand::feel_by(TipSense& sense) {
+HeldDevice SimulatedHand::unforced() const {
   // No force goes through its motors, and nobody reads it.
-  DeviceModel unforced = device_;
-  unforced.delay_ticks = 0;
-  unforced.lowpass_hz = unforced.force_step_n = unforced.max_force_n = 0.0;
-  unforced.position_step_mm = 0.0;
-  unforced.velocity_readings = 0;
-  unforced.planted = {};
-  unforced_.emplace(options_, unforced, kServoTickS);
-  unforced_->place(held_.device.true_position_mm());
+  DeviceModel model = device_;
+  model.delay_ticks = 0;
+  model.lowpass_hz = model.force_step_n = model.max_force_n = 0.0;
+  model.position_step_mm = 0.0;
+  model.velocity_readings = 0;
+  model.planted = {};
+  HeldDevice free(options_, model, kServoTickS);
+  free.place(held_.device.true_position_mm());
+  return free;
+}
+
+void SimulatedHand::feel_by(TipSense& sense) {
+  if (foreseen_ == nullptr) unforced_.emplace(unforced());
   sense_ = &sense;
+}
+
+void SimulatedHand::foresee() {
+  auto way = std::make_shared<std::vector<FreeTick>>();
+  HeldDevice free = unforced();
+  std::size_t stroke = 0;
+  // A hand that has stopped is told of one more force: none.
+  for (std::int64_t tick = 0; tick <= last_tick_; ++tick) {
+    const Intention intention = intention_at(tick, stroke);
+    static_cast<void>(free.tick({}, intention.target, intention.push_n));
+    const Vec3 tip_mm_s = free.device.true_velocity_mm_s();
+    way->push_back({intention, {tip_mm_s.x, tip_mm_s.y}});
+  }
+  foreseen_ = std::move(way);
+}
+
+SimulatedHand::Intention SimulatedHand::intention_at(std::int64_t tick,
+                                                     std::size_t& stroke) const noexcept {
+  const double time_s = static_cast<double>(tick) * kServoTickS;
+  return {path_.at(time_s, stroke), options_.push_n * push_share(time_s)};
 }
 
 DeviceInfo SimulatedHand::info() const {
@@ -173,16 +198,23 @@ DeviceStatus SimulatedHand::read(DeviceSample& sample) noexcept {
 }
 
 DeviceStatus SimulatedHand::write(Vec3 force_n) noexcept {
-  const double time_s = static_cast<double>(tick_) * kServoTickS;
-  const PathPoint target = path_.at(time_s, stroke_);
-  const double push_n = options_.push_n * push_share(time_s);
+  const FreeTick* foreseen = nullptr;
+  if (foreseen_ != nullptr) foreseen = &(*foreseen_)[std::min(tick_, last_tick_)];
+  const Intention intention =
+      foreseen != nullptr ? foreseen->intention : intention_at(tick_, stroke_);
   const Vec3 tip_mm = held_.device.true_position_mm();
-  held_.tick(force_n, target, push_n);
+  held_.tick(force_n, intention.target, intention.push_n);
   ++tick_;
   if (sense_ != nullptr) {
     const Vec3 before_mm_s = yielding_mm_s_;
-    static_cast<void>(unforced_->tick({}, target, push_n));
-    const Vec3 own_mm_s = unforced_->device.true_velocity_mm_s();
+    Vec2 own_mm_s;
+    if (foreseen != nullptr) {
+      own_mm_s = foreseen->tip_mm_s;
+    } else {
+      static_cast<void>(unforced_->tick({}, intention.target, intention.push_n));
+      const Vec3 free_mm_s = unforced_->device.true_velocity_mm_s();
+      own_mm_s = {free_mm_s.x, free_mm_s.y};
+    }
     yielding_mm_s_ = held_.device.true_velocity_mm_s() - Vec3{own_mm_s.x, own_mm_s.y, 0.0};
     // mm/s in a tick of 1 ms are m/s^2.
     static_assert(kServoTick == std::chrono::milliseconds(1));

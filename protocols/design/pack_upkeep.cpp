@@ -65,6 +65,10 @@ PackLock::~PackLock() {
   ::close(descriptor_);
 }
 
+std::filesystem::path field_path(const std::filesystem::path& folder, const std::string& code) {
+  return folder / (code + std::string(kFieldEnding));
+}
+
 std::string unfinished_id(const StudyKey& key) {
   return to_hex(ByteView(derive_key(key.master, "identity of an unfinished pack")).first(16));
 }
@@ -75,14 +79,23 @@ const engine::PackEntry* EarlierPack::recorded(const std::string& code, const Di
   return entry.input_tag == tag ? &entry : nullptr;
 }
 
-const engine::PackEntry* EarlierPack::reusable(const std::string& code, const Digest& tag) const {
+std::optional<ReusableField> EarlierPack::reusable(const std::string& code, const Digest& tag,
+                                                   const FieldNote* note,
+                                                   std::chrono::nanoseconds settled_after) const {
   const engine::PackEntry* entry = recorded(code, tag);
-  if (entry == nullptr) return nullptr;
-  try {
-    return pack->is_intact(code) ? entry : nullptr;
-  } catch (const FileError&) {
-    return nullptr;  // missing or unreadable, so it is written again
+  if (entry == nullptr) return std::nullopt;
+  const auto stamp = stamp_of(field_path(pack->folder(), code));
+  if (!stamp) return std::nullopt;
+  if (note != nullptr && note->checksum == entry->checksum &&
+      is_unchanged(note->stamp, *stamp, settled_after)) {
+    return ReusableField{*entry, note->stamp, true};
   }
+  try {
+    if (pack->is_intact(code)) return ReusableField{*entry, *stamp, false};
+  } catch (const FileError&) {
+    // Unreadable, so it is written again.
+  }
+  return std::nullopt;
 }
 
 std::string_view EarlierPack::why_not_reusable(const std::string& code, const Digest& tag) const {

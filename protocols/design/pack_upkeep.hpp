@@ -3,8 +3,10 @@
 #pragma once
 
 #include "engine/pack/pack.hpp"
+#include "protocols/design/prepare_notes.hpp"
 #include "protocols/design/study_key.hpp"
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -27,17 +29,31 @@ class PackLock {
   int descriptor_;
 };
 
+/// The file of a code's field.
+[[nodiscard]] std::filesystem::path field_path(const std::filesystem::path& folder,
+                                               const std::string& code);
+
 /// The identity of a pack while it is being built. Because it differs from the study's identity,
 /// nothing is presented from such a pack; the next `prepare` recognises it and completes the pack.
 [[nodiscard]] std::string unfinished_id(const StudyKey& key);
+
+/// An intact field of an earlier run.
+struct ReusableField {
+  engine::PackEntry entry;
+  FileStamp stamp;       ///< of the file when its content was last hashed or written
+  bool by_time = false;  ///< intact by the file's size and times; else by its hash
+};
 
 /// What the folder contained before this run.
 struct EarlierPack {
   std::optional<engine::Pack> pack;  ///< of this study, finished or not
   std::string damage;  ///< why the table of contents was unusable; empty if it was usable
 
-  /// \return the entry of an intact field made from this input; null if there is none
-  [[nodiscard]] const engine::PackEntry* reusable(const std::string& code, const Digest& tag) const;
+  /// \param note  of an earlier run on this code; may be null
+  /// \return the intact field made from this input, if there is one
+  [[nodiscard]] std::optional<ReusableField> reusable(const std::string& code, const Digest& tag,
+                                                      const FieldNote* note,
+                                                      std::chrono::nanoseconds settled_after) const;
   /// Why a field is not reusable, for an explanation of what was built.
   [[nodiscard]] std::string_view why_not_reusable(const std::string& code, const Digest& tag) const;
 

@@ -9,6 +9,8 @@
 #include "protocols/design/languages.hpp"
 #include "protocols/design/pack_upkeep.hpp"
 #include "protocols/design/prepare_advice.hpp"
+#include "protocols/design/prepare_notes.hpp"
+#include "protocols/design/private_notes.hpp"
 #include "protocols/design/stimulus_field.hpp"
 
 #include <algorithm>
@@ -41,7 +43,15 @@ struct ImageOfStudy {
   std::size_t first_stimulus = 0;
   Digest pixels{};
   std::int64_t size_px = 0;
+  std::optional<FileStamp> stamp;  ///< when its pixels were last read
+  bool is_done = false;
   std::exception_ptr failure;
+
+  /// Its name in notes.
+  [[nodiscard]] std::string place() const {
+    std::error_code ignored;
+    return std::filesystem::absolute(path, ignored).string();
+  }
 };
 
 std::vector<ImageOfStudy> images_of(const Study& study) {
@@ -50,7 +60,11 @@ std::vector<ImageOfStudy> images_of(const Study& study) {
     const auto& paths = study.classes[static_cast<std::size_t>(c)].images;
     for (int e = 0; e < static_cast<int>(paths.size()); ++e) {
       const std::size_t first = images.size() * static_cast<std::size_t>(study.presented_methods());
-      images.push_back({c, e, study.folder / paths[static_cast<std::size_t>(e)], first, {}, 0, {}});
+      ImageOfStudy& image = images.emplace_back();
+      image.class_index = c;
+      image.exemplar = e;
+      image.path = study.folder / paths[static_cast<std::size_t>(e)];
+      image.first_stimulus = first;
     }
   }
   return images;
@@ -73,8 +87,12 @@ class Preparation {
         progress_(progress),
         options_(options),
         earlier_(earlier_pack(folder_, key)),
+        kept_notes_(options.notes, key.master, "prepare"),
+        known_text_(kept_notes_.read().value_or("")),
+        known_(notes_of_text(known_text_)),
         images_(images_of(key.study)),
         entries_(key.stimuli.size()),
+        field_notes_(key.stimuli.size()),
         solver_warnings_(key.stimuli.size()),
         logs_(options.explain ? key.stimuli.size() : 0) {
     report_.stimuli.resize(key.stimuli.size());
@@ -88,9 +106,10 @@ class Preparation {
     check_images_exist(key_.study);
     provide_fields();
     const engine::Pack fields(folder_);
-    const engine::StudyGains gains = measure(fields);
+    measure(fields);
     finish(fields.manifest());
-    advise(gains);
+    keep_notes();
+    advise();
     hand_over_stages();
     return std::move(report_);
   }
@@ -107,7 +126,7 @@ class Preparation {
     };
     in_parallel(0, order.size(), [&](std::size_t i) { provide(*order[i], false); });
     for (ImageOfStudy* image : order) {
-      if (image->size_px > options_.large_image_px) provide(*image, true);
+      if (!image->is_done && !image->failure) provide(*image, true);
     }
     if (building_) write_unfinished();
     for (const ImageOfStudy& image : images_) {
@@ -129,19 +148,79 @@ class Preparation {
   /// \param large_too  whether to process a large image now; false leaves it for later
   void provide_fields_of(ImageOfStudy& image, bool large_too) {
     engine::StageTimer timer(log_of(image.first_stimulus));
+    const std::optional<FileStamp> stamp = stamp_of(image.path);
+    if (stamp && reuse_unread(image, *stamp)) return;
     const GreyImage grey = read(image);
     image.size_px = static_cast<std::int64_t>(grey.size());
     if (image.size_px > options_.large_image_px && !large_too) return;
+    image.stamp = stamp;
     image.pixels = FieldHasher().add(std::int64_t{grey.width()}).add(grey.samples()).finish();
-    timer.done("read image", "its pixels decide what must be built", grey.size());
+    timer.done("read image",
+               known_.pictures.contains(image.place())
+                   ? "not the size and time of last time: its pixels decide what must be built"
+                   : "its pixels decide what must be built",
+               grey.size());
     std::optional<TakenTexture> taken;
     for (int m = 0; m < key_.study.presented_methods(); ++m) {
       const std::size_t i = image.first_stimulus + static_cast<std::size_t>(m);
       if (m > 0 && options_.explain) {
         logs_[i].reuse("read image", "read for " + key_.study.methods.front().label, grey.size());
       }
-      provide_field(i, grey, taken);
+      provide_field(i, grey, image.pixels, taken);
     }
+    image.is_done = true;
+  }
+
+  /// Reuses all fields of a picture whose size and times are as noted, without reading it.
+  /// \return whether it was possible
+  bool reuse_unread(ImageOfStudy& image, const FileStamp& stamp) {
+    const auto noted = known_.pictures.find(image.place());
+    if (noted == known_.pictures.end() ||
+        !is_unchanged(noted->second.stamp, stamp, options_.settled_after)) {
+      return false;
+    }
+    const PictureNote& picture = noted->second;
+    const auto methods = static_cast<std::size_t>(key_.study.presented_methods());
+    std::vector<Clock::time_point> starts;
+    std::vector<ReusableField> fields;
+    for (std::size_t i = image.first_stimulus; i < image.first_stimulus + methods; ++i) {
+      starts.push_back(Clock::now());
+      const FieldNote* note = note_of(i);
+      if (note == nullptr || note->pixels != picture.pixels || note->recipe != recipe_of(i)) {
+        return false;
+      }
+      const auto field = reusable(i, note->tag);
+      if (!field) return false;
+      fields.push_back(*field);
+    }
+    image.pixels = picture.pixels;
+    image.size_px = picture.size_px;
+    image.stamp = picture.stamp;
+    for (std::size_t m = 0; m < methods; ++m) {
+      const std::size_t i = image.first_stimulus + m;
+      if (options_.explain) {
+        logs_[i].reuse("read image", "same size and time as last time: not read",
+                       static_cast<std::uint64_t>(picture.size_px));
+      }
+      reuse(i, fields[m], picture.pixels, starts[m]);
+    }
+    image.is_done = true;
+    return true;
+  }
+
+  [[nodiscard]] const FieldNote* note_of(std::size_t i) const {
+    const auto note = known_.fields.find(key_.stimuli[i].code);
+    return note == known_.fields.end() ? nullptr : &note->second;
+  }
+
+  /// A digest of everything but the picture that determines a stimulus's field.
+  [[nodiscard]] Digest recipe_of(std::size_t i) const {
+    return input_tag(key_.master, GreyImage(1, 1), method_of(key_.study, key_.stimuli[i].stimulus),
+                     key_.study.rendering);
+  }
+
+  [[nodiscard]] std::optional<ReusableField> reusable(std::size_t i, const Digest& tag) const {
+    return earlier_.reusable(key_.stimuli[i].code, tag, note_of(i), options_.settled_after);
   }
 
   [[nodiscard]] engine::StageLog* log_of(std::size_t stimulus) {
@@ -167,26 +246,21 @@ class Preparation {
     }
   }
 
-  void provide_field(std::size_t i, const GreyImage& image, std::optional<TakenTexture>& taken) {
+  void provide_field(std::size_t i, const GreyImage& image, const Digest& pixels,
+                     std::optional<TakenTexture>& taken) {
     const Clock::time_point start = Clock::now();
-    const auto& [code, stimulus] = key_.stimuli[i];
-    const engine::ExtractionOptions method = method_of(key_.study, stimulus);
+    const engine::ExtractionOptions method = method_of(key_.study, key_.stimuli[i].stimulus);
     const Digest tag = input_tag(key_.master, image, method, key_.study.rendering);
-    const engine::PackEntry* earlier = earlier_.reusable(code, tag);
-    if (earlier != nullptr) {
-      entries_[i] = *earlier;
-      note_reuse(i, seconds_since(start));
-    } else {
-      announce_building();
-      build(i, image, method, tag, taken);
+    if (const auto earlier = reusable(i, tag)) {
+      reuse(i, *earlier, pixels, start);
+      return;
     }
-    PreparedStimulus& prepared = report_.stimuli[i];
-    prepared.class_label = key_.study.classes[static_cast<std::size_t>(stimulus.class_index)].label;
-    prepared.exemplar = stimulus.exemplar;
-    prepared.method = key_.study.methods[static_cast<std::size_t>(stimulus.method)].label;
-    prepared.reused = earlier != nullptr;
-    prepared.seconds = seconds_since(start);
-    note_done(entries_[i]);
+    announce_building();
+    build(i, image, method, tag, taken);
+    if (const auto stamp = stamp_of(field_path(folder_, key_.stimuli[i].code))) {
+      note_field(i, pixels, *stamp);
+    }
+    note_provided(i, false, start);
   }
 
   void build(std::size_t i, const GreyImage& image, const engine::ExtractionOptions& method,
@@ -200,11 +274,33 @@ class Preparation {
     solver_warnings_[i] = solver_warning(key_.study, stimulus, built);
   }
 
-  void note_reuse(std::size_t i, double seconds) {
-    if (!options_.explain) return;
-    logs_[i].add({"field", engine::StageState::reused,
-                  "same picture and options, and intact: nothing was extracted", seconds,
-                  size_of_field(key_.stimuli[i].code)});
+  void reuse(std::size_t i, const ReusableField& field, const Digest& pixels,
+             Clock::time_point start) {
+    entries_[i] = field.entry;
+    note_field(i, pixels, field.stamp);
+    if (options_.explain) {
+      const std::string how = field.by_time ? "by size and time" : "by its hash";
+      logs_[i].add({"field", engine::StageState::reused,
+                    "same picture and options, and intact " + how + ": nothing was extracted",
+                    seconds_since(start), size_of_field(key_.stimuli[i].code)});
+    }
+    note_provided(i, true, start);
+  }
+
+  void note_field(std::size_t i, const Digest& pixels, const FileStamp& stamp) {
+    if (options_.notes.empty()) return;
+    field_notes_[i] = {recipe_of(i), pixels, entries_[i].input_tag, entries_[i].checksum, stamp};
+  }
+
+  void note_provided(std::size_t i, bool reused, Clock::time_point start) {
+    const StimulusIndex& stimulus = key_.stimuli[i].stimulus;
+    PreparedStimulus& prepared = report_.stimuli[i];
+    prepared.class_label = key_.study.classes[static_cast<std::size_t>(stimulus.class_index)].label;
+    prepared.exemplar = stimulus.exemplar;
+    prepared.method = key_.study.methods[static_cast<std::size_t>(stimulus.method)].label;
+    prepared.reused = reused;
+    prepared.seconds = seconds_since(start);
+    note_done(entries_[i]);
   }
 
   /// Marks the pack as unfinished before the first field is replaced, so that it cannot be
@@ -231,28 +327,67 @@ class Preparation {
     recorded_ = Clock::now();
   }
 
-  engine::StudyGains measure(const engine::Pack& fields) {
+  /// Gains, flatness and statistics of all fields.
+  void measure(const engine::Pack& fields) {
+    const Digest of = identity_of_fields();
+    if (!look_up_measures(of)) compute_measures(fields, of);
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      PreparedStimulus& prepared = report_.stimuli[i];
+      prepared.gains = entries_[i].gains = measured_.gains.of_field[i];
+      prepared.bytes = size_of_field(key_.stimuli[i].code);
+      if (options_.statistics) {
+        prepared.statistics = measured_.statistics[i];
+      } else if (options_.explain) {
+        logs_[i].skip("statistics", "nobody asked for them", sizeof(engine::FieldStatistics));
+      }
+    }
+  }
+
+  /// Fields and study, which decide gains and statistics.
+  [[nodiscard]] Digest identity_of_fields() const {
+    FieldHasher hasher;
+    hasher.add(ByteView(key_.seal));
+    for (const engine::PackEntry& entry : entries_) hasher.add(ByteView(entry.checksum));
+    return hasher.finish();
+  }
+
+  /// \return whether the same fields of the same study were measured before
+  bool look_up_measures(const Digest& of) {
+    if (!known_.measured || known_.measured->of != of) return false;
+    if (options_.statistics && known_.measured->statistics.empty()) return false;
+    measured_ = *known_.measured;
+    if (!options_.explain) return true;
+    constexpr const char* kWhy = "same fields and study as last time";
+    study_log_.reuse("gains", kWhy, entries_.size() * sizeof(engine::Gains));
+    for (engine::StageLog& log : logs_) {
+      if (options_.statistics) log.reuse("statistics", kWhy, sizeof(engine::FieldStatistics));
+    }
+    return true;
+  }
+
+  void compute_measures(const engine::Pack& fields, const Digest& of) {
     std::vector<engine::MappedField> mapped;
     std::vector<engine::FieldView> views;
     for (const KeyedStimulus& stimulus : key_.stimuli) {
       mapped.push_back(fields.map(stimulus.code));
       views.push_back(mapped.back().view());
     }
+    measured_.of = of;
     engine::StageTimer timer(study_log());
-    engine::StudyGains gains = engine::choose_gains(views, key_.study.rendering);
+    measured_.gains = engine::choose_gains(views, key_.study.rendering);
     timer.done("gains",
                key_.study.rendering.gains ? "explicit, and compared with the stiffness budget"
                                           : "from the stiffness of all stimuli together",
                views.size() * sizeof(engine::Gains));
-    flat_.resize(views.size());
-    const auto measure_one = [&](std::size_t i) { describe(i, views[i], gains.of_field[i]); };
+    measured_.flat.resize(views.size());
+    if (options_.statistics) measured_.statistics.resize(views.size());
+    const auto measure_one = [&](std::size_t i) { describe(i, views[i]); };
     in_parallel(0, views.size(), [&](std::size_t i) {
       if (!is_large(views[i])) measure_one(i);
     });
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (is_large(views[i])) measure_one(i);
     }
-    return gains;
   }
 
   [[nodiscard]] engine::StageLog* study_log() { return options_.explain ? &study_log_ : nullptr; }
@@ -262,24 +397,17 @@ class Preparation {
            options_.large_image_px;
   }
 
-  void describe(std::size_t i, engine::FieldView field, engine::Gains gains) {
-    PreparedStimulus& prepared = report_.stimuli[i];
-    entries_[i].gains = gains;
-    prepared.gains = gains;
-    prepared.bytes = size_of_field(key_.stimuli[i].code);
-    flat_[i] = is_flat(field) ? 1 : 0;
-    if (options_.statistics) {
-      engine::StageTimer timer(log_of(i));
-      prepared.statistics = engine::field_statistics(field, gains, key_.study.rendering);
-      timer.done("statistics", "they follow the gains of the study",
-                 sizeof(engine::FieldStatistics));
-    } else if (options_.explain) {
-      logs_[i].skip("statistics", "nobody asked for them", sizeof(engine::FieldStatistics));
-    }
+  void describe(std::size_t i, engine::FieldView field) {
+    measured_.flat[i] = is_flat(field) ? 1 : 0;
+    if (!options_.statistics) return;
+    engine::StageTimer timer(log_of(i));
+    measured_.statistics[i] =
+        engine::field_statistics(field, measured_.gains.of_field[i], key_.study.rendering);
+    timer.done("statistics", "they follow the gains of the study", sizeof(engine::FieldStatistics));
   }
 
   [[nodiscard]] std::uintmax_t size_of_field(const std::string& code) const {
-    return size_of(folder_ / (code + ".field"));
+    return size_of(field_path(folder_, code));
   }
 
   static std::uintmax_t size_of(const std::filesystem::path& file) {
@@ -309,13 +437,27 @@ class Preparation {
     remove_leftovers(folder_, manifest);
   }
 
-  void advise(const engine::StudyGains& gains) {
+  void keep_notes() const {
+    if (options_.notes.empty()) return;
+    PrepareNotes notes;
+    for (const ImageOfStudy& image : images_) {
+      if (image.stamp) notes.pictures[image.place()] = {*image.stamp, image.pixels, image.size_px};
+    }
+    for (std::size_t i = 0; i < field_notes_.size(); ++i) {
+      notes.fields[key_.stimuli[i].code] = field_notes_[i];
+    }
+    notes.measured = measured_;
+    const std::string text = text_of_notes(notes);
+    if (text != known_text_) kept_notes_.keep(text);
+  }
+
+  void advise() {
     std::uintmax_t pixels_of_study = 0;
     for (const ImageOfStudy& image : images_) {
       pixels_of_study += static_cast<std::uintmax_t>(image.size_px);
     }
     report_.skipped = skipped_work(key_.study, pixels_of_study);
-    report_.warnings = rendering_warnings(key_.study.rendering, gains);
+    report_.warnings = rendering_warnings(key_.study.rendering, measured_.gains);
     if (const std::string draft = draft_notice(key_.study.session.language); !draft.empty()) {
       report_.warnings.push_back(
           draft + ": have its speakers check every screen, and say so where you report the study");
@@ -333,7 +475,7 @@ class Preparation {
     }
     for (std::size_t i = 0; i < key_.stimuli.size(); ++i) {
       if (!solver_warnings_[i].empty()) report_.warnings.push_back(solver_warnings_[i]);
-      if (flat_[i] == 0) continue;
+      if (measured_.flat[i] == 0) continue;
       report_.warnings.push_back(described(key_.study, key_.stimuli[i].stimulus) +
                                  ": is flat, nothing of it can be felt");
     }
@@ -344,10 +486,14 @@ class Preparation {
   const Progress& progress_;
   PrepareOptions options_;
   EarlierPack earlier_;
+  PrivateNotes kept_notes_;
+  std::string known_text_;
+  PrepareNotes known_;  ///< of an earlier run
   std::vector<ImageOfStudy> images_;
   std::vector<engine::PackEntry> entries_;
+  std::vector<FieldNote> field_notes_;
   std::vector<std::string> solver_warnings_;
-  std::vector<std::uint8_t> flat_;
+  MeasuredFields measured_;
   std::vector<engine::StageLog> logs_;  ///< one per stimulus; empty if no explanation is requested
   engine::StageLog study_log_;
   PrepareReport report_;

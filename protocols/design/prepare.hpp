@@ -1,12 +1,14 @@
 /// \file Builds the pack of a study. Only fields that are missing or out of date are built.
 #pragma once
 
+#include "core/file_stamp.hpp"
 #include "core/plane_geometry.hpp"
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/field_statistics.hpp"
 #include "engine/stage_log.hpp"
 #include "protocols/design/study_key.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -76,6 +78,12 @@ struct PrepareOptions {
   bool explain = false;    ///< report the stages with their times and bytes
   bool wait = false;       ///< wait while another process prepares the pack, instead of throwing
   std::int64_t large_image_px = kLargeImagePixels;  ///< larger images are processed one at a time
+  /// Where notes on pictures and fields are kept, sealed (PrivateNotes); empty: none are. By them
+  /// an unchanged picture and an intact field are known by size and times, and what follows from
+  /// unchanged fields need not be computed again; without them, by their content.
+  std::filesystem::path notes{};
+  /// Files that changed later than this before they were noted are known by their content.
+  std::chrono::nanoseconds settled_after = kSettledAfter;
 };
 
 /// Checks that every image of the study exists, every picture of its instructions, and every
@@ -95,6 +103,8 @@ using Progress = std::function<void(int done, int of)>;
 /// from different input. Then chooses the gains, writes the table of contents, and removes fields
 /// that no stimulus uses any more. An interrupted run leaves a pack that cannot be presented and
 /// that the next run completes. A run with nothing to do leaves the pack's files untouched.
+/// Whether a picture or a field has changed its content tells; with PrepareOptions::notes size and
+/// times of its file do, where they are the noted ones.
 /// The pack's bytes depend only on key, study and images, not on the number of threads.
 /// Images of more than PrepareOptions::large_image_px pixels are processed one after another, so
 /// that the memory for a large image (docs/benchmarks/memory.md) is needed only once, whatever the

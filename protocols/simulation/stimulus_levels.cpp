@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 namespace touchtrial::simulation {
 namespace {
@@ -26,10 +27,10 @@ class NoSamples final : public device::SampleSink {
 };
 
 /// Mean powers of the tip's acceleration in one exploration.
+/// \param hand  before its first tick
 Powers stroked(const engine::RenderingModel& model, const PlaneGeometry& plane,
                const SubjectModel& subject, const device::ServoOptions& servo,
-               RandomStream random) {
-  device::SimulatedHand hand = make_exploring_hand(subject, plane, random);
+               device::SimulatedHand hand) {
   HandSense sense(subject);
   sense.begin(hand, plane);
   session::ModelForce force(model);
@@ -121,13 +122,20 @@ StimulusLevels levels_of(const design::StudyCodes& key, const session::StimulusS
     subjects[d].sense = engine::ThresholdCurve::israr_2006;  // so that accelerations are felt
     subjects[d].device = devices[d];
   }
+  // By device and pass: the same path on every plane.
+  std::vector<std::optional<device::SimulatedHand>> hands(devices.size() * kPasses);
+  in_parallel(jobs, hands.size(), [&](std::size_t i) {
+    RandomStream random(seed, "levels: path", i % kPasses);
+    hands[i].emplace(make_exploring_hand(subjects[i / kPasses], fields.plane(), random));
+    hands[i]->foresee();
+  });
   std::vector<Powers> powers(devices.size() * planes.size() * kPasses);
   in_parallel(jobs, powers.size(), [&](std::size_t i) {
     const std::size_t pass = i % kPasses;
     const std::size_t plane = i / kPasses % planes.size();
     const std::size_t device = i / kPasses / planes.size();
     powers[i] = stroked(*planes[plane], fields.plane(), subjects[device], servo,
-                        RandomStream(seed, "levels: path", pass));
+                        *hands[device * kPasses + pass]);
   });
   const auto mean_of = [&](std::size_t device, std::size_t plane) {
     Powers mean{};

@@ -39,9 +39,11 @@ ProgramResult run_program(const std::filesystem::path& program, const std::files
   pid_t child = 0;
   // What the program remembers for its user must not be the tester's.
   std::string home = "XDG_CONFIG_HOME=" + (folder / ".config").string();
+  std::string cache = "XDG_CACHE_HOME=" + (folder / ".cache").string();
   std::vector<char*> environment;
   for (char** entry = environ; *entry != nullptr; ++entry) environment.push_back(*entry);
   if (std::getenv("XDG_CONFIG_HOME") == nullptr) environment.push_back(home.data());
+  if (std::getenv("XDG_CACHE_HOME") == nullptr) environment.push_back(cache.data());
   environment.push_back(nullptr);
   const int failed =
       posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environment.data());

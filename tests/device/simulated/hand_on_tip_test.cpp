@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -102,6 +104,40 @@ TEST_CASE("a hand with a grip lands, keeps its push, and follows its path") {
   CHECK(farthest_mm < 12.0);
   CHECK(push_sum_n / static_cast<double>(kept.samples.size() - 1500) ==
         Approx(options.push_n).margin(0.15));
+}
+
+TEST_CASE("a hand that foresees its way without forces, and its copies, move and feel the same") {
+  class Sensed final : public device::TipSense {
+   public:
+    void feel(Vec3 position_mm, Vec3 /*force_n*/, Vec3 acceleration_m_s2) noexcept override {
+      felt.push_back(position_mm);
+      felt.push_back(acceleration_m_s2);
+    }
+    std::vector<Vec3> felt;
+  };
+  const std::string name = GENERATE("ideal", "touch", "falcon");
+  RandomStream random(4, "hand_on_tip_test");
+  device::HandOptions options;
+  options.explore_s = 0.7;
+  const device::ExplorationPath path(kPlane, {}, random);
+  const device::SimulatedHand plain(options, path, device::device_model(name));
+  device::SimulatedHand foreseeing = plain;
+  foreseeing.foresee();
+  std::vector<Vec3> expected;
+  for (const device::SimulatedHand& one : {plain, foreseeing, foreseeing}) {
+    device::SimulatedHand hand = one;
+    Sensed sense;
+    hand.feel_by(sense);
+    device::DeviceSample sample;
+    for (int i = 0; hand.read(sample) == device::DeviceStatus::ok; ++i) {
+      REQUIRE(hand.write({0.1 * std::sin(0.3 * i), -0.1 * std::cos(0.2 * i), 0.2}) ==
+              device::DeviceStatus::ok);
+    }
+    REQUIRE(hand.write({}) == device::DeviceStatus::ok);
+    REQUIRE(sense.felt.size() == 2 * 701);
+    if (expected.empty()) expected = sense.felt;
+    CHECK(sense.felt == expected);
+  }
 }
 
 TEST_CASE("a simulated hand yields by its tip's velocity less that without forces") {
