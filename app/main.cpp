@@ -138,18 +138,18 @@ void let_writes_fail() {
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
 }
 
-/// Planes come and go by the dozen. Their memory is kept, since every page that the kernel hands
-/// out anew costs more than filling it.
-void keep_memory() {
-#ifdef M_MMAP_THRESHOLD
-  static_cast<void>(mallopt(M_MMAP_THRESHOLD, 32 << 20));  // the largest that glibc takes
-  static_cast<void>(mallopt(M_TRIM_THRESHOLD, 1 << 30));
-  static_cast<void>(mallopt(M_TOP_PAD, 4 << 20));
-#endif
+/// What was freed is used again, not given back to the system, which would hand out every page
+/// anew, zeroed: as dear as extracting and rendering themselves. Blocks of more than 32 MiB are
+/// still given back.
+void keep_freed_memory() {
+  constexpr int kLargestKept = 32 << 20;
+  constexpr int kMostKept = 1 << 30;
+  static_cast<void>(::mallopt(M_MMAP_THRESHOLD, kLargestKept));
+  static_cast<void>(::mallopt(M_TRIM_THRESHOLD, kMostKept));
 }
 
 int parse_and_run(int argc, char** argv) {
-  keep_memory();
+  keep_freed_memory();
   let_writes_fail();
   set_up_log();
   registration::register_protocols();
