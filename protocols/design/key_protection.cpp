@@ -149,6 +149,11 @@ std::string text_of_file(const std::filesystem::path& path) {
   return text_of(read_file(path, kMaxSecretFileBytes));
 }
 
+bool is_owner_only(const std::filesystem::path& path) {
+  constexpr auto kOthers = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
+  return (std::filesystem::status(path).permissions() & kOthers) == std::filesystem::perms::none;
+}
+
 Salt fresh_salt() {
   SystemEntropy entropy;
   const SecretKey bytes = entropy.secret("salt");
@@ -189,8 +194,9 @@ std::string read_secret_text(const std::filesystem::path& path) {
 
 void save_secret_text(const std::filesystem::path& path, const std::string& text,
                       const PublicKey& signer) {
-  const auto envelope =
-      is_there(path) ? envelope_in(text_of_file(path), path) : std::optional<Envelope>();
+  const std::string before = is_there(path) ? text_of_file(path) : "";
+  if (before == text && is_owner_only(path)) return;
+  const std::optional<Envelope> envelope = envelope_in(before, path);
   if (!envelope) {
     replace_file(path, text, FileMode::owner_only);
     return;
