@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "protocols/store/damage.hpp"
+#include "protocols/store/opened_parts.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <exception>
@@ -55,7 +56,7 @@ struct WaitingSession {
   /// thread finds one first.
   void open() noexcept {
     try {
-      for (const store::Event& event : events) add(whole_event(event, own));
+      for (store::Event& event : events) add(event);
     } catch (const StoreError& error) {
       fault = std::make_exception_ptr(VerificationError(error.what()));
     } catch (...) {
@@ -64,11 +65,15 @@ struct WaitingSession {
     events.clear();
   }
 
-  void add(const store::OpenedEvent& opened) {
-    store::fold(rows, opened.event);
-    if (!measured || opened.event.kind != store::EventKind::trace_stored) return;
-    const int trial = store::trace_body_from_json(opened.event.body).trial;
-    measures.insert_or_assign({session, trial}, store::measures_from_json(opened.secret));
+  void add(store::Event& event) {
+    const auto opened = store::opened_parts(event, own);
+    if (!opened) refuse_sealed(event);
+    event.at = opened->at;
+    event.sealed.clear();
+    store::fold(rows, event, opened->body);
+    if (!measured || event.kind != store::EventKind::trace_stored) return;
+    const int trial = store::trace_body_from_json(event.body).trial;
+    measures.insert_or_assign({session, trial}, store::measures_from_json(opened->secret));
   }
 };
 

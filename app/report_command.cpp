@@ -128,10 +128,15 @@ int report_question(const store::StudyStore& store, const ReportArguments& argum
   return 0;
 }
 
-/// With the levels of the stimuli, if the study's pack is in reach.
+/// With the levels of the stimuli, if the study's pack is in reach. Most of the time of a small
+/// study's report would go into them: the terminal only says where they are.
 std::unique_ptr<const analysis::Results> with_levels_if_any(
-    std::unique_ptr<const analysis::Results> results, const design::StudyKey& key) {
+    std::unique_ptr<const analysis::Results> results, const design::StudyKey& key,
+    const ReportArguments& arguments) {
   if (!is_there(key.pack_folder / "pack.json")) return results;
+  if (arguments.folder.empty() && !arguments.json) {
+    return planning::with_levels_elsewhere(std::move(results));
+  }
   try {
     return planning::with_levels(std::move(results), key.study, levels_of_pack(key));
   } catch (const FileError& error) {
@@ -155,7 +160,8 @@ int report(const ReportArguments& arguments) {
   if (arguments.is_public) outcomes = analysis::without_identities(std::move(outcomes));
   const analysis::TraceSource traces{store, key};
   const auto results = with_levels_if_any(
-      analysis::analysis_of(outcomes.design).results(outcomes, wishes_of(arguments, traces)), key);
+      analysis::analysis_of(outcomes.design).results(outcomes, wishes_of(arguments, traces)), key,
+      arguments);
   if (!arguments.folder.empty()) return write_outcomes(store, outcomes, *results, arguments);
   print_results(store, *results, arguments);
   return 0;

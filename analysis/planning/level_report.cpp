@@ -23,6 +23,7 @@ using simulation::StimulusLevels;
 constexpr std::size_t kMostCompared = 40;
 constexpr const char* kBlank = "blank plane";
 
+constexpr const char* kTitle = "Strength of the stimuli";
 constexpr const char* kWhatItIs =
     "Decibels above the published threshold for vibrations of a held stylus, or above the blank "
     "plane "
@@ -218,30 +219,44 @@ Json json_of_all(const design::Study& study, const StimulusLevels& levels) {
           {"differences", json_of_differences(study, levels)}};
 }
 
-class LevelledResults final : public analysis::Results {
+/// Results with another section.
+class ResultsAndMore : public analysis::Results {
  public:
-  LevelledResults(std::unique_ptr<const analysis::Results> results, design::Study study,
-                  StimulusLevels levels)
-      : results_(std::move(results)), study_(std::move(study)), levels_(std::move(levels)) {}
+  ResultsAndMore(std::unique_ptr<const analysis::Results> results, analysis::Section section)
+      : results_(std::move(results)), section_(std::move(section)) {}
 
   const analysis::StudyHead& head() const override { return results_->head(); }
   std::vector<analysis::Figure> figures(const std::string& stamp) const override {
     return results_->figures(stamp);
   }
-  std::string json() const override {
-    Json object = Json::parse(results_->json());
-    object["levels"] = json_of_all(study_, levels_);
-    return json_text(object);
-  }
+  std::string json() const override { return results_->json(); }
   analysis::Document document(const analysis::Provenance& provenance,
                               const analysis::Pictures& pictures) const override {
     analysis::Document document = results_->document(provenance, pictures);
-    document.sections.push_back(levels_section(study_, levels_));
+    document.sections.push_back(section_);
     return document;
   }
 
  private:
   std::unique_ptr<const analysis::Results> results_;
+  analysis::Section section_;
+};
+
+class LevelledResults final : public ResultsAndMore {
+ public:
+  LevelledResults(std::unique_ptr<const analysis::Results> results, design::Study study,
+                  StimulusLevels levels)
+      : ResultsAndMore(std::move(results), levels_section(study, levels)),
+        study_(std::move(study)),
+        levels_(std::move(levels)) {}
+
+  std::string json() const override {
+    Json object = Json::parse(ResultsAndMore::json());
+    object["levels"] = json_of_all(study_, levels_);
+    return json_text(object);
+  }
+
+ private:
   design::Study study_;
   StimulusLevels levels_;
 };
@@ -249,7 +264,7 @@ class LevelledResults final : public analysis::Results {
 }  // namespace
 
 analysis::Section levels_section(const design::Study& study, const StimulusLevels& levels) {
-  analysis::Section section{"levels", "Strength of the stimuli", {}};
+  analysis::Section section{"levels", kTitle, {}};
   const std::vector<std::string> warnings = level_warnings(study, levels);
   if (!warnings.empty()) section.blocks.emplace_back(analysis::Warnings{warnings});
   section.blocks.emplace_back(table_in_all(study, levels));
@@ -320,6 +335,18 @@ std::unique_ptr<const analysis::Results> with_levels(
     std::unique_ptr<const analysis::Results> results, const design::Study& study,
     StimulusLevels levels) {
   return std::make_unique<LevelledResults>(std::move(results), study, std::move(levels));
+}
+
+std::unique_ptr<const analysis::Results> with_levels_elsewhere(
+    std::unique_ptr<const analysis::Results> results) {
+  return std::make_unique<ResultsAndMore>(
+      std::move(results),
+      analysis::Section{"levels",
+                        kTitle,
+                        {analysis::Cited{"Not computed for the terminal: a simulated hand would "
+                                         "stroke every stimulus on every device. touchtrial report "
+                                         "DB --out DIR has the table, and so has touchtrial "
+                                         "prepare."}}});
 }
 
 }  // namespace touchtrial::planning

@@ -39,4 +39,8 @@ namespace touchtrial::planning {
     std::unique_ptr<const analysis::Results> results, const design::Study& study,
     simulation::StimulusLevels levels);
 
+/// Results with a section that says where the levels are, which were not computed.
+[[nodiscard]] std::unique_ptr<const analysis::Results> with_levels_elsewhere(
+    std::unique_ptr<const analysis::Results> results);
+
 }  // namespace touchtrial::planning

@@ -125,36 +125,36 @@ class RowBatch {
   std::vector<ServerArray> columns_;
 };
 
-/// Sends traces, a batch at a time, one after the other in one binary parameter: as text they would
-/// be twice as long.
+/// Sends traces, a batch at a time, each in a binary parameter of its own: as text they would be
+/// twice as long, and the server would copy one that holds them all once for each.
 class TraceBatch {
  public:
   TraceBatch(ServerWork& work, int session) : work_(work), session_(session) {}
 
   void add(int trial, const Bytes& box) {
-    if (!boxes_.empty() && boxes_.size() + box.size() > kBatch) send();
-    trials_.add(trial);
-    starts_.add(boxes_.size() + 1);
-    lengths_.add(box.size());
-    boxes_.insert(boxes_.end(), box.begin(), box.end());
+    constexpr std::size_t kMostParameters = 1000;
+    if (bytes_ + box.size() > kBatch || boxes_.size() == kMostParameters) send();
+    boxes_.push_back(binary(box));
+    bytes_ += box.size();
+    rows_ += (rows_.empty() ? "(" : ", (") + std::to_string(session_) + ", " +
+             std::to_string(trial) + ", $" + std::to_string(boxes_.size()) + "::bytea)";
   }
 
   void send() {
-    if (trials_.size() == 0) return;
-    work_.exec_params0(
-        "INSERT INTO traces(session, trial, box) SELECT $1::bigint, t.trial, "
-        "substring($2::bytea FROM t.start FOR t.length) "
-        "FROM unnest($3::bigint[], $4::integer[], $5::integer[]) AS t(trial, start, length)",
-        session_, binary(boxes_), trials_.text(), starts_.text(), lengths_.text());
+    if (boxes_.empty()) return;
+    work_.exec_params0("INSERT INTO traces(session, trial, box) VALUES " + rows_,
+                       pqxx::prepare::make_dynamic_params(boxes_));
     boxes_.clear();
-    trials_ = starts_ = lengths_ = {};
+    rows_.clear();
+    bytes_ = 0;
   }
 
  private:
   ServerWork& work_;
   int session_;
-  Bytes boxes_;
-  ServerArray trials_, starts_, lengths_;
+  std::string rows_;  ///< of the statement
+  std::vector<pqxx::binarystring> boxes_;
+  std::size_t bytes_ = 0;
 };
 
 /// \param row  sequence, kind, at_ns, body, sealed, previous, hash, signature, own_session

@@ -1,6 +1,7 @@
 #include "protocols/store/fold.hpp"
 
 #include "protocols/store/damage.hpp"
+#include "protocols/store/opened_parts.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <string>
@@ -90,8 +91,7 @@ void touch_plane(DerivedRows& rows, const Event& event) {
   if (!row.contact_at) row.contact_at = event.time();
 }
 
-void answer_trial(DerivedRows& rows, const Event& event) {
-  const AnswerBody body = body_of(event, answer_from_json);
+void answer_trial(DerivedRows& rows, const Event& event, const AnswerBody& body) {
   TrialRow& row = waiting_row(rows, event, body.trial);
   row.state = TrialState::answered;
   row.answered_at = event.time();
@@ -108,8 +108,7 @@ void end_trial(DerivedRows& rows, const Event& event, TrialState state) {
   waiting_row(rows, event, trial).state = state;
 }
 
-void measure_trial(DerivedRows& rows, const Event& event) {
-  const TraceBody body = body_of(event, trace_body_from_json);
+void measure_trial(DerivedRows& rows, const Event& event, const TraceBody& body) {
   TrialRow& row = presented_row(rows, event, body.trial);
   row.valid = body.valid;
   row.hand = body.hand;
@@ -185,13 +184,13 @@ void fold_session_event(DerivedRows& rows, const Event& event) {
     case EventKind::first_contact:
       return touch_plane(rows, event);
     case EventKind::answered:
-      return answer_trial(rows, event);
+      return answer_trial(rows, event, body_of(event, answer_from_json));
     case EventKind::interrupted:
       return end_trial(rows, event, TrialState::interrupted);
     case EventKind::timed_out:
       return end_trial(rows, event, TrialState::timed_out);
     case EventKind::trace_stored:
-      return measure_trial(rows, event);
+      return measure_trial(rows, event, body_of(event, trace_body_from_json));
     case EventKind::explored_again:
       return explore_again(rows, event);
     case EventKind::block_restarted:
@@ -262,6 +261,23 @@ void fold(DerivedRows& rows, const Event& event) {
     default:
       if (!belongs_to_file_chain(event.kind)) fold_session_event(rows, event);
   }
+}
+
+void fold(DerivedRows& rows, const Event& event, const BodyParts& body) {
+  const auto in_parts = [&]<typename Body>(Body) {
+    return body_of(event, [&](const std::string&) { return from_parts<Body>(body); });
+  };
+  if (event.kind == EventKind::answered) {
+    open_row(rows, event);
+    return answer_trial(rows, event, in_parts(AnswerBody{}));
+  }
+  if (event.kind == EventKind::trace_stored) {
+    open_row(rows, event);
+    return measure_trial(rows, event, in_parts(TraceBody{}));
+  }
+  Event whole = event;
+  whole.body = joined_body(body);
+  fold(rows, whole);
 }
 
 }  // namespace touchtrial::store

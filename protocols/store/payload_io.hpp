@@ -1,5 +1,5 @@
 /// \file The members of an event's body in one JSON object: read strictly, written compactly.
-/// Private to protocols/store: the only header here that shows nlohmann-json.
+/// Private to protocols/store: the only header here that shows nlohmann-json and RapidJSON.
 #pragma once
 
 #include "core/errors.hpp"
@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <rapidjson/document.h>
 
 namespace touchtrial::store {
 
@@ -26,48 +28,47 @@ namespace touchtrial::store {
 inline constexpr std::array<std::string_view, 3> kKeptNames = {"data", "safety-record", "nothing"};
 
 /// Takes the members of a body from one JSON object. Every function throws StoreError, naming the
-/// key, if the value is missing or not what is asked for.
+/// key, if the value is missing or not what is asked for. Bodies are read by the million, hence
+/// RapidJSON, whose numbers are the nearest doubles.
 class BodyReader {
  public:
-  /// \throws StoreError if the text is not one JSON object
-  explicit BodyReader(const std::string& text)
-      : object_(nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false)) {
-    if (!object_.is_object()) throw StoreError("the body is not a JSON object");
+  /// \param more  an object whose members count before those of the first; empty: there is none
+  /// \throws StoreError if a text is not one JSON object
+  explicit BodyReader(std::string_view text, std::string_view more = {}) {
+    parse(first_, text);
+    object_ = &first_;
+    if (more.empty()) return;
+    parse(second_, more);
+    more_ = &second_;
   }
+  BodyReader(const BodyReader&) = delete;
+  BodyReader& operator=(const BodyReader&) = delete;
 
-  void operator()(const char* key, std::string& value) const {
-    const nlohmann::json& found = at(key);
-    if (!found.is_string()) refuse(key, "is not a text");
-    value = found.get<std::string>();
-  }
+  void operator()(const char* key, std::string& value) const { value = text(key, "is not a text"); }
   void operator()(const char* key, bool& value) const {
-    const nlohmann::json& found = at(key);
-    if (!found.is_boolean()) refuse(key, "is neither true nor false");
-    value = found.get<bool>();
+    const Json& found = at(key);
+    if (!found.IsBool()) refuse(key, "is neither true nor false");
+    value = found.GetBool();
   }
   void operator()(const char* key, double& value) const {
-    const nlohmann::json& found = at(key);
-    if (!found.is_number()) refuse(key, "is not a number");
-    value = found.get<double>();
+    const Json& found = at(key);
+    if (!found.IsNumber()) refuse(key, "is not a number");
+    value = found.GetDouble();
   }
   void operator()(const char* key, Digest& value) const {
-    const nlohmann::json& found = at(key);
-    const std::optional<Digest> digest =
-        found.is_string() ? digest_from_hex(found.get_ref<const std::string&>()) : std::nullopt;
-    if (!digest) refuse(key, "is not 64 hexadecimal digits");
+    constexpr const char* kWhy = "is not 64 hexadecimal digits";
+    const std::optional<Digest> digest = digest_from_hex(text(key, kWhy));
+    if (!digest) refuse(key, kWhy);
     value = *digest;
   }
   void operator()(const char* key, Signature& value) const {
-    const nlohmann::json& found = at(key);
-    const std::optional<Bytes> bytes =
-        found.is_string() ? from_hex(found.get_ref<const std::string&>()) : std::nullopt;
-    if (!bytes || bytes->size() != value.size()) refuse(key, "is not 128 hexadecimal digits");
+    constexpr const char* kWhy = "is not 128 hexadecimal digits";
+    const std::optional<Bytes> bytes = from_hex(text(key, kWhy));
+    if (!bytes || bytes->size() != value.size()) refuse(key, kWhy);
     std::copy(bytes->begin(), bytes->end(), value.begin());
   }
   void operator()(const char* key, Kept& value) const {
-    std::string name;
-    (*this)(key, name);
-    const auto* const found = std::ranges::find(kKeptNames, name);
+    const auto* const found = std::ranges::find(kKeptNames, text(key, "is not a text"));
     if (found == kKeptNames.end()) refuse(key, "is none of data, safety-record and nothing");
     value = static_cast<Kept>(found - kKeptNames.begin());
   }
@@ -80,11 +81,11 @@ class BodyReader {
   }
   /// Whole numbers from 0.
   void operator()(const char* key, std::vector<std::int64_t>& value) const {
-    const nlohmann::json& found = at(key);
-    if (!found.is_array()) refuse(key, "is not a list");
-    for (const nlohmann::json& number : found) {
-      if (!number.is_number_unsigned()) refuse(key, "holds what is no whole number from 0 on");
-      value.push_back(number.get<std::int64_t>());
+    const Json& found = at(key);
+    if (!found.IsArray()) refuse(key, "is not a list");
+    for (const Json& number : found.GetArray()) {
+      if (!number.IsUint64()) refuse(key, "holds what is no whole number from 0 on");
+      value.push_back(static_cast<std::int64_t>(number.GetUint64()));
     }
   }
   /// Whole numbers from 1.
@@ -99,12 +100,12 @@ class BodyReader {
   /// Any of these, or nothing if the key is absent.
   template <typename Value, typename... Least>
   void operator()(const char* key, std::optional<Value>& value, Least... least) const {
-    if (object_.contains(key)) (*this)(key, value.emplace(), least...);
+    if (find(key) != nullptr) (*this)(key, value.emplace(), least...);
   }
   /// Any of these, left as it is if the key is absent.
   template <typename Value, typename... Least>
   void if_any(const char* key, Value& value, Least... least) const {
-    if (object_.contains(key)) (*this)(key, value, least...);
+    if (find(key) != nullptr) (*this)(key, value, least...);
   }
   /// A member that is sealed: left as it is if the key is absent, as it is before the event is
   /// opened.
@@ -115,38 +116,68 @@ class BodyReader {
   /// An object within this one, or nothing if the key is absent. Its errors name both keys.
   template <typename Part>
   void part(const char* key, std::optional<Part>& value) const {
-    if (!object_.contains(key)) return;
-    const nlohmann::json& found = at(key);
-    if (!found.is_object()) refuse(key, "is not an object");
-    const BodyReader within(found, place_ + "/" + key);
+    const Json* const found = find(key);
+    if (found == nullptr) return;
+    if (!found->IsObject()) refuse(key, "is not an object");
+    const BodyReader within(*found, place_ + "/" + key);
     members(within, value.emplace());
   }
 
  private:
-  BodyReader(nlohmann::json object, std::string place)
-      : object_(std::move(object)), place_(std::move(place)) {}
+  using Json = rapidjson::Value;
+
+  BodyReader(const Json& object, std::string place) : object_(&object), place_(std::move(place)) {}
+
+  static void parse(rapidjson::Document& document, std::string_view text) {
+    document.Parse<rapidjson::kParseFullPrecisionFlag | rapidjson::kParseValidateEncodingFlag |
+                   rapidjson::kParseIterativeFlag>(text.data(), text.size());
+    if (document.HasParseError() || !document.IsObject()) {
+      throw StoreError("the body is not a JSON object");
+    }
+  }
 
   [[noreturn]] void refuse(const char* key, const char* why) const {
     throw StoreError(place_ + "/" + key + " " + why);
   }
-  [[nodiscard]] const nlohmann::json& at(const char* key) const {
-    const auto found = object_.find(key);
-    if (found == object_.end()) refuse(key, "is missing");
+  /// \return the last of several, or null
+  [[nodiscard]] static const Json* find_in(const Json& object, std::string_view key) {
+    const Json* found = nullptr;
+    for (const auto& member : object.GetObject()) {
+      if (std::string_view(member.name.GetString(), member.name.GetStringLength()) == key) {
+        found = &member.value;
+      }
+    }
+    return found;
+  }
+  [[nodiscard]] const Json* find(const char* key) const {
+    const Json* const found = more_ == nullptr ? nullptr : find_in(*more_, key);
+    return found != nullptr ? found : find_in(*object_, key);
+  }
+  [[nodiscard]] const Json& at(const char* key) const {
+    const Json* const found = find(key);
+    if (found == nullptr) refuse(key, "is missing");
     return *found;
   }
+  [[nodiscard]] std::string_view text(const char* key, const char* otherwise) const {
+    const Json& found = at(key);
+    if (!found.IsString()) refuse(key, otherwise);
+    return {found.GetString(), found.GetStringLength()};
+  }
   [[nodiscard]] std::int64_t whole(const char* key, std::int64_t least, std::int64_t most) const {
-    const nlohmann::json& found = at(key);
-    // Beyond 2^63 the parser makes an unsigned number, which a cast would turn negative.
-    const bool too_large =
-        found.is_number_unsigned() &&
-        found.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()};
-    if (!found.is_number_integer() || too_large) refuse(key, "is not a whole number");
-    const auto number = found.get<std::int64_t>();
+    const Json& found = at(key);
+    if (!found.IsInt64()) refuse(key, "is not a whole number");
+    const std::int64_t number = found.GetInt64();
     if (number < least || number > most) refuse(key, "is out of range");
     return number;
   }
 
-  nlohmann::json object_;
+  // Most bodies fit into the buffer.
+  std::array<std::byte, 4096> buffer_;
+  rapidjson::MemoryPoolAllocator<> pool_{buffer_.data(), buffer_.size()};
+  rapidjson::Document first_{&pool_};
+  rapidjson::Document second_{&pool_};
+  const Json* object_ = nullptr;
+  const Json* more_ = nullptr;
   std::string place_;  ///< JSON pointer
 };
 

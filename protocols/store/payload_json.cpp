@@ -1,5 +1,6 @@
 #include "protocols/store/payload_json.hpp"
 
+#include "protocols/store/opened_parts.hpp"
 #include "protocols/store/payload_io.hpp"
 
 #include <type_traits>
@@ -320,6 +321,17 @@ Body from_json(const std::string& text) {
   members(reader, body);
   return body;
 }
+
+template <typename Body>
+Body from_parts(const BodyParts& parts) {
+  BodyReader reader(parts.clear, parts.hidden);
+  Body body;
+  members(reader, body);
+  return body;
+}
+
+template AnswerBody from_parts(const BodyParts&);
+template TraceBody from_parts(const BodyParts&);
 
 template std::string to_json(const StudyCommitment&);
 template std::string to_json(const SessionOpening&);

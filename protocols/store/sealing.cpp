@@ -1,6 +1,7 @@
 #include "protocols/store/sealing.hpp"
 
 #include "protocols/store/body_parts.hpp"
+#include "protocols/store/opened_parts.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -71,17 +72,26 @@ SecretKey key_of_kind(EventKind kind, const SecretKey& participant_key) {
 }
 
 /// \param key  that the event was sealed with
-std::optional<OpenedEvent> opened_with(const Event& event, const SecretKey& key) {
+std::optional<OpenedParts> parts_opened_with(const Event& event, const SecretKey& key) {
   const std::optional<Bytes> plain = unseal(key, event_context(event), event.sealed, kSealedUnit);
   if (!plain || plain->size() < kBeforeTexts) return std::nullopt;
   const ByteView bytes(*plain);
   const std::uint64_t length = number_in(bytes.subspan(kTimeSize, kLengthSize));
   const ByteView texts = bytes.subspan(kBeforeTexts);
   if (length > texts.size()) return std::nullopt;
-  OpenedEvent opened{.event = event, .secret = text_of(texts.subspan(length))};
-  opened.event.at =
-      std::chrono::nanoseconds(static_cast<std::int64_t>(number_in(bytes.first(kTimeSize))));
-  opened.event.body = joined_body({event.body, text_of(texts.first(length))});
+  return OpenedParts{
+      .at = std::chrono::nanoseconds(static_cast<std::int64_t>(number_in(bytes.first(kTimeSize)))),
+      .body = {event.body, text_of(texts.first(length))},
+      .secret = text_of(texts.subspan(length))};
+}
+
+/// \param key  that the event was sealed with
+std::optional<OpenedEvent> opened_with(const Event& event, const SecretKey& key) {
+  std::optional<OpenedParts> parts = parts_opened_with(event, key);
+  if (!parts) return std::nullopt;
+  OpenedEvent opened{.event = event, .secret = std::move(parts->secret)};
+  opened.event.at = parts->at;
+  opened.event.body = joined_body(parts->body);
   opened.event.sealed.clear();
   return opened;
 }
@@ -160,6 +170,10 @@ Event sealed_event(Event event, const std::string& secret, const SecretKey& part
 
 std::optional<OpenedEvent> opened_event(const Event& event, const SecretKey& participant_key) {
   return opened_with(event, key_of_kind(event.kind, participant_key));
+}
+
+std::optional<OpenedParts> opened_parts(const Event& event, const SecretKey& participant_key) {
+  return parts_opened_with(event, key_of_kind(event.kind, participant_key));
 }
 
 std::optional<OpenedEvent> opened_safety_event(const Event& event, const SecretKey& safety_key) {
