@@ -291,7 +291,8 @@ class Inspection {
     in_parallel(/*jobs=*/0, traces.size(),
                 [&](std::size_t i) { traces[i].digest = blake2b(traces[i].box); });
     for (const StoredTrace& trace : traces) {
-      const decltype(trace.id) claimed = claim == claims_.cend() ? trace.id : claim->first;
+      using Id = decltype(trace.id);
+      const Id claimed = claim == claims_.cend() ? trace.id : Id(claim->first);
       if (claimed < trace.id) refuse_missing(*claim);
       if (claim == claims_.cend() || claimed != trace.id) {
         throw EventFault(trace.id.first, kNoEvent,
