@@ -1,4 +1,3 @@
-#include "core/parallel.hpp"
 #include "protocols/store/collected_chain.hpp"
 #include "protocols/store/file_chain.hpp"
 #include "protocols/store/rows.hpp"
@@ -6,12 +5,10 @@
 #include "protocols/store/stored_study.hpp"
 
 #include <algorithm>
-#include <exception>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace touchtrial::store {
 namespace {
@@ -57,39 +54,6 @@ class SignatureCheck {
   std::optional<Signatories> signatories_;
   std::optional<Event> last_;
 };
-
-/// A session that was read and waits for its check, which any thread may make.
-struct UncheckedSession {
-  int session = 0;
-  const SessionOnFile* on_file = nullptr;
-  std::vector<Event> events{};
-  std::exception_ptr fault{};  ///< the first, also of reading
-  DerivedRows rows{};
-  std::map<int, TraceClaim> claims{};
-
-  void check(const StudyCommitment& commitment) noexcept {
-    if (fault) return;
-    try {
-      SessionCheck check(session, *on_file, commitment);
-      for (const Event& event : events) check.add(event, rows);
-      check.finish(rows);
-      claims = check.claims();
-    } catch (...) {
-      fault = std::current_exception();
-    }
-    events.clear();
-  }
-};
-
-/// A trace that was read, and its hash once it is computed.
-struct StoredTrace {
-  std::pair<std::int64_t, std::int64_t> id;  ///< session, trial
-  Bytes box;
-  Digest digest{};
-};
-
-/// What is read at a time, and then looked at by all cores: some megabytes.
-constexpr std::size_t kTogether = 64;
 
 /// Walks through everything once, and throws EventFault at the first thing that does not hold.
 class Inspection {
@@ -197,12 +161,12 @@ class Inspection {
   }
 
   void inspect_sessions() {
-    std::vector<UncheckedSession> unchecked;
     for (const auto& [session, on_file] : file_.sessions()) {
-      unchecked.push_back(read_session(session, on_file));
-      if (unchecked.size() == kTogether) inspect_together(unchecked);
+      if (on_file.opened.station > 0 && !is_collected_) {
+        throw EventFault(0, on_file.opened_at, "a session comes from a station that is not here");
+      }
+      inspect_session(session, on_file);
     }
-    inspect_together(unchecked);
     for (const std::int64_t session : sessions_with_events(database_)) {
       if (session < 0) continue;
       const bool known = session <= std::numeric_limits<int>::max() &&
@@ -211,33 +175,13 @@ class Inspection {
     }
   }
 
-  /// Keeps a fault instead of throwing it: those of sessions before it come first.
-  [[nodiscard]] UncheckedSession read_session(int session, const SessionOnFile& on_file) const {
-    UncheckedSession read{.session = session, .on_file = &on_file};
-    try {
-      if (on_file.opened.station > 0 && !is_collected_) {
-        throw EventFault(0, on_file.opened_at, "a session comes from a station that is not here");
-      }
-      for_each_event(database_, session, [&](const Event& event) { read.events.push_back(event); });
-    } catch (...) {
-      read.fault = std::current_exception();
+  void inspect_session(int session, const SessionOnFile& on_file) {
+    SessionCheck check(session, on_file, *file_.commitment());
+    for_each_event(database_, session, [&](const Event& event) { check.add(event, expected_); });
+    check.finish(expected_);
+    for (const auto& [trial, claim] : check.claims()) {
+      claims_.emplace(TrialId(session, trial), claim);
     }
-    return read;
-  }
-
-  /// Checks all of them, throws the first one's fault, and empties the list.
-  void inspect_together(std::vector<UncheckedSession>& unchecked) {
-    in_parallel(/*jobs=*/0, unchecked.size(),
-                [&](std::size_t i) { unchecked[i].check(*file_.commitment()); });
-    for (UncheckedSession& one : unchecked) {
-      if (one.fault) std::rethrow_exception(one.fault);
-      expected_.sessions.merge(one.rows.sessions);
-      expected_.trials.merge(one.rows.trials);
-      for (const auto& [trial, claim] : one.claims) {
-        claims_.emplace(TrialId(one.session, trial), claim);
-      }
-    }
-    unchecked.clear();
   }
 
   void inspect_keys() const {
@@ -272,45 +216,25 @@ class Inspection {
 
   void inspect_traces() {
     Query query = database_.query("SELECT session, trial, box FROM traces ORDER BY session, trial");
-    auto claim = claims_.cbegin();
-    std::vector<StoredTrace> traces;
+    auto claim = claims_.begin();
+    using Wide = std::pair<std::int64_t, std::int64_t>;
+    const auto missing = [&] {
+      throw EventFault(claim->first.first, claim->second.sequence,
+                       trace_of(claim->first) + " is missing");
+    };
     while (query.step()) {
-      traces.push_back({{query.integer(0), query.integer(1)}, query.blob(2)});
-      if (traces.size() == kTogether) claim = inspect_together(traces, claim);
-    }
-    claim = inspect_together(traces, claim);
-    if (claim != claims_.cend()) refuse_missing(*claim);
-  }
-
-  using Claims = std::map<TrialId, TraceClaim>;
-
-  /// Holds traces against the claims from `claim` on, and empties the list.
-  /// \return the claim after the last
-  [[nodiscard]] Claims::const_iterator inspect_together(std::vector<StoredTrace>& traces,
-                                                        Claims::const_iterator claim) const {
-    in_parallel(/*jobs=*/0, traces.size(),
-                [&](std::size_t i) { traces[i].digest = blake2b(traces[i].box); });
-    for (const StoredTrace& trace : traces) {
-      using Id = decltype(trace.id);
-      const Id claimed = claim == claims_.cend() ? trace.id : Id(claim->first);
-      if (claimed < trace.id) refuse_missing(*claim);
-      if (claim == claims_.cend() || claimed != trace.id) {
-        throw EventFault(trace.id.first, kNoEvent,
-                         "trace of trial " + std::to_string(trace.id.second) + " has no event");
+      const Wide id(query.integer(0), query.integer(1));
+      if (claim != claims_.end() && Wide(claim->first) < id) missing();
+      if (claim == claims_.end() || Wide(claim->first) != id) {
+        throw EventFault(id.first, kNoEvent,
+                         "trace of trial " + std::to_string(id.second) + " has no event");
       }
-      if (trace.digest != claim->second.digest) {
-        throw EventFault(trace.id.first, claim->second.sequence,
-                         trace_of(claim->first) + " was altered");
+      if (blake2b(query.blob(2)) != claim->second.digest) {
+        throw EventFault(id.first, claim->second.sequence, trace_of(claim->first) + " was altered");
       }
       ++claim;
     }
-    traces.clear();
-    return claim;
-  }
-
-  [[noreturn]] static void refuse_missing(const Claims::value_type& claim) {
-    throw EventFault(claim.first.first, claim.second.sequence,
-                     trace_of(claim.first) + " is missing");
+    if (claim != claims_.end()) missing();
   }
 
   void inspect_session_rows() const {
@@ -349,7 +273,7 @@ class Inspection {
   FileChain file_;
   bool is_collected_ = false;
   DerivedRows expected_;
-  Claims claims_;
+  std::map<TrialId, TraceClaim> claims_;
 };
 
 }  // namespace

@@ -18,6 +18,8 @@ namespace touchtrial::store {
 namespace {
 
 constexpr int kBusyTimeoutMs = 2000;
+/// A connection is used by one thread at a time.
+constexpr int kNoMutex = SQLITE_OPEN_NOMUTEX;
 /// What tells our databases from other SQLite files: "TTRL" in SQLite's application_id.
 constexpr std::int32_t kApplicationId = 0x5454524c;
 
@@ -133,12 +135,13 @@ std::string immutable_uri(const std::filesystem::path& path) {
 /// a log is complete and can be read as it is.
 SQLite::Database connected(const std::filesystem::path& path, Database::Mode mode) {
   if (mode == Database::Mode::read_write || may_write(path)) {
-    return {absolute_name(path), SQLite::OPEN_READWRITE, kBusyTimeoutMs};
+    return {absolute_name(path), SQLite::OPEN_READWRITE | kNoMutex, kBusyTimeoutMs};
   }
   if (!has_log(path)) {
-    return {immutable_uri(path), SQLite::OPEN_READONLY | SQLite::OPEN_URI, kBusyTimeoutMs};
+    return {immutable_uri(path), SQLite::OPEN_READONLY | SQLite::OPEN_URI | kNoMutex,
+            kBusyTimeoutMs};
   }
-  return {absolute_name(path), SQLite::OPEN_READONLY, kBusyTimeoutMs};
+  return {absolute_name(path), SQLite::OPEN_READONLY | kNoMutex, kBusyTimeoutMs};
 }
 
 /// SQLite does not refuse a setting that it cannot have: it reports the one in force.

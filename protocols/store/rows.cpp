@@ -53,11 +53,14 @@ Event event_of_row(const Query& row) {
           .renumbered_from = renumbered_from(row, 9)};
 }
 
-/// "|opened|closed|": the database searches it for a kind between bars.
-std::string bars_around(std::span<const EventKind> kinds) {
+/// " AND kind IN ('opened','closed')"; empty: any kind will do.
+std::string is_one_of(std::span<const EventKind> kinds) {
+  if (kinds.empty()) return {};
   std::string names;
-  for (const EventKind kind : kinds) names += '|' + std::string(name_of(kind));
-  return names + '|';
+  for (const EventKind kind : kinds) {
+    names += (names.empty() ? "'" : ",'") + std::string(name_of(kind)) + "'";
+  }
+  return " AND kind IN (" + names + ")";
 }
 
 /// Inserts a row, or changes the row with the same key to the new values.
@@ -172,16 +175,13 @@ void insert_station_key(const Database& database, int session, const Bytes& kept
 
 void for_each_event(const Database& database, const EventFilter& filter,
                     const EventVisitor& visit) {
-  std::optional<std::string> any_of;
-  if (!filter.kinds.empty()) any_of = bars_around(filter.kinds);
-  static const std::string sql = "SELECT " + column_list(Table::events) +
-                                 " FROM events WHERE session BETWEEN ? AND ? AND sequence BETWEEN "
-                                 "? AND ? AND (?5 IS NULL OR instr(?5, '|' || kind || '|') > 0) "
-                                 "ORDER BY session, sequence";
+  const std::string sql =
+      "SELECT " + column_list(Table::events) +
+      " FROM events WHERE session BETWEEN ? AND ? AND sequence BETWEEN ? AND ?" +
+      is_one_of(filter.kinds) + " ORDER BY session, sequence";
   Query query = database.separate_query(sql.c_str());
   query.bind(filter.session.value_or(kLowest)).bind(filter.session.value_or(kHighest));
   query.bind(filter.sequence.value_or(kLowest)).bind(filter.sequence.value_or(kHighest));
-  query.bind(any_of);
   while (query.step()) visit(event_of_row(query));
 }
 
