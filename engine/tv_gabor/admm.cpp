@@ -150,21 +150,17 @@ void TvGaborAdmm<Real>::start_again(double penalty) {
 
 template <typename Real>
 void TvGaborAdmm<Real>::step(AdmmPace pace) {
-  if (pace == AdmmPace::eager) {
-    map<Unwatched>(kEagerRelaxation, has_former_ ? kEagerMomentum : 0.0, false);
-  } else {
-    map<Unwatched>(kCautiousRelaxation, 0.0, false);
-  }
+  map<Unwatched>(pace, false);
 }
 
 template <typename Real>
 void TvGaborAdmm<Real>::last_step() {
-  map<Unwatched>(kCautiousRelaxation, 0.0, true);
+  map<Unwatched>(AdmmPace::cautious, true);
 }
 
 template <typename Real>
 AdmmResiduals TvGaborAdmm<Real>::measured_last_step() {
-  const auto sums = map<StepNorms<Real>>(kCautiousRelaxation, 0.0, true);
+  const auto sums = map<StepNorms<Real>>(AdmmPace::cautious, true);
   return {ratio_of_norms(sums.change_of_b, std::max(sums.w, sums.image)),
           ratio_of_norms(sums.change_of_w, sums.b)};
 }
@@ -173,12 +169,15 @@ AdmmResiduals TvGaborAdmm<Real>::measured_last_step() {
 /// M^-1, so that frequencies that M removes are exact.
 template <typename Real>
 template <typename Watch>
-typename Watch::Sums TvGaborAdmm<Real>::map(double relaxation, double momentum, bool is_last) {
+typename Watch::Sums TvGaborAdmm<Real>::map(AdmmPace pace, bool is_last) {
   plane_.filter(factors_);
-  const AdmmNumbers<Real> numbers{.relaxation = static_cast<Real>(relaxation),
-                                  .limit = static_cast<Real>(1.0 / penalty_),
-                                  .momentum = static_cast<Real>(momentum),
-                                  .b_alone = is_last};
+  const bool is_eager = pace == AdmmPace::eager;
+  const AdmmNumbers<Real> numbers{
+      .relaxation = static_cast<Real>(is_eager ? kEagerRelaxation : kCautiousRelaxation),
+      .limit = static_cast<Real>(1.0 / penalty_),
+      .momentum = static_cast<Real>(is_eager && has_former_ ? kEagerMomentum : 0.0),
+      .keep_former = is_eager,
+      .b_alone = is_last};
   const auto sums = plane_.template sum_of_blocks<typename Watch::Sums>([&](const RowBlock& block) {
     typename TorusPlane<Real>::Rows texture(plane_, block);
     typename TorusPlane<Real>::DivergenceRows targets(plane_, block);
@@ -198,7 +197,7 @@ typename Watch::Sums TvGaborAdmm<Real>::map(double relaxation, double momentum, 
     return watch.sums;
   });
   plane_.finish_divergence();
-  has_former_ = true;
+  has_former_ = is_eager;
   return sums;
 }
 

@@ -65,7 +65,7 @@ class TvGaborAdmm {
 
  private:
   template <typename Watch>
-  typename Watch::Sums map(double relaxation, double momentum, bool is_last);
+  typename Watch::Sums map(AdmmPace pace, bool is_last);
   void set_factors();
   [[nodiscard]] int row_below(int y) const noexcept;
   [[nodiscard]] AdmmRow<Real> row_of(int y) noexcept;

@@ -101,8 +101,6 @@ HWY_INLINE void map_samples(D d, const AdmmRow<Real>& row, std::size_t width,
                             const AdmmNumbers<Real>& numbers, std::size_t i, std::ptrdiff_t right) {
   prefetch(row.z_x + i, width);
   prefetch(row.z_y + i, width);
-  prefetch(row.former_x + i, width);
-  prefetch(row.former_y + i, width);
   prefetch(row.image_below + i, width);
   const auto relaxation = hn::Set(d, numbers.relaxation);
   const auto momentum = hn::Set(d, numbers.momentum);
@@ -111,12 +109,17 @@ HWY_INLINE void map_samples(D d, const AdmmRow<Real>& row, std::size_t width,
   const auto v = gradient(d, row.texture + i, row.texture + i + right, row.texture_below + i);
   const auto z = load(d, row.z_x + i, row.z_y + i);
   const auto b = clipped(d, z, limit);
-  const auto former = load(d, row.former_x + i, row.former_y + i);
   const PairOf<D> next = {mapped(hn::Sub(f.x, v.x), z.x, b.x, relaxation),
                           mapped(hn::Sub(f.y, v.y), z.y, b.y, relaxation)};
-  store(d, next, row.former_x + i, row.former_y + i);
-  const PairOf<D> ahead = {hn::MulAdd(momentum, hn::Sub(next.x, former.x), next.x),
-                           hn::MulAdd(momentum, hn::Sub(next.y, former.y), next.y)};
+  PairOf<D> ahead = next;
+  if (numbers.momentum != 0) {
+    prefetch(row.former_x + i, width);
+    prefetch(row.former_y + i, width);
+    const auto former = load(d, row.former_x + i, row.former_y + i);
+    ahead = {hn::MulAdd(momentum, hn::Sub(next.x, former.x), next.x),
+             hn::MulAdd(momentum, hn::Sub(next.y, former.y), next.y)};
+  }
+  if (numbers.keep_former) store(d, next, row.former_x + i, row.former_y + i);
   store(d, ahead, row.z_x + i, row.z_y + i);
   const auto next_b = clipped(d, ahead, limit);
   if (numbers.b_alone) return store(d, next_b, row.target_x + i, row.target_y + i);

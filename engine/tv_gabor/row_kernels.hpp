@@ -16,7 +16,7 @@ struct AdmmRow {
   const Real* texture_below;
   Real* z_x;  ///< in and out
   Real* z_y;
-  Real* former_x;  ///< the map's previous value, in and out
+  Real* former_x;  ///< the map's previous value, in if there is momentum, out if it is kept
   Real* former_y;
   Real* target_x;  ///< out: grad f - z + 2 b, or b alone, with b = clip(z)
   Real* target_y;
@@ -25,9 +25,10 @@ struct AdmmRow {
 template <typename Real>
 struct AdmmNumbers {
   Real relaxation;
-  Real limit;     ///< of |b|, 1 / penalty
-  Real momentum;  ///< share of the last change to add again
-  bool b_alone;   ///< as target
+  Real limit;        ///< of |b|, 1 / penalty
+  Real momentum;     ///< share of the last change to add again
+  bool keep_former;  ///< for the next step's momentum
+  bool b_alone;      ///< as target
 };
 
 template <typename Real>

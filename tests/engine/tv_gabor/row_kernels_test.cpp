@@ -35,8 +35,11 @@ TEMPLATE_TEST_CASE("TV-Gabor's row kernels agree with their definition on every 
       const auto was_x = noise<TestType>(width, "was x"), was_y = noise<TestType>(width, "was y");
       auto z_x = old_x, z_y = old_y, former_x = was_x, former_y = was_y;
       std::vector<TestType> target_x(width), target_y(width);
-      const engine::AdmmNumbers<TestType> numbers{TestType(1.5), TestType(0.75), TestType(0.25),
-                                                  false};
+      engine::AdmmNumbers<TestType> numbers{.relaxation = TestType(1.5),
+                                            .limit = TestType(0.75),
+                                            .momentum = TestType(0.25),
+                                            .keep_former = true,
+                                            .b_alone = false};
       engine::admm_row<TestType>(
           {f.data(), below.data(), v.data(), v_below.data(), z_x.data(), z_y.data(),
            former_x.data(), former_y.data(), target_x.data(), target_y.data()},
@@ -53,6 +56,24 @@ TEMPLATE_TEST_CASE("TV-Gabor's row kernels agree with their definition on every 
         REQUIRE(target_y[i] ==
                 Approx(target_of(static_cast<double>(below[i]) - f[i], z_y[i], z_x[i], 0.75))
                     .margin(1e-5));
+      }
+      // The last step: no momentum, the former value stays, and the targets are b.
+      z_x = old_x, z_y = old_y;
+      const auto next_x = former_x, next_y = former_y;
+      former_x = was_x;
+      numbers.momentum = 0;
+      numbers.keep_former = false;
+      numbers.b_alone = true;
+      engine::admm_row<TestType>(
+          {f.data(), below.data(), v.data(), v_below.data(), z_x.data(), z_y.data(),
+           former_x.data(), former_y.data(), target_x.data(), target_y.data()},
+          width, numbers);
+      CHECK(z_x == next_x);
+      CHECK(former_x == was_x);
+      for (std::size_t i = 0; i < width; ++i) {
+        const double share = 0.75 / std::max<double>(0.75, std::hypot(next_x[i], next_y[i]));
+        REQUIRE(target_x[i] == Approx(share * next_x[i]).margin(1e-5));
+        REQUIRE(target_y[i] == Approx(share * next_y[i]).margin(1e-5));
       }
     }
   });
