@@ -1,5 +1,7 @@
 #include "core/cipher.hpp"
 
+#include "core/sodium.hpp"
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -30,6 +32,7 @@ std::optional<Bytes> unpadded(Bytes bytes) {
 
 std::array<std::uint8_t, kNonceSize> synthetic_nonce(const SecretKey& key, std::string_view context,
                                                      ByteView plaintext) {
+  prepare_sodium();
   crypto_generichash_state state;
   crypto_generichash_init(&state, key.data(), key.size(), kNonceSize);
   const Digest context_hash = sha256(bytes_of(context));
@@ -62,6 +65,7 @@ std::optional<Bytes> unseal(const SecretKey& key, std::string_view context, Byte
   if (box.size() < kNonceSize + kTagSize) return std::nullopt;
   Bytes text(box.size() - kNonceSize - kTagSize);
   if (text.size() % padded_size != 0) return std::nullopt;
+  prepare_sodium();
   const ByteView authenticated = bytes_of(context);
   const SecretKey cipher_key = derive_key(key, "cipher");
   const int failed = crypto_aead_xchacha20poly1305_ietf_decrypt(
@@ -76,7 +80,7 @@ SecretKey derive_key(const SecretKey& key, std::string_view purpose) {
 }
 
 SecretKey SystemEntropy::secret(std::string_view /*purpose*/) {
-  if (sodium_init() < 0) throw std::runtime_error("the system's random generator is not available");
+  if (!prepare_sodium()) throw std::runtime_error("the system's random generator is not available");
   SecretKey bytes{};
   randombytes_buf(bytes.data(), bytes.size());
   return bytes;

@@ -1,11 +1,13 @@
 #include "core/hash.hpp"
 
 #include "core/errors.hpp"
+#include "core/sodium.hpp"
 
 #include <algorithm>
 #include <array>
 #include <fstream>
 
+#include <nettle/sha2.h>
 #include <sodium.h>
 
 namespace touchtrial {
@@ -19,15 +21,31 @@ std::array<std::uint8_t, 8> little_endian(std::uint64_t number) {
   return bytes;
 }
 
+/// SHA-256 by Nettle, which uses the processor's instructions for it.
+class Sha256 {
+ public:
+  Sha256() { sha256_init(&context_); }
+  void add(ByteView bytes) { sha256_update(&context_, bytes.size(), bytes.data()); }
+  [[nodiscard]] Digest finish() {
+    Digest digest{};
+    sha256_digest(&context_, digest.size(), digest.data());
+    return digest;
+  }
+
+ private:
+  sha256_ctx context_{};
+};
+
 }  // namespace
 
 Digest sha256(ByteView bytes) {
-  Digest digest{};
-  crypto_hash_sha256(digest.data(), bytes.data(), bytes.size());
-  return digest;
+  Sha256 hash;
+  hash.add(bytes);
+  return hash.finish();
 }
 
 Digest blake2b(ByteView bytes) {
+  prepare_sodium();
   Digest digest{};
   crypto_generichash(digest.data(), digest.size(), bytes.data(), bytes.size(), nullptr, 0);
   return digest;
@@ -39,35 +57,32 @@ Digest sha256_of_file(const std::filesystem::path& path) {
     throw FileError(one_line(path.string()) +
                     ": cannot be read; check that it exists and its permissions");
   }
-  crypto_hash_sha256_state state;
-  crypto_hash_sha256_init(&state);
+  Sha256 hash;
   std::vector<char> block(std::size_t{1} << 16);
   while (file) {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
     const auto got = static_cast<std::size_t>(file.gcount());
-    crypto_hash_sha256_update(&state, reinterpret_cast<const std::uint8_t*>(block.data()), got);
+    hash.add({reinterpret_cast<const std::uint8_t*>(block.data()), got});
   }
   if (file.bad()) throw FileError(one_line(path.string()) + ": reading failed; check the disk");
-  Digest digest{};
-  crypto_hash_sha256_final(&state, digest.data());
-  return digest;
+  return hash.finish();
 }
 
 struct FieldHasher::State {
   explicit State(HashFunction chosen) : function(chosen) {
-    crypto_hash_sha256_init(&sha);
+    prepare_sodium();
     crypto_generichash_init(&blake, nullptr, 0, Digest{}.size());
   }
   void add(ByteView bytes) {
     if (function == HashFunction::sha256) {
-      crypto_hash_sha256_update(&sha, bytes.data(), bytes.size());
+      sha.add(bytes);
     } else {
       crypto_generichash_update(&blake, bytes.data(), bytes.size());
     }
   }
 
   HashFunction function;
-  crypto_hash_sha256_state sha;
+  Sha256 sha;
   crypto_generichash_state blake;
 };
 
@@ -89,16 +104,14 @@ FieldHasher& FieldHasher::add(std::int64_t number) {
 }
 
 Digest FieldHasher::finish() {
+  if (state_->function == HashFunction::sha256) return state_->sha.finish();
   Digest digest{};
-  if (state_->function == HashFunction::sha256) {
-    crypto_hash_sha256_final(&state_->sha, digest.data());
-  } else {
-    crypto_generichash_final(&state_->blake, digest.data(), digest.size());
-  }
+  crypto_generichash_final(&state_->blake, digest.data(), digest.size());
   return digest;
 }
 
 Digest keyed_hash(const Digest& key, ByteView bytes) {
+  prepare_sodium();
   Digest digest{};
   crypto_generichash(digest.data(), digest.size(), bytes.data(), bytes.size(), key.data(),
                      key.size());

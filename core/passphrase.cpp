@@ -1,5 +1,7 @@
 #include "core/passphrase.hpp"
 
+#include "core/sodium.hpp"
+
 #include <new>
 #include <stdexcept>
 
@@ -20,7 +22,7 @@ SecretKey key_of_passphrase(std::string_view passphrase, const Salt& salt,
   if (!is_in_range(cost)) {
     throw std::invalid_argument("key_of_passphrase: the cost is out of range");
   }
-  if (sodium_init() < 0) throw std::runtime_error("libsodium cannot be used");
+  if (!prepare_sodium()) throw std::runtime_error("libsodium cannot be used");
   SecretKey key{};
   const int failed =
       crypto_pwhash(key.data(), key.size(), passphrase.data(), passphrase.size(), salt.data(),

@@ -1,5 +1,7 @@
 #include "core/public_keys.hpp"
 
+#include "core/sodium.hpp"
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -21,6 +23,7 @@ BoxNonce nonce_of(const PublicKey& ephemeral, const PublicKey& receiver, std::st
 }  // namespace
 
 BoxKeys box_keys(const SecretKey& seed) {
+  prepare_sodium();
   BoxKeys keys;
   crypto_box_seed_keypair(keys.public_half.data(), keys.secret_half.data(), seed.data());
   return keys;
@@ -40,6 +43,7 @@ Bytes seal_box(const PublicKey& receiver, std::string_view context, ByteView pla
 }
 
 std::optional<Bytes> open_box(const BoxKeys& receiver, std::string_view context, ByteView box) {
+  prepare_sodium();
   PublicKey sender{};
   if (box.size() < sender.size() + crypto_box_MACBYTES) return std::nullopt;
   std::copy_n(box.begin(), sender.size(), sender.begin());
@@ -53,6 +57,7 @@ std::optional<Bytes> open_box(const BoxKeys& receiver, std::string_view context,
 }
 
 Signer::Signer(const SecretKey& seed) {
+  prepare_sodium();
   crypto_sign_seed_keypair(public_half_.data(), secret_half_.data(), seed.data());
 }
 
@@ -71,6 +76,7 @@ Bytes station_statement(std::string_view study_id, std::string_view name,
 }
 
 bool is_signed_by(const PublicKey& signer, ByteView message, ByteView signature) {
+  prepare_sodium();
   return signature.size() == crypto_sign_BYTES &&
          crypto_sign_verify_detached(signature.data(), message.data(), message.size(),
                                      signer.data()) == 0;

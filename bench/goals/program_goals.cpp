@@ -5,10 +5,15 @@
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
 #include "core/random.hpp"
+#include "device/simulated/simulated_hand.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/registration/registration.hpp"
 #include "protocols/session/commitment.hpp"
+#include "protocols/session/exploration.hpp"
+#include "protocols/session/stimulus_source.hpp"
+#include "protocols/simulation/felt_decision.hpp"
+#include "protocols/simulation/felt_exploration.hpp"
 #include "protocols/simulation/simulation.hpp"
 #include "protocols/simulation/subject_model.hpp"
 #include "protocols/store/head_file.hpp"
@@ -24,8 +29,10 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
+#include <benchmark/benchmark.h>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/resource.h>
@@ -150,6 +157,8 @@ std::vector<GoalResult> measure_starts(int rounds) {
 
 constexpr double kStudyTarget_us = 1e6;
 constexpr double kTrialTarget_bytes = 100e3;
+constexpr double kBareTicksRatio = 2.0;
+constexpr double kTwoThreadsRatio = 1.0 / 1.8;
 constexpr int kParticipants = 20;
 
 struct StudyCost {
@@ -157,14 +166,15 @@ struct StudyCost {
   double bytes_a_trial = 0.0;
 };
 
-/// Simulates the classification study that comes with the program, in one thread: 20 participants,
-/// 25 trials of 10 s, one transaction for each session. The time is wall-clock time, because it
-/// includes the disk.
+/// Simulates the classification study that comes with the program: 20 participants, 25 trials of
+/// 10 s, one transaction for each session. The time is wall-clock time, because it includes the
+/// disk.
 StudyCost simulate_once(const design::StudyKey& key, const engine::Pack& pack,
-                        const fs::path& database) {
+                        const fs::path& database, int threads) {
   const simulation::SubjectModel subject = app::subject_for({}, key.study, {});
   simulation::SimulationOptions options;
   options.participants = kParticipants;
+  options.jobs = threads;
   const auto start = std::chrono::steady_clock::now();
   simulation::SimulationReport report;
   {
@@ -177,19 +187,74 @@ StudyCost simulate_once(const design::StudyKey& key, const engine::Pack& pack,
   return {us.count(), static_cast<double>(fs::file_size(database)) / report.presentations};
 }
 
-std::vector<GoalResult> results_of(const StudyCost& cost) {
+/// As many explorations as the study has trials, tick by tick: the hand and the force of a stimulus
+/// and nothing else. No servo, limit, sense, trace or answer, and nobody learns before.
+double bare_ticks_us(const design::StudyKey& key, const engine::Pack& pack) {
+  const simulation::SubjectModel subject = app::subject_for({}, key.study, {});
+  const session::StimulusSource source(pack, key);
+  const simulation::SimulationOptions options;
+  Vec3 kept;
+  const auto start = std::chrono::steady_clock::now();
+  for (int number = 1; number <= kParticipants; ++number) {
+    const device::HandFactors factors =
+        simulation::hand_of_participant(subject, options.seed, static_cast<std::uint64_t>(number));
+    for (int trial = 1; trial <= key.study.scored_trials(); ++trial) {
+      RandomStream random = simulation::stream_of_trial(
+          options.seed, simulation::kExplorationPurpose, number, static_cast<std::uint64_t>(trial));
+      device::SimulatedHand hand =
+          simulation::make_exploring_hand(subject, source.plane(), random, factors);
+      const auto stimulus = static_cast<std::size_t>(trial) % key.stimuli.size();
+      session::ModelForce force(source.model(key.stimuli[stimulus].code));
+      device::DeviceSample sample;
+      while (hand.read(sample) == device::DeviceStatus::ok) {
+        static_cast<void>(hand.write(force.force_n(sample)));
+      }
+      kept = kept + sample.position_mm;
+    }
+  }
+  benchmark::DoNotOptimize(kept);
+  const std::chrono::duration<double, std::micro> us = std::chrono::steady_clock::now() - start;
+  return us.count();
+}
+
+/// The median times of the rounds.
+struct StudyTimes {
+  double one_thread_us = 0.0;
+  double two_threads_us = 0.0;
+  double bare_ticks_us = 0.0;
+  double bytes_a_trial = 0.0;
+};
+
+GoalResult compared(std::string goal, double ours_us, std::string peer, double peer_us,
+                    double target) {
+  GoalResult result;
+  result.goal = std::move(goal);
+  result.peer = std::move(peer);
+  result.ours_us = ours_us;
+  result.peer_us = peer_us;
+  result.ratio = ours_us / peer_us;
+  result.target = target;
+  return result;
+}
+
+std::vector<GoalResult> results_of(const StudyTimes& times) {
   GoalResult time;
   time.goal = "study of 20 x 25 trials of 10 s, one thread";
-  time.ours_us = cost.us;
+  time.ours_us = times.one_thread_us;
   time.limit = Limit::time_us;
   time.target = kStudyTarget_us;
   GoalResult bytes;
   bytes.goal = "database, a trial of 10 s";
-  bytes.count = std::round(cost.bytes_a_trial);
+  bytes.count = std::round(times.bytes_a_trial);
   bytes.count_unit = "bytes";
   bytes.limit = Limit::count;
   bytes.target = kTrialTarget_bytes;
-  return {time, bytes};
+  return {time,
+          compared("the same study against its 5 million ticks", times.one_thread_us,
+                   "hand and force alone", times.bare_ticks_us, kBareTicksRatio),
+          compared("the same study, two threads", times.two_threads_us, "one thread",
+                   times.one_thread_us, kTwoThreadsRatio),
+          bytes};
 }
 
 std::vector<GoalResult> measure_study(int rounds) {
@@ -202,14 +267,22 @@ std::vector<GoalResult> measure_study(int rounds) {
   key.pack_folder = folder.path() / "pack";
   design::prepare_pack(key, key.pack_folder, {});
   const engine::Pack pack(key.pack_folder);
-  std::vector<double> times_us;
-  StudyCost cost;
+  std::vector<double> one_us, two_us, bare_us;
+  StudyTimes times;
   for (int round = 0; round < rounds; ++round) {
-    cost = simulate_once(key, pack, folder.path() / (std::to_string(round) + ".db"));
-    times_us.push_back(cost.us);
+    const auto place = [&](const char* name) {
+      return folder.path() / (std::to_string(round) + name + ".db");
+    };
+    const StudyCost cost = simulate_once(key, pack, place("one"), 1);
+    times.bytes_a_trial = cost.bytes_a_trial;
+    one_us.push_back(cost.us);
+    bare_us.push_back(bare_ticks_us(key, pack));
+    two_us.push_back(simulate_once(key, pack, place("two"), 2).us);
   }
-  cost.us = median(times_us);
-  return results_of(cost);
+  times.one_thread_us = median(one_us);
+  times.two_threads_us = median(two_us);
+  times.bare_ticks_us = median(bare_us);
+  return results_of(times);
 }
 
 constexpr int kTraceSamples = 10'000;

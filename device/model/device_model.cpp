@@ -12,9 +12,6 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr double kMmPerM = 1000.0;
-constexpr double kMPerMm = 0.001;
-
 /// The ends of a workspace: stiff and well damped, so that a handle comes to rest there.
 constexpr double kStopNPerMm = 5.0;
 constexpr double kStopNSPerMm = 0.05;
@@ -97,18 +94,6 @@ void DeviceDynamics::place(Vec3 position_mm) noexcept {
   read_mm_s_ = {};
 }
 
-void DeviceDynamics::tick(Vec3 commanded_n, const Outside& outside) noexcept {
-  delivered_n_ = has_motors_ ? through_motors(commanded_n) : commanded_n;
-  Vec3 motor_n = delivered_n_;
-  if (model_.planted.gravity_n > 0.0) motor_n.y -= model_.planted.gravity_n;
-  if (joint_ > 0.0) {
-    move_structure(motor_n, outside);
-  } else {
-    move_rigid(motor_n, outside);
-  }
-  take_reading();
-}
-
 Vec3 DeviceDynamics::through_motors(Vec3 commanded_n) noexcept {
   Vec3 force_n = commanded_n;
   if (!on_the_way_n_.empty()) {
@@ -155,23 +140,6 @@ Vec3 DeviceDynamics::after_friction(Vec3 velocity_mm_s, Vec3 stop_n,
   return on_each_axis(on_axis, velocity_mm_s, stop_n, free_mm_s);
 }
 
-void DeviceDynamics::move_rigid(Vec3 force_n, const Outside& outside) noexcept {
-  const double mass_kg = model_.mass_kg + outside.mass_kg;
-  const double tick_per_mass = tick_s_ * kMmPerM / (mass_kg > 0.0 ? mass_kg : kLeastMassKg);
-  const double viscous = kMPerMm * model_.viscous_n_s_per_m;
-  const Vec3 all_n = force_n + outside.force_n;
-  const auto free_velocity = [=](double before_mm_s, double n, double damping) {
-    return (before_mm_s + tick_per_mass * n) / (1.0 + tick_per_mass * (viscous + damping));
-  };
-  Vec3 after_mm_s = on_each_axis(free_velocity, tip_mm_s_, all_n, outside.damping_n_s_per_mm);
-  if (has_friction_) {
-    after_mm_s = after_friction(tip_mm_s_, all_n + (1.0 / tick_per_mass) * tip_mm_s_, after_mm_s);
-  }
-  const Vec3 mean_mm_s = model_.zero_order_hold ? 0.5 * (tip_mm_s_ + after_mm_s) : after_mm_s;
-  tip_mm_ = tip_mm_ + tick_s_ * mean_mm_s;
-  tip_mm_s_ = after_mm_s;
-}
-
 /// Two masses and the spring between them, by the trapezium rule, which neither damps nor excites
 /// their resonance; damping to the ground is implicit, as in a rigid device. docs/devices/models.md
 /// has the equations.
@@ -206,12 +174,7 @@ void DeviceDynamics::move_structure(Vec3 motor_n, const Outside& outside) noexce
   tip_mm_s_ = tip_mm_s;
 }
 
-void DeviceDynamics::take_reading() noexcept {
-  read_mm_ = joint_ > 0.0 ? motor_mm_ : tip_mm_;
-  if (has_true_readings_) {
-    read_mm_s_ = joint_ > 0.0 ? motor_mm_s_ : tip_mm_s_;
-    return;
-  }
+void DeviceDynamics::make_out_reading() noexcept {
   if (noise_) {
     const double deviation_mm = model_.planted.position_noise_mm;
     read_mm_ = on_each_axis([&](double value) { return value + deviation_mm * noise_->normal(); },

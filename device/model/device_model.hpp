@@ -159,12 +159,17 @@ class DeviceDynamics {
   void tick(Vec3 commanded_n, const Outside& outside) noexcept;
 
  private:
+  static constexpr double kMmPerM = 1000.0;
+  static constexpr double kMPerMm = 0.001;
+
   [[nodiscard]] Vec3 through_motors(Vec3 commanded_n) noexcept;
   [[nodiscard]] Vec3 after_friction(Vec3 velocity_mm_s, Vec3 stop_n, Vec3 free_mm_s) const noexcept;
   [[nodiscard]] double friction_n(double speed_mm_s) const noexcept;
   void move_rigid(Vec3 force_n, const Outside& outside) noexcept;
   void move_structure(Vec3 motor_n, const Outside& outside) noexcept;
   void take_reading() noexcept;
+  /// From the true position: what quantisation, noise and the estimate of velocity make of it.
+  void make_out_reading() noexcept;
   void estimate_velocity() noexcept;
 
   DeviceModel model_;
@@ -193,6 +198,49 @@ class DeviceDynamics {
   std::vector<Vec3> readings_mm_;  ///< a ring of velocity_readings
   std::size_t next_reading_ = 0;
 };
+
+// Every simulated tick moves two devices, so a rigid one's motion is compiled into the hand's.
+
+inline void DeviceDynamics::tick(Vec3 commanded_n, const Outside& outside) noexcept {
+  delivered_n_ = has_motors_ ? through_motors(commanded_n) : commanded_n;
+  Vec3 motor_n = delivered_n_;
+  if (model_.planted.gravity_n > 0.0) motor_n.y -= model_.planted.gravity_n;
+  if (joint_ > 0.0) {
+    move_structure(motor_n, outside);
+  } else {
+    move_rigid(motor_n, outside);
+  }
+  take_reading();
+}
+
+inline void DeviceDynamics::move_rigid(Vec3 force_n, const Outside& outside) noexcept {
+  const double mass_kg = model_.mass_kg + outside.mass_kg;
+  const double tick_per_mass = tick_s_ * kMmPerM / (mass_kg > 0.0 ? mass_kg : kLeastMassKg);
+  const double viscous = kMPerMm * model_.viscous_n_s_per_m;
+  const Vec3 all_n = force_n + outside.force_n;
+  const auto free_velocity = [=](double before_mm_s, double n, double damping) {
+    return (before_mm_s + tick_per_mass * n) / (1.0 + tick_per_mass * (viscous + damping));
+  };
+  const Vec3 damping = outside.damping_n_s_per_mm;
+  Vec3 after_mm_s{free_velocity(tip_mm_s_.x, all_n.x, damping.x),
+                  free_velocity(tip_mm_s_.y, all_n.y, damping.y),
+                  free_velocity(tip_mm_s_.z, all_n.z, damping.z)};
+  if (has_friction_) {
+    after_mm_s = after_friction(tip_mm_s_, all_n + (1.0 / tick_per_mass) * tip_mm_s_, after_mm_s);
+  }
+  const Vec3 mean_mm_s = model_.zero_order_hold ? 0.5 * (tip_mm_s_ + after_mm_s) : after_mm_s;
+  tip_mm_ = tip_mm_ + tick_s_ * mean_mm_s;
+  tip_mm_s_ = after_mm_s;
+}
+
+inline void DeviceDynamics::take_reading() noexcept {
+  read_mm_ = joint_ > 0.0 ? motor_mm_ : tip_mm_;
+  if (has_true_readings_) {
+    read_mm_s_ = joint_ > 0.0 ? motor_mm_s_ : tip_mm_s_;
+  } else {
+    make_out_reading();
+  }
+}
 
 /// A modelled device by the driver's interface, in the device frame and in virtual time: each
 /// `write` is one tick of 1 ms. It stops at the ends of its workspace, if the model has one. `halt`

@@ -6,6 +6,7 @@
 #include "device/safety/safety_limits.hpp"
 #include "device/safety/safety_links.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace touchtrial::device {
@@ -75,6 +76,10 @@ class SafetyChain {
   [[nodiscard]] SafetyFault fault_in(const DeviceSample& sample, double ticks) noexcept;
   [[nodiscard]] SafeForce stopped() noexcept;
   [[nodiscard]] SafeForce limited(Vec3 force_n, Vec3 support_n) noexcept;
+  /// Without a support, the force itself with the signs of its zeros.
+  [[nodiscard]] static Vec3 sum_of(Vec3 force_n, Vec3 support_n) noexcept {
+    return support_n == Vec3{} ? force_n : force_n + support_n;
+  }
 
   bool may_engage_;
   SafetyFault fault_ = SafetyFault::none;
@@ -85,5 +90,62 @@ class SafetyChain {
   RampUp ramp_;
   SlewLimit slew_;
 };
+
+// Every simulated tick passes the chain, so its steps are compiled into the loop.
+
+inline void SafetyChain::trip(SafetyFault fault) noexcept {
+  if (fault_ == SafetyFault::none) fault_ = fault;
+}
+
+inline SafeForce SafetyChain::stopped() noexcept {
+  slew_.drop();
+  return {{}, SafetyVerdict::fault};
+}
+
+inline bool SafetyChain::is_engaged(double force_squared_n2, const DeviceSample& sample) noexcept {
+  if (gate_.is_open()) return true;
+  if (!may_engage_ || !sample.ready || !gate_.try_open(force_squared_n2)) return false;
+  freshness_.start(sample.sequence);
+  velocity_.start(sample);
+  ramp_.start();
+  return true;
+}
+
+inline SafetyFault SafetyChain::fault_in(const DeviceSample& sample, double ticks) noexcept {
+  if (!sample.ready) return SafetyFault::not_ready;
+  if (velocity_.is_exceeded(sample, ticks)) return SafetyFault::overspeed;
+  if (freshness_.is_stale(sample.sequence, ticks)) return SafetyFault::stale_sample;
+  return SafetyFault::none;
+}
+
+/// Ramp, thermal budget, norm limit and slew limit.
+inline SafeForce SafetyChain::limited(Vec3 force_n, Vec3 support_n) noexcept {
+  const double share = ramp_.next_share();
+  const Vec3 carried_n = share * support_n;
+  const Vec3 ramped_n = sum_of(share * force_n, carried_n);
+  const Vec3 allowed_n = within_norm(ramped_n, thermal_.limit_n());
+  const Vec3 safe_n = slew_.towards(allowed_n);
+  if (safe_n == sum_of(force_n, carried_n)) return {safe_n, SafetyVerdict::passed, force_n};
+  const double squared_n2 = dot(ramped_n, ramped_n);
+  const double kept = squared_n2 > 0.0 ? dot(allowed_n, ramped_n) / squared_n2 : 1.0;
+  return {safe_n, SafetyVerdict::limited, support_n == Vec3{} ? safe_n : safe_n - kept * carried_n};
+}
+
+inline SafeForce SafetyChain::check(Vec3 force_n, const DeviceSample& sample, std::int64_t ticks,
+                                    Vec3 support_n) noexcept {
+  const auto elapsed = static_cast<double>(std::max<std::int64_t>(ticks, 1));
+  const double force_squared_n2 = dot(force_n, force_n);
+  thermal_.heat(dot(slew_.sent_n(), slew_.sent_n()), elapsed);
+  if (!is_finite_state(force_squared_n2 + dot(support_n, support_n), sample))
+    trip(SafetyFault::not_finite);
+  if (faulted()) return stopped();
+  const bool was_engaged = gate_.is_open();
+  if (!is_engaged(force_squared_n2, sample)) {
+    return {{}, force_n == Vec3{} ? SafetyVerdict::passed : SafetyVerdict::limited};
+  }
+  if (was_engaged) trip(fault_in(sample, elapsed));
+  if (faulted()) return stopped();
+  return limited(force_n, support_n);
+}
 
 }  // namespace touchtrial::device

@@ -102,6 +102,8 @@ class Pacing {
 };
 
 /// One run of the loop.
+/// \tparam kIsWatched  whether there may be hooks
+template <bool kIsWatched>
 class ServoRun {
  public:
   ServoRun(HapticDevice& device, ForceSource& force, SampleSink& sink, const ServoOptions& options,
@@ -152,7 +154,9 @@ class ServoRun {
       take_requests(tick);
       if (tick >= end_of_ticks()) break;
       const std::optional<ServoEnd> end = run_tick(start);
-      if (hooks_.heartbeat != nullptr) hooks_.heartbeat->fetch_add(1, std::memory_order_release);
+      if (kIsWatched && hooks_.heartbeat != nullptr) {
+        hooks_.heartbeat->fetch_add(1, std::memory_order_release);
+      }
       if (end) return end;
     }
     return std::nullopt;
@@ -166,7 +170,7 @@ class ServoRun {
   [[nodiscard]] std::int64_t end_of_fade() const noexcept { return fade_from_ + fade_ticks_; }
 
   void take_requests(std::int64_t tick) noexcept {
-    if (hooks_.control == nullptr) return;
+    if (!kIsWatched || hooks_.control == nullptr) return;
     if (hooks_.control->emergency_stop_asked()) safety_.trip(SafetyFault::emergency_stop);
     if (hooks_.control->stall_seen()) safety_.trip(SafetyFault::stalled);
     if (hooks_.control->comfort_stop_asked()) stop_in_comfort(tick);
@@ -249,7 +253,7 @@ class ServoRun {
 
   /// \return the factor of this tick's force, which follows the parameters
   double share() noexcept {
-    if (hooks_.parameters == nullptr) return 1.0;
+    if (!kIsWatched || hooks_.parameters == nullptr) return 1.0;
     const double most = 1.0 / (kShareS * rate_hz_);
     share_ += std::clamp(share_of(hooks_.parameters->get()) - share_, -most, most);
     return share_;
@@ -265,6 +269,7 @@ class ServoRun {
   /// Shows this tick to the watcher and to the flight recorder.
   void show(const TickStart& start, const DeviceSample& sample, Vec3 requested_n,
             const SafeForce& safe) noexcept {
+    if constexpr (!kIsWatched) return;
     const double late_us = static_cast<double>(start.late.count()) * 1e-3;
     if (hooks_.state != nullptr) {
       hooks_.state->set({sample, safe.rendered_n, safe.verdict, start.tick, late_us});
@@ -301,7 +306,9 @@ template <typename Clock>
 ServoReport run(HapticDevice& device, ForceSource& force, SampleSink& sink,
                 const ServoOptions& options, Clock& clock, const ServoHooks& hooks) {
   check(options);
-  ServoRun servo(device, force, sink, options, hooks);
+  // Nobody watches or controls a run in virtual time.
+  constexpr bool kIsWatched = !Pacing<Clock>::kIsVirtual;
+  ServoRun<kIsWatched> servo(device, force, sink, options, hooks);
   return servo.run(Pacing<Clock>(clock, options.rate_hz));
 }
 

@@ -68,10 +68,21 @@ class HandOnTip {
   /// \param intention  where the arm wants to be, along the plane
   /// \param push_n  towards the plane
   [[nodiscard]] DeviceDynamics::Outside hold(Vec3 tip_mm, Vec3 tip_mm_s, const PathPoint& intention,
-                                             double push_n) noexcept;
+                                             double push_n) noexcept {
+    if (is_grip_) return grip(tip_mm, tip_mm_s, intention, push_n);
+    const double damping = options_.arm_damping_n_s_per_mm;
+    const Vec2 pull_n =
+        options_.arm_stiffness_n_per_mm * (intention.position_mm - Vec2{tip_mm.x, tip_mm.y}) +
+        damping * intention.velocity_mm_s;
+    return {{pull_n.x, pull_n.y, -push_n},
+            tip_kg_,
+            {damping, damping, options_.push_damping_n_s_per_mm}};
+  }
   /// Ends the tick.
   /// \param tip_mm_s  of the tip after it
-  void follow(Vec3 tip_mm_s) noexcept;
+  void follow(Vec3 tip_mm_s) noexcept {
+    if (is_grip_) follow_grip(tip_mm_s);
+  }
 
   /// \return of the hand's own mass behind the grip; the point mass has none
   [[nodiscard]] Vec3 position_mm() const noexcept;
@@ -100,6 +111,9 @@ class HandOnTip {
     double force_n, damping_n_s_per_mm;
   };
   [[nodiscard]] Axis grip_axis(std::size_t axis) const noexcept;
+  [[nodiscard]] DeviceDynamics::Outside grip(Vec3 tip_mm, Vec3 tip_mm_s, const PathPoint& intention,
+                                             double push_n) noexcept;
+  void follow_grip(Vec3 tip_mm_s) noexcept;
   [[nodiscard]] static Pull pull(Axis& axis, double tip_mm, double tip_mm_s, double place_mm,
                                  double drive_n) noexcept;
 

@@ -88,8 +88,12 @@ ExplorationPath::ExplorationPath(const PlaneGeometry& plane, const ExplorationOp
 PathPoint ExplorationPath::at(double time_s, std::size_t& stroke) const noexcept {
   while (stroke + 1 < strokes_.size() && time_s >= strokes_[stroke].end_s()) ++stroke;
   const Stroke& s = strokes_[stroke];
-  const double begun = std::clamp((time_s - s.start_s) / kRampS, 0.0, 1.0);
-  const double left = std::clamp((s.end_s() - time_s) / kRampS, 0.0, 1.0);
+  // Whole ramps need no division, which also would give 1.
+  const auto ramps = [](double time) {
+    return time >= kRampS ? 1.0 : std::max(time / kRampS, 0.0);
+  };
+  const double begun = ramps(time_s - s.start_s);
+  const double left = ramps(s.end_s() - time_s);
   const double steady_s = std::clamp(time_s - s.start_s - kRampS, 0.0, s.steady_s - kRampS);
   // Speeding up covers ramp_distance(begun); slowing down covers the rest of half a ramp.
   const double ramps_s = kRampS * (ramp_distance(begun) + 0.5 - ramp_distance(left));
@@ -106,7 +110,8 @@ constexpr double kNamedExploreS = 8.0 * 3600.0;
 
 /// \return the share of the push at a time after the start: from 0 to 1, level at both ends
 double push_share(double time_s) noexcept {
-  const double u = std::min(time_s / SimulatedHand::kPushBuildUpS, 1.0);
+  if (time_s >= SimulatedHand::kPushBuildUpS) return 1.0;
+  const double u = time_s / SimulatedHand::kPushBuildUpS;
   return u * u * (3.0 - 2.0 * u);
 }
 

@@ -35,10 +35,8 @@ Samples hann_window() {
 /// bins 1 .. k.
 class SummedPower {
  public:
-  template <typename PowerOfBin>
-  explicit SummedPower(PowerOfBin power_of_bin) noexcept {
-    for (int k = 1; k <= kBins; ++k) sums_[k] = sums_[k - 1] + power_of_bin(k);
-  }
+  /// \param k  1, 2, .. kBins, in this order
+  void add(int k, double power) noexcept { sums_[k] = sums_[k - 1] + power; }
   /// Power up to a frequency in bins; bin k reaches from k - 1/2 to k + 1/2.
   [[nodiscard]] double up_to(double bins) const noexcept {
     const double place = std::clamp(bins - 0.5, 0.0, static_cast<double>(kBins));
@@ -105,9 +103,9 @@ struct TextureSense::State {
   explicit State(const SenseOptions& chosen)
       : options(chosen), weights(weights_of(chosen)), fft(1, kWindow) {}
 
-  void take(Vec3 at_mm, Vec3 felt, bool touches) noexcept;
+  void take(const Vec3& at_mm, const Vec3& felt, bool touches) noexcept;
   void end_half() noexcept;
-  [[nodiscard]] Spectrum spectrum_of(const Samples& samples) noexcept;
+  [[nodiscard]] Spectrum spectrum_of(const Samples& samples, float mean) noexcept;
   void add_window(double speed_mm_s, Vec3 middle_mm) noexcept;
 
   SenseOptions options;
@@ -123,7 +121,7 @@ struct TextureSense::State {
   FeltPower power;
 };
 
-void TextureSense::State::take(Vec3 at_mm, Vec3 felt, bool touches) noexcept {
+void TextureSense::State::take(const Vec3& at_mm, const Vec3& felt, bool touches) noexcept {
   x[filled] = static_cast<float>(felt.x);
   y[filled] = static_cast<float>(felt.y);
   z[filled] = static_cast<float>(felt.z);
@@ -151,10 +149,7 @@ void TextureSense::State::end_half() noexcept {
   current = {};
 }
 
-Spectrum TextureSense::State::spectrum_of(const Samples& samples) noexcept {
-  float sum = 0.0F;
-  for (const float sample : samples) sum += sample;
-  const float mean = sum / kWindow;
+Spectrum TextureSense::State::spectrum_of(const Samples& samples, float mean) noexcept {
   const std::span<float> plane = fft.plane();
   for (int i = 0; i < kWindow; ++i) plane[i] = hann[i] * (samples[i] - mean);
   fft.forward();
@@ -164,18 +159,33 @@ Spectrum TextureSense::State::spectrum_of(const Samples& samples) noexcept {
 }
 
 void TextureSense::State::add_window(double speed_mm_s, Vec3 middle_mm) noexcept {
-  const Spectrum fx = spectrum_of(x);
-  const Spectrum fy = spectrum_of(y);
-  const Spectrum fz = spectrum_of(z);
+  // The sums of three axes, and the four below, wait for their own last addition alone: side by
+  // side they take the time of one.
+  float sum_x = 0.0F, sum_y = 0.0F, sum_z = 0.0F;
+  for (int i = 0; i < kWindow; ++i) {
+    sum_x += x[i];
+    sum_y += y[i];
+    sum_z += z[i];
+  }
+  const Spectrum fx = spectrum_of(x, sum_x / kWindow);
+  const Spectrum fy = spectrum_of(y, sum_y / kWindow);
+  const Spectrum fz = spectrum_of(z, sum_z / kWindow);
   // One-sided, so that the powers of all bins sum to the variance; Hann's squares sum to 3/8.
   constexpr double kScale = 2.0 / (kWindow * (0.375 * kWindow));
-  const auto counted = [&](int k, double product) { return weights[k] * (kScale * product); };
-  const SummedPower xx([&](int k) { return counted(k, std::norm(fx[k])); });
-  const SummedPower yy([&](int k) { return counted(k, std::norm(fy[k])); });
-  const SummedPower zz([&](int k) { return counted(k, std::norm(fz[k])); });
-  const SummedPower xy([&](int k) { return counted(k, std::real(fx[k] * std::conj(fy[k]))); });
+  // Real part of a times the conjugate of b.
+  const auto product = [](std::complex<float> a, std::complex<float> b) {
+    return a.real() * b.real() + a.imag() * b.imag();
+  };
+  SummedPower xx, yy, zz, xy;
   for (int k = 1; k <= kBins; ++k) {
-    power.bins[k] += kScale * (std::norm(fx[k]) + std::norm(fy[k]) + std::norm(fz[k]));
+    const float px = product(fx[k], fx[k]);
+    const float py = product(fy[k], fy[k]);
+    const float pz = product(fz[k], fz[k]);
+    xx.add(k, weights[k] * (kScale * px));
+    yy.add(k, weights[k] * (kScale * py));
+    zz.add(k, weights[k] * (kScale * pz));
+    xy.add(k, weights[k] * (kScale * product(fx[k], fy[k])));
+    power.bins[k] += kScale * (px + py + pz);
   }
   const double longest = speed_mm_s * kWindow / options.rate_hz / kLongestFeltMm;  // in bins
   for (int band = 0; band < kFeltBands; ++band) {
@@ -214,7 +224,7 @@ void TextureSense::reset(const PlaneGeometry& plane) noexcept {
   state_->power = {};
 }
 
-void TextureSense::feel(Vec3 position_mm, Vec3 force_n, Vec3 felt) noexcept {
+void TextureSense::feel(const Vec3& position_mm, const Vec3& force_n, const Vec3& felt) noexcept {
   State& s = *state_;
   if (!s.landed) {
     s.landed = force_n.z > 0.0;

@@ -47,12 +47,14 @@ class TextureSense {
 
   /// Adds the next sample; samples are evenly spaced in time. No allocation, lock or exception.
   /// Cost: some 20 ns, averaged over a window.
-  void feel(Vec3 position_mm, Vec3 force_n) noexcept { feel(position_mm, force_n, force_n); }
+  void feel(const Vec3& position_mm, const Vec3& force_n) noexcept {
+    feel(position_mm, force_n, force_n);
+  }
   /// The same for what a force does.
   /// \param force_n  tells contact
   /// \param felt  the vector whose intensities are felt: the force, or the tip's acceleration in
   ///   m/s^2 for a curve
-  void feel(Vec3 position_mm, Vec3 force_n, Vec3 felt) noexcept;
+  void feel(const Vec3& position_mm, const Vec3& force_n, const Vec3& felt) noexcept;
 
   /// The intensities of all samples so far. Without a window that counts, each is the threshold.
   [[nodiscard]] FeltFeatures features() const noexcept;

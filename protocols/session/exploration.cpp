@@ -58,7 +58,7 @@ void TraceBuilder::add(const device::ServoSample& sample) noexcept {
   const auto tick = static_cast<std::size_t>(std::max<std::int64_t>(sample.tick, 0));
   if (tick >= room_ || tick < trace_.samples.size()) return;
   const store::TraceSample kept{sample.position_mm, sample.force_n};
-  hold_until(tick, kept);
+  if (trace_.samples.size() < tick) hold_until(tick, kept);
   if (!landing_tick_ && sample.position_mm.z <= kLandingHeightMm) landing_tick_ = sample.tick;
   trace_.samples.push_back(kept);
 }

@@ -175,13 +175,11 @@ void insert_station_key(const Database& database, int session, const Bytes& kept
 
 void for_each_event(const Database& database, const EventFilter& filter,
                     const EventVisitor& visit) {
-  const std::string sql =
-      "SELECT " + column_list(Table::events) +
-      " FROM events WHERE session BETWEEN ? AND ? AND sequence BETWEEN ? AND ?" +
-      is_one_of(filter.kinds) + " ORDER BY session, sequence";
+  const std::string sql = "SELECT " + column_list(Table::events) +
+                          " FROM events WHERE session BETWEEN ? AND ?" + is_one_of(filter.kinds) +
+                          " ORDER BY session, sequence";
   Query query = database.separate_query(sql.c_str());
   query.bind(filter.session.value_or(kLowest)).bind(filter.session.value_or(kHighest));
-  query.bind(filter.sequence.value_or(kLowest)).bind(filter.sequence.value_or(kHighest));
   while (query.step()) visit(event_of_row(query));
 }
 
@@ -190,10 +188,13 @@ void for_each_event(const Database& database, std::int64_t session, const EventV
 }
 
 std::optional<Event> read_event(const Database& database, int session, std::int64_t sequence) {
-  std::optional<Event> found;
-  for_each_event(database, {.session = session, .sequence = sequence},
-                 [&](const Event& event) { found = event; });
-  return found;
+  // By its whole key: the ranges of for_each_event would walk through all events of the session.
+  static const std::string sql =
+      "SELECT " + column_list(Table::events) + " FROM events WHERE session = ? AND sequence = ?";
+  Query query = database.query(sql.c_str());
+  query.bind(session).bind(sequence);
+  if (!query.step()) return std::nullopt;
+  return event_of_row(query);
 }
 
 std::vector<std::int64_t> sessions_with_events(const Database& database) {

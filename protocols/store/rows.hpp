@@ -27,7 +27,6 @@ void insert_station_key(const Database& database, int session, const Bytes& kept
 /// The events that are asked for: those with all of the members that are given.
 struct EventFilter {
   std::optional<std::int64_t> session{};
-  std::optional<std::int64_t> sequence{};
   std::span<const EventKind> kinds{};  ///< any of these; empty: all
 };
 

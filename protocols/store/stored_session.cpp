@@ -19,8 +19,13 @@ bool is_next_visit(const SessionOpening& opening, const SessionRow& last) {
          last.state == SessionState::completed && !last.withdrawn;
 }
 
+/// No session is opened after the study was closed, so that the newest event of the two kinds
+/// tells; a study of many sessions is not read from its beginning.
 bool is_closed(const Database& database) {
-  return database.query("SELECT 1 FROM events WHERE session = 0 AND kind = 'study-closed'").step();
+  Query query = database.query(
+      "SELECT kind = 'study-closed' FROM events WHERE session = 0 AND "
+      "kind IN ('study-closed', 'session-opened') ORDER BY sequence DESC LIMIT 1");
+  return query.step() && query.integer(0) != 0;
 }
 
 std::string title_of(const SessionRow& row) {
@@ -192,26 +197,31 @@ void StoredStudy::refuse_if_taken(const SessionOpening& opening) const {
 }
 
 void StoredStudy::refuse_if_promised(const SessionOpening& opening) const {
-  const std::map<int, std::string> promised = promised_enrolments();
+  const std::vector<ReplacedSession> replaced = replaced_sessions();
+  const std::map<int, std::string> promised = promised_enrolments(replaced);
   const auto kept = promised.find(opening.enrolment);
   if (kept != promised.end() && kept->second != opening.participant) {
     refuse("enrolment " + std::to_string(opening.enrolment) + " is kept for participant " +
            kept->second + ", who replaces somebody; give participant " + opening.participant +
            " number " + std::to_string(next_enrolment()));
   }
-  const int inherited = enrolment_for(opening.participant);
-  const auto own = promised.find(inherited);
-  if (own != promised.end() && inherited != opening.enrolment) {
+  const auto own = std::ranges::find_if(
+      promised, [&](const auto& entry) { return entry.second == opening.participant; });
+  if (own != promised.end() && own->first != opening.enrolment) {
     refuse("participant " + opening.participant + " replaces somebody and inherits enrolment " +
-           std::to_string(inherited) + "; leave the number out, or give that one");
+           std::to_string(own->first) + "; leave the number out, or give that one");
   }
   if (own != promised.end()) return;
-  Query query = database_.query(
-      "SELECT session, replaced_by FROM sessions WHERE participant = ? ORDER BY session DESC");
-  query.bind(opening.participant);
-  if (!query.step() || query.is_null(1)) return;  // nobody, or an earlier visit
-  refuse("participant " + opening.participant + " was replaced by participant " + query.text(1) +
-         " (session " + std::to_string(query.integer(0)) + "); give another participant id");
+  const auto last = std::find_if(
+      replaced.rbegin(), replaced.rend(),
+      [&](const ReplacedSession& row) { return row.participant == opening.participant; });
+  if (last == replaced.rend()) return;
+  Query later = database_.query(
+      "SELECT 1 FROM sessions WHERE participant = ? AND replaced_by IS NULL AND session > ?");
+  later.bind(opening.participant).bind(last->session);
+  if (later.step()) return;  // an earlier visit
+  refuse("participant " + opening.participant + " was replaced by participant " + last->by +
+         " (session " + std::to_string(last->session) + "); give another participant id");
 }
 
 Event StoredStudy::last_of_open(int session) const {
@@ -336,7 +346,7 @@ void StoredStudy::check_replacement(const SessionRow& row, const std::string& by
     refuse("participant " + by + " already has session " + std::to_string(query.integer(0)) +
            "; only somebody new can take a place");
   }
-  for (const auto& [enrolment, promised] : promised_enrolments()) {
+  for (const auto& [enrolment, promised] : promised_enrolments(replaced_sessions())) {
     if (promised != by) continue;
     refuse("participant " + by + " already replaces somebody, with enrolment " +
            std::to_string(enrolment) + "; name another participant");

@@ -69,7 +69,7 @@ std::optional<SessionRow> StoredStudy::session_of(const std::string& participant
 }
 
 int StoredStudy::next_enrolment() const {
-  const std::map<int, std::string> promised = promised_enrolments();
+  const std::map<int, std::string> promised = promised_enrolments(replaced_sessions());
   Query query = database_.query(
       "SELECT enrolment FROM sessions WHERE replaced_by IS NULL ORDER BY enrolment");
   std::set<std::int64_t> taken;
@@ -80,19 +80,36 @@ int StoredStudy::next_enrolment() const {
 }
 
 int StoredStudy::enrolment_for(const std::string& participant) const {
-  for (const auto& [enrolment, by] : promised_enrolments()) {
+  for (const auto& [enrolment, by] : promised_enrolments(replaced_sessions())) {
     if (by == participant) return enrolment;
   }
   return next_enrolment();
 }
 
-std::map<int, std::string> StoredStudy::promised_enrolments() const {
-  // A number belongs to its last session; if that was replaced, it is kept for the successor.
+std::vector<ReplacedSession> StoredStudy::replaced_sessions() const {
   Query query = database_.query(
-      "SELECT enrolment, replaced_by, max(session) FROM sessions GROUP BY enrolment "
-      "HAVING replaced_by IS NOT NULL");
+      "SELECT session, participant, enrolment, replaced_by FROM sessions "
+      "WHERE replaced_by IS NOT NULL ORDER BY session");
+  std::vector<ReplacedSession> replaced;
+  while (query.step()) {
+    replaced.push_back({.session = query.integer(0),
+                        .participant = query.text(1),
+                        .enrolment = static_cast<int>(query.integer(2)),
+                        .by = query.text(3)});
+  }
+  return replaced;
+}
+
+std::map<int, std::string> StoredStudy::promised_enrolments(
+    std::span<const ReplacedSession> replaced) const {
+  // A number belongs to its last session; if that was replaced, it is kept for the successor.
   std::map<int, std::string> promised;
-  while (query.step()) promised[static_cast<int>(query.integer(0))] = query.text(1);
+  for (const ReplacedSession& row : replaced) {
+    Query later = database_.query(
+        "SELECT 1 FROM sessions WHERE enrolment = ? AND replaced_by IS NULL AND session > ?");
+    later.bind(row.enrolment).bind(row.session);
+    if (!later.step()) promised[row.enrolment] = row.by;
+  }
   return promised;
 }
 

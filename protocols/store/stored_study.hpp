@@ -10,11 +10,13 @@
 #include "protocols/store/study_store.hpp"
 
 #include <chrono>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace touchtrial::store {
 
@@ -29,6 +31,14 @@ struct HeadNews {
   int session = 0;  ///< whose chain grew; 0: none
   bool ended = false;
   std::int64_t answers = 0;  ///< how many came
+};
+
+/// A session whose place somebody took, or is to take.
+struct ReplacedSession {
+  std::int64_t session = 0;
+  std::string participant;
+  int enrolment = 0;
+  std::string by;  ///< participant
 };
 
 class StoredStudy {
@@ -126,8 +136,12 @@ class StoredStudy {
   void refuse_if_promised(const SessionOpening& opening) const;
   void check_replaced(const SessionRow& row) const;
   void check_replacement(const SessionRow& row, const std::string& by) const;
+  /// In the order of their numbers.
+  [[nodiscard]] std::vector<ReplacedSession> replaced_sessions() const;
   /// Enrolment numbers that are kept for somebody, and for whom.
-  [[nodiscard]] std::map<int, std::string> promised_enrolments() const;
+  /// \param replaced  replaced_sessions
+  [[nodiscard]] std::map<int, std::string> promised_enrolments(
+      std::span<const ReplacedSession> replaced) const;
 
   Database database_;
   mutable std::optional<StudyCommitment> commitment_;

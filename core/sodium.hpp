@@ -1,0 +1,12 @@
+/// \file libsodium, ready to use. Private to this folder.
+#pragma once
+
+namespace touchtrial {
+
+/// Lets libsodium choose the fastest of its implementations that this processor has; until then it
+/// uses portable ones, which give the same bytes. Every function of this folder that calls
+/// libsodium calls it first. Costs nothing after the first time; thread-safe.
+/// \return whether libsodium works, its random generator included
+bool prepare_sodium() noexcept;
+
+}  // namespace touchtrial
