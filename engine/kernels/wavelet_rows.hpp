@@ -74,8 +74,8 @@ using BandRows = std::array<Sample*, 4>;
 struct SobelRows {
   BandRows<std::int32_t> last_but_one;  ///< of each sub-band
   BandRows<std::int32_t> last;
-  BandRows<std::int32_t> smoothed;      ///< out: [1 2 1] of the last three rows, along y
-  BandRows<std::int32_t> difference;    ///< out: the last row minus the last but two
+  BandRows<std::int32_t> smoothed;    ///< out: [1 2 1] of the last three rows, along y
+  BandRows<std::int32_t> difference;  ///< out: the last row minus the last but two
 };
 
 /// Filters along x, keeps every second sample, and advances `out` by that row of the sub-bands.

@@ -304,8 +304,8 @@ HWY_INLINE MeanDeficits deficits_of(const Source& source) {
   const bool is_large = std::int64_t{source.height} * source.width >= kThreadsFromPixels;
   in_parallel(is_large ? 0 : 1, tiles.size(), [&](std::size_t i) HWY_ATTR {
     const int x0 = static_cast<int>(i) * kTile<Real>;
-    tiles[i] = sums_of_tile<Real, kLuminance>(
-        source, Tile{x0, std::min(kTile<Real>, windows_x - x0)});
+    tiles[i] =
+        sums_of_tile<Real, kLuminance>(source, Tile{x0, std::min(kTile<Real>, windows_x - x0)});
   });
   MeanDeficits sum;
   for (const MeanDeficits& tile : tiles) {

@@ -238,7 +238,8 @@ class Import {
   void cut_photograph(const fs::path& draft, const Cut& wanted) {
     const Photograph photo = read_photograph(wanted.file, options_);
     if (photo.sha256 != record_.photographs[wanted.photograph].photo.sha256) {
-      throw FileError(one_line(wanted.file.string()) + ": changed while it was imported; try again");
+      throw FileError(one_line(wanted.file.string()) +
+                      ": changed while it was imported; try again");
     }
     // The stream depends on the photograph's name only, so that other photographs may come and go.
     const Digest name = sha256(bytes_of(record_.photographs[wanted.photograph].file));
@@ -249,8 +250,8 @@ class Import {
       const GreyImage crop = cut(photo.image, places[i], options_.size_px);
       ImportedPicture picture;
       picture.label = wanted.of_class->label;
-      picture.file = picture.label + "-" +
-                     std::to_string(wanted.first_number + static_cast<int>(i)) + ".png";
+      picture.file =
+          picture.label + "-" + std::to_string(wanted.first_number + static_cast<int>(i)) + ".png";
       picture.photograph = wanted.photograph;
       picture.place = places[i];
       picture.levels = levels_of(crop);

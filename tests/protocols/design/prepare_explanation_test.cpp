@@ -96,7 +96,8 @@ TEST_CASE("a flat image is not extracted, and its field is what an extraction wo
     laboratory.document["methods"] = {{{"name", method}}};
     CHECK(explained(laboratory)[0] ==
           "read image computed; sub-bands skipped; order map skipped; texture skipped; control "
-          "skipped; filter skipped; filter computed; force planes skipped; write field computed; statistics "
+          "skipped; filter skipped; filter computed; force planes skipped; write field computed; "
+          "statistics "
           "computed; ");
     const design::StudyKey key = laboratory.key();
     const auto texture = engine::extract_texture<double>(
@@ -126,9 +127,10 @@ TEST_CASE("a method without sub-bands skips them, and statistics are skipped unl
   laboratory.document["methods"] = {{{"name", "fixed"}}};
   const design::PrepareReport report = design::prepare_pack(laboratory.key(), laboratory.pack(), {},
                                                             {.statistics = false, .explain = true});
-  CHECK(text_of_stages(report.stimuli[0].stages) ==
-        "read image computed; sub-bands skipped; order map skipped; texture computed; control "
-        "skipped; filter computed; force planes skipped; write field computed; statistics skipped; ");
+  CHECK(
+      text_of_stages(report.stimuli[0].stages) ==
+      "read image computed; sub-bands skipped; order map skipped; texture computed; control "
+      "skipped; filter computed; force planes skipped; write field computed; statistics skipped; ");
   CHECK(report.stimuli[0].stages[1].why == "one order serves the whole image");
   CHECK(report.stimuli[0].statistics.tangential_rms_n == 0.0);
 }
