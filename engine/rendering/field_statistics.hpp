@@ -15,8 +15,8 @@ struct LateralField {
   double n_per_grey = 0.0;   ///< newtons of one grey level per pixel
 };
 
-/// For `paper`, the field's own force planes; for `surface`, minus the gradient of its spline, with
-/// newtons at a load of kStatedLoadN. Thread-safe.
+/// For `paper`, tangential_force() of the heights; for `surface`, minus the gradient of the spline,
+/// with newtons at a load of kStatedLoadN. Thread-safe.
 /// \throws std::invalid_argument if the field is empty
 [[nodiscard]] LateralField lateral_field(FieldView field, Gains gains);
 

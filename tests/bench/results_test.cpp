@@ -3,6 +3,9 @@
 #include "core/errors.hpp"
 #include "support/catch.hpp"
 
+#include <string>
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 namespace touchtrial::bench {
@@ -42,10 +45,48 @@ TEST_CASE("a goal is judged by the number that its target limits") {
 TEST_CASE("the table says whether each goal is met, and says nothing about lines for the record") {
   const std::string table =
       goals_table({ratio_result(0.4, 0.5), ratio_result(0.6, 0.5), ratio_result(0.6, kNotTaken)});
-  CHECK_THAT(table, holds_text("| 40.0 us | peer | 100 us      | 0.400 | <= 0.5 |"));
+  CHECK_THAT(table,
+             holds_text("| 40.0 us | peer | 100 us      | 0.400 |       |          | <= 0.5 |"));
   CHECK_THAT(table, holds_text("| yes    |"));
   CHECK_THAT(table, holds_text("| **no** |"));
-  CHECK_THAT(table, holds_text("| 0.600 |        | 1.0e-06 grey levels |        |"));
+  CHECK_THAT(table,
+             holds_text("| 0.600 |       |          |        | 1.0e-06 grey levels |        |"));
+}
+
+TEST_CASE("a goal beside a bound is judged by it, and the table names the bound") {
+  GoalResult result = ratio_result(0.1, 1.6);
+  result.limit = Limit::of_bound;
+  CHECK_FALSE(is_met(result));
+  result.bound = "memory";
+  result.bound_us = 20.0;
+  result.of_bound = 1.7;
+  CHECK_FALSE(is_met(result));
+  result.of_bound = 1.5;
+  CHECK(is_met(result));
+  CHECK_THAT(goals_table({result}), holds_text("| memory, 20.0 us | 1.50     | <= 1.6 of bound |"));
+}
+
+TEST_CASE("what is slower by more than a tenth than the committed results is named") {
+  GoalResult before = ratio_result(0.4, 0.5);
+  before.of_bound = 1.5;
+  before.bound = "memory";
+  const std::string committed = results_json({}, {{before}, {}, {}});
+  GoalResult now = before;
+  now.ratio = 0.43;
+  now.of_bound = 1.64;
+  CHECK(slower_than_committed({now}, committed).empty());
+  now.ratio = 0.45;
+  CHECK(slower_than_committed({now}, committed) ==
+        std::vector<std::string>{"filter: 0.450 of peer, and 0.400 in the committed results"});
+  now.of_bound = 1.7;
+  CHECK(slower_than_committed({now}, committed).size() == 2);
+  now.goal = "another";
+  CHECK(slower_than_committed({now}, committed).empty());
+  now.goal = before.goal;
+  now.peer = "another peer";
+  CHECK(slower_than_committed({now}, committed).empty());
+  CHECK_THROWS_AS(slower_than_committed({now}, "{}"), Error);
+  CHECK_THROWS_AS(slower_than_committed({now}, "not JSON"), Error);
 }
 
 TEST_CASE("results_json holds every goal and row, with null for what was not taken") {
