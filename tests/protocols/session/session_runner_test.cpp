@@ -56,8 +56,9 @@ struct Ran {
 /// Opens a session of 5 trials and runs it.
 /// \param run  called with the session, the study's key and the stimuli
 template <typename Run>
-Ran ran_session(const Run& run, const std::string& trials = R"({"repeats": 1})") {
-  const TinyStudy study({.trials = trials});
+Ran ran_session(const Run& run, const std::string& trials = R"({"repeats": 1})",
+                int side_px = 120) {
+  const TinyStudy study({.side_px = side_px, .trials = trials});
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
   Ran ran;
   session::Session session(
@@ -164,14 +165,16 @@ class Insisting final : public session::Experimenter {
 };
 
 Ran run_with(session::Explorer& explorer, session::SessionClock& clock,
-             session::Experimenter& experimenter = session::no_experimenter()) {
-  return ran_session([&](session::Session& session, const design::StudyKey& key,
-                         const session::StimulusSource& source) {
-    Unlucky person(1);
-    session::AlwaysReady devices;
-    return session::run_session(session, {key, source, person, clock, explorer, devices,
-                                          device::kServoRateHz, experimenter});
-  });
+             session::Experimenter& experimenter = session::no_experimenter(), int side_px = 120) {
+  return ran_session(
+      [&](session::Session& session, const design::StudyKey& key,
+          const session::StimulusSource& source) {
+        Unlucky person(1);
+        session::AlwaysReady devices;
+        return session::run_session(session, {key, source, person, clock, explorer, devices,
+                                              device::kServoRateHz, experimenter});
+      },
+      R"({"repeats": 1})", side_px);
 }
 
 /// A step, and what the experimenter was shown last when it came.
@@ -368,11 +371,16 @@ TEST_CASE("a trial that ends without an answer tells the participant so") {
 }
 
 TEST_CASE("in real time every field is in memory before it is felt") {
+  // Larger than what the system fetches round the first page that is read.
+  constexpr int kSidePx = 300;
   session::VirtualSessionClock clock;
   PageCountingExplorer real(true);
-  CHECK(run_with(real, clock).tally.presentations == 6);
+  const auto presentations = [&](PageCountingExplorer& explorer) {
+    return run_with(explorer, clock, session::no_experimenter(), kSidePx).tally.presentations;
+  };
+  CHECK(presentations(real) == 6);
   PageCountingExplorer careless(false);
-  CHECK(run_with(careless, clock).tally.presentations == 6);
+  CHECK(presentations(careless) == 6);
   CHECK(careless.fetched > 0);
   // A sanitizer fetches pages of its own beside those of a field, one for eight.
   CHECK(real.fetched <= (kSanitized ? careless.fetched / 4 : 0));
