@@ -14,12 +14,14 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <opencv2/core/utility.hpp>
+#include <tbb/global_control.h>
 
 namespace touchtrial::bench {
 namespace {
@@ -50,13 +52,20 @@ Scope scope_for(const Arguments& arguments, const std::vector<std::string>& targ
   return scope;
 }
 
+/// Keeps the engine's work on one thread while this object lives, as its peers' is.
+using OneThread = tbb::global_control;
+constexpr auto kThreads = tbb::global_control::max_allowed_parallelism;
+
 std::vector<GoalResult> take_goals(const std::vector<std::string>& targets, const Effort& effort) {
   std::vector<Goal> goals = kernel_goals(targets);
   for (Goal& goal : error_goals(targets)) goals.push_back(std::move(goal));
+  const std::size_t on_one_thread = goals.size();
   for (Goal& goal : program_goals()) goals.push_back(std::move(goal));
   std::vector<GoalResult> results;
   const auto progress = app::progress_bar("goals");
   for (std::size_t i = 0; i < goals.size(); ++i) {
+    std::optional<OneThread> one_thread;
+    if (i < on_one_thread) one_thread.emplace(kThreads, 1);
     for (GoalResult& result : goals[i](effort)) results.push_back(std::move(result));
     progress(static_cast<int>(i + 1), static_cast<int>(goals.size()));
   }
@@ -107,6 +116,7 @@ void run(const Arguments& arguments) {
   app::print(goals_table(results.goals));
   if (arguments.check) return check(results.goals);
   if (arguments.json.empty() && !arguments.docs) return;
+  const OneThread one_thread(kThreads, 1);
   results.rows = measure_rows(all_cases(scope), effort, app::progress_bar("rows"));
   if (!arguments.json.empty()) replace_file(arguments.json, results_json(this_machine(), results));
   if (arguments.docs) {

@@ -13,7 +13,7 @@ namespace touchtrial::bench {
 struct Scope {
   std::vector<int> sizes_px = {256, 500, 1024, 4096};
   /// Further sizes, of whole extractions only.
-  std::vector<int> more_sizes_px = {64, 128, 2048, 8192};
+  std::vector<int> more_sizes_px = {64, 128, 2048};
   std::vector<int> radii = {1, 2, 3, 7};
   std::vector<std::string> targets;  ///< SIMD targets of the adaptive filter, best first
 };
