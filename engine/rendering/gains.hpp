@@ -35,7 +35,8 @@ struct StudyGains {
 /// force at that load the same.
 ///
 /// Flat fields do not count. Equalised, they get gain 0; so do all fields if all are flat.
-/// Thread-safe. Memory: four bytes a pixel of all fields together.
+/// Thread-safe. Memory: eight bytes a pixel of all fields together (`surface`: four), and the
+/// samples of one field for each core.
 /// \throws std::invalid_argument if there is no field, a field has samples that are not finite, the
 ///   budget is not a finite number > 0, an explicit gain is not a finite number >= 0, or a field is
 ///   of another model than the options'

@@ -5,6 +5,7 @@
 
 #include "core/plane.hpp"
 #include "core/vec.hpp"
+#include "engine/kernels/strips.hpp"
 #include "engine/rendering/field_measures.hpp"
 #include "engine/rendering/field_statistics.hpp"
 #include "engine/rendering/gains.hpp"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <span>
 
 namespace touchtrial::engine {
@@ -40,6 +42,15 @@ struct ModelParts {
 /// \param field  with samples
 /// \param n_per_grey  newtons of one grey level per pixel
 [[nodiscard]] FieldStatistics lateral_statistics(SampledView field, double n_per_grey);
+
+/// The `jobs` of in_parallel for measuring fields: all cores, but one where a field is so large
+/// that all cores work on it alone; the samples of many large fields would take too much memory.
+[[nodiscard]] inline int jobs_for(std::span<const FieldView> fields) noexcept {
+  const auto is_large = [](const FieldView& field) {
+    return static_cast<std::int64_t>(field.heights.size()) >= kThreadsFromPixels;
+  };
+  return std::ranges::any_of(fields, is_large) ? 1 : 0;
+}
 
 /// Checks a field for field_statistics by its two rms values.
 /// \throws std::invalid_argument if one of them is not finite

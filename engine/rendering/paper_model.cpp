@@ -273,7 +273,7 @@ ChannelGains channel_gains(const Channel& channel, std::optional<double> explici
 StudyGains gains_of_paper(std::span<const FieldView> fields, const RenderingOptions& options) {
   Channel along(fields.size());
   Channel across(fields.size());
-  in_parallel(0, fields.size(), [&](std::size_t i) {
+  in_parallel(jobs_for(fields), fields.size(), [&](std::size_t i) {
     const SampledField sampled = sampled_paper(fields[i]);
     const auto measure = [&](Channel& channel, double (*rms)(SampledView) noexcept,
                              std::vector<float> (*stiffness)(SampledView, double)) {

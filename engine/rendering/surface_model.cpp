@@ -194,7 +194,7 @@ class Surfaces {
   Surfaces(std::span<const FieldView> fields, const RenderingOptions& options)
       : fields_(fields), wall_n_per_mm_(options.stiffness_n_per_mm) {
     rms_.resize(fields.size());
-    in_parallel(0, fields.size(),
+    in_parallel(jobs_for(fields), fields.size(),
                 [&](std::size_t i) { rms_[i] = tangential_rms(relief_of(fields[i]).view()); });
     factor_ = equalising_factors(rms_, options.equalise);
   }
@@ -224,7 +224,7 @@ class Surfaces {
   template <typename StiffnessOf>
   [[nodiscard]] double pooled(StiffnessOf stiffness_of) const {
     std::vector<std::vector<float>> pools(fields_.size());
-    in_parallel(0, fields_.size(), [&](std::size_t i) {
+    in_parallel(jobs_for(fields_), fields_.size(), [&](std::size_t i) {
       if (rms_[i] > 0.0) pools[i] = stiffness_of(relief_of(fields_[i]).view(), factor_[i]);
     });
     return typical_stiffness(pools);
