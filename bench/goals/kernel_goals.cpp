@@ -141,10 +141,9 @@ std::vector<GoalResult> time_to_error(const Effort& effort) {
   const std::optional<CoursePoint> close = admm_until(image, kTvGaborError);
   if (!close) return {result};
   const Case peer = fixed_point_case(kUsualSize_px, kFixedPointSteps);
-  const std::vector<TimeBeside> times =
-      time_in_turns({admm_case(kUsualSize_px, close->steps), peer,
-                     transforms_case(kUsualSize_px, close->steps)},
-                    effort);
+  const std::vector<TimeBeside> times = time_in_turns(
+      {admm_case(kUsualSize_px, close->steps), peer, transforms_case(kUsualSize_px, close->steps)},
+      effort);
   set_peer(peer, times[1], result);
   result.peer = fmt::format("{}, to {:.0e}", peer.who, error_of(peer));
   result.ours_us = times[0].us;
