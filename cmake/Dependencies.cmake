@@ -23,6 +23,7 @@ pkg_check_modules(fftw3f REQUIRED IMPORTED_TARGET GLOBAL fftw3f)
 pkg_check_modules(nlopt REQUIRED IMPORTED_TARGET GLOBAL nlopt)
 pkg_check_modules(libsodium REQUIRED IMPORTED_TARGET GLOBAL libsodium)
 pkg_check_modules(nettle REQUIRED IMPORTED_TARGET GLOBAL nettle)
+pkg_check_modules(rapidjson REQUIRED RapidJSON)  # headers alone
 
 # A newer libpqxx may bring a CMake package; pkg-config finds every version.
 pkg_check_modules(libpqxx REQUIRED IMPORTED_TARGET GLOBAL libpqxx libpq)
