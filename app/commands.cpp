@@ -42,6 +42,46 @@ std::pair<int, int> size_of(const std::string& text) {
 
 }  // namespace
 
+void add_commands(CLI::App& program, Action& action) {
+  add_extract_command(program, action);
+  add_evaluate_command(program, action);
+  add_paper_command(program, action);
+  add_stimuli_command(program, action);
+  add_new_command(program, action);
+  add_examples_commands(program, action);
+  add_preview_command(program, action);
+  add_prepare_command(program, action);
+  add_prereg_command(program, action);
+  add_simulate_command(program, action);
+  add_plan_command(program, action);
+  add_key_command(program, action);
+  add_run_command(program, action);
+  add_consent_command(program, action);
+  add_status_command(program, action);
+  add_people_commands(program, action);
+  add_study_end_commands(program, action);
+  add_sync_command(program, action);
+  add_verify_command(program, action);
+  add_report_command(program, action);
+  add_export_command(program, action);
+  add_fit_command(program, action);
+  add_merge_command(program, action);
+  add_power_command(program, action);
+  add_procedure_command(program, action);
+  add_device_command(program, action);
+  add_screen_command(program, action);
+  add_reference_command(program, action);
+}
+
+int run_command(const std::vector<std::string>& words) {
+  CLI::App program("", "touchtrial");
+  Action action;
+  add_commands(program, action);
+  program.parse(
+      std::vector<std::string>(words.rbegin(), words.rend()));  // the parser takes the last first
+  return action();
+}
+
 void add_study_argument(CLI::App& command, std::filesystem::path& study) {
   command.add_option("STUDY", study, "Study file")->required();
 }

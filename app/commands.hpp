@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -25,6 +26,14 @@ using Action = std::function<int()>;
 /// The exit code of data that fail verification.
 inline constexpr int kNotVerified = 3;
 
+/// All commands of the program.
+void add_commands(CLI::App& program, Action& action);
+/// Runs one command inside another.
+/// \param words  as they are typed after the program's name
+/// \return the exit code
+/// \throws what the command throws, or CLI::ParseError
+int run_command(const std::vector<std::string>& words);
+
 void add_extract_command(CLI::App& program, Action& action);
 void add_evaluate_command(CLI::App& program, Action& action);
 void add_paper_command(CLI::App& program, Action& action);
@@ -33,6 +42,8 @@ void add_stimuli_command(CLI::App& program, Action& action);
 void add_stimuli_sheet_command(CLI::App& stimuli, Action& action);
 void add_stimuli_measure_command(CLI::App& stimuli, Action& action);
 void add_new_command(CLI::App& program, Action& action);
+/// examples, demo.
+void add_examples_commands(CLI::App& program, Action& action);
 void add_preview_command(CLI::App& program, Action& action);
 void add_prepare_command(CLI::App& program, Action& action);
 void add_prereg_command(CLI::App& program, Action& action);
@@ -58,6 +69,8 @@ void add_power_command(CLI::App& program, Action& action);
 void add_procedure_command(CLI::App& program, Action& action);
 void add_device_command(CLI::App& program, Action& action);
 void add_screen_command(CLI::App& program, Action& action);
+/// reference, which the help does not show.
+void add_reference_command(CLI::App& program, Action& action);
 /// The commands of "device".
 void add_device_test_command(CLI::App& device, Action& action);
 void add_device_fit_command(CLI::App& device, Action& action);

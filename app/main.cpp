@@ -32,35 +32,6 @@ constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
 constexpr int kClosedPipe = 128 + SIGPIPE;  // as a shell says it of a program that the signal ends
 
-void add_commands(CLI::App& program, Action& action) {
-  add_extract_command(program, action);
-  add_evaluate_command(program, action);
-  add_paper_command(program, action);
-  add_stimuli_command(program, action);
-  add_new_command(program, action);
-  add_preview_command(program, action);
-  add_prepare_command(program, action);
-  add_prereg_command(program, action);
-  add_simulate_command(program, action);
-  add_plan_command(program, action);
-  add_key_command(program, action);
-  add_run_command(program, action);
-  add_consent_command(program, action);
-  add_status_command(program, action);
-  add_people_commands(program, action);
-  add_study_end_commands(program, action);
-  add_sync_command(program, action);
-  add_verify_command(program, action);
-  add_report_command(program, action);
-  add_export_command(program, action);
-  add_fit_command(program, action);
-  add_merge_command(program, action);
-  add_power_command(program, action);
-  add_procedure_command(program, action);
-  add_device_command(program, action);
-  add_screen_command(program, action);
-}
-
 int complain(int code, const std::string& message) noexcept {
   std::fprintf(stderr, "touchtrial: %s\n", one_line(message).c_str());
   return code;

@@ -1,5 +1,6 @@
 /// \file The fast TV-Gabor solver: over-relaxed ADMM on w = grad u = grad f - grad v, with a little
 /// momentum. Source: docs/method.md, "TV-Gabor".
+/// Private to engine/tv_gabor.
 #pragma once
 
 #include "core/plane.hpp"

@@ -1,6 +1,6 @@
 /// \file The course of a TV-Gabor decomposition: steps, checks, and the schedule of the penalty; and
 /// the gap that certifies how far a result is from the optimum.
-/// Source: docs/method.md, "TV-Gabor".
+/// Source: docs/method.md, "TV-Gabor". Private to engine/tv_gabor.
 #pragma once
 
 #include "core/plane.hpp"

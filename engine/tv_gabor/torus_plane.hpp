@@ -1,5 +1,6 @@
 /// \file A plane on TV-Gabor's torus that is filtered again and again, and passes over its rows on
 /// several threads. Source: docs/method.md, "TV-Gabor".
+/// Private to engine/tv_gabor.
 #pragma once
 
 #include "core/parallel.hpp"

@@ -1,0 +1,90 @@
+// examples: the ready studies in a folder of one's own; demo: simulated participants through two of
+// them.
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "app/shipped_files.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace touchtrial::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DemoArguments {
+  fs::path folder = "touchtrial-demo";
+  int participants = 20;
+};
+
+int write_examples(const fs::path& folder) {
+  copy_examples(folder);
+  print(fmt::format(
+      "studies  {}\npictures {}\n\nGo there, and try one:\n\n  cd {}\n  touchtrial preview "
+      "config/classification.json\n  touchtrial prepare config/classification.json\n  touchtrial "
+      "simulate config/classification.json --participants 20 --db rehearsal.db\n",
+      (folder / "config").string(), (folder / "stimuli").string(), shell_word(folder.string())));
+  return 0;
+}
+
+/// Shows a command as one would type it, and runs it.
+/// \throws what the command throws
+int show_and_run(const std::vector<std::string>& words) {
+  std::string line = "\n$ touchtrial";
+  for (const std::string& word : words) line += " " + shell_word(word);
+  print(line + "\n");
+  return run_command(words);
+}
+
+int run_demo(const DemoArguments& arguments) {
+  copy_examples(arguments.folder);
+  for (const std::string name : {"classification", "comparison"}) {
+    const std::string study = (arguments.folder / "config" / (name + ".json")).string();
+    const std::string db = (arguments.folder / (name + ".db")).string();
+    const std::string report = (arguments.folder / (name + "-report")).string();
+    const std::vector<std::vector<std::string>> steps = {
+        {"simulate", study, "--participants", std::to_string(arguments.participants), "--seed", "1",
+         "--db", db},
+        {"verify", db},
+        {"report", db},
+        {"report", db, "--out", report}};
+    for (const std::vector<std::string>& step : steps) {
+      if (const int code = show_and_run(step); code != 0) return code;
+    }
+  }
+  print(fmt::format(
+      "\nDatabases and reports (report.html) are in {}; go on with\n\n  touchtrial export {} "
+      "--format csv --out {}\n",
+      arguments.folder.string(), shell_word((arguments.folder / "classification.db").string()),
+      shell_word((arguments.folder / "csv").string())));
+  return 0;
+}
+
+}  // namespace
+
+void add_examples_commands(CLI::App& program, Action& action) {
+  auto folder = std::make_shared<fs::path>("touchtrial-examples");
+  CLI::App* examples = program.add_subcommand(
+      "examples",
+      "Copy the ready studies, with their pictures and subject files, into a folder of your own");
+  examples->add_option("FOLDER", *folder, "New folder")->capture_default_str();
+  examples->callback([=, &action] { action = [=] { return write_examples(*folder); }; });
+
+  auto arguments = std::make_shared<DemoArguments>();
+  CLI::App* demo = program.add_subcommand(
+      "demo",
+      "Run simulated participants through both experiments, and print and write their reports");
+  demo->add_option("FOLDER", arguments->folder, "New folder for studies, databases and reports")
+      ->capture_default_str();
+  demo->add_option("--participants", arguments->participants,
+                   "Simulated participants of each experiment")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  demo->callback([=, &action] { action = [=] { return run_demo(*arguments); }; });
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""install_test.py BUILD SOURCE: installs a build, moves the tree elsewhere, and uses it as strangers do.
+
+The moved program runs the demo, the C++ example is built against the moved library, and completions and
+manual pages are asked. Nothing of the installed tree may name the source or the build folder.
+"""
+import os, pathlib, shutil, subprocess, sys, tempfile
+
+BUILD, SOURCE = map(pathlib.Path, sys.argv[1:3])
+
+
+def run(*command, **options):
+    done = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}: exit code {done.returncode}\n{done.stdout.decode()[-3000:]}")
+    return done.stdout.decode()
+
+
+def completed(script, *words):
+    """What bash offers for the last of the words."""
+    answer = run("bash", "-c", 'source "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _touchtrial; '
+                 'echo "${COMPREPLY[@]}"', script, *words)
+    return answer.split()
+
+
+def check(name, is_so):
+    print(("ok      " if is_so else "NOT OK  ") + name)
+    if not is_so:
+        sys.exit(1)
+
+
+def main(work):
+    run("cmake", "--install", BUILD, "--prefix", work / "first")
+    tree = work / "elsewhere" / "tree"
+    tree.parent.mkdir()
+    shutil.move(work / "first", tree)
+    program = tree / "bin" / "touchtrial"
+    home = work / "home"
+    home.mkdir()
+    os.environ.update(HOME=str(home), XDG_CACHE_HOME=str(home / ".cache"))
+
+    traces = [path.relative_to(tree) for path in tree.rglob("*") if path.is_file()
+              and any(os.fsencode(folder) + b"/" in path.read_bytes() for folder in (BUILD, SOURCE, work / "first"))]
+    check(f"no installed file names the source or the build folder: {[str(path) for path in traces]}", not traces)
+
+    demo = run(program, "demo", work / "demo", "--participants", "2", cwd=work)
+    check("demo ends with both reports",
+          all((work / "demo" / f"{study}-report" / "report.html").exists() for study in ("classification", "comparison"))
+          and "Proportion of right answers, mean over" in demo)
+    again = subprocess.run([program, "demo", work / "demo"], capture_output=True, text=True)
+    check("demo refuses a folder that is not empty", again.returncode == 2 and "exists already" in again.stderr)
+
+    run(program, "examples", work / "mine")
+    studies = sorted((work / "mine" / "config").glob("*.json"))
+    ready = [study for study in studies if study.name != "devices.json"]
+    check("examples copies every ready study",
+          [study.name for study in studies] == sorted(path.name for path in (SOURCE / "config").glob("*.json")))
+    for study in ready:
+        run(program, "prepare", study)
+    packs = list((work / "mine" / "config").glob("*.pack"))
+    check(f"all {len(ready)} of them can be prepared", len(packs) == len(ready) > 5)
+
+    run("cmake", "-S", tree / "share/doc/libtouchtrial-dev/examples", "-B", work / "example",
+        f"-DCMAKE_PREFIX_PATH={tree}", "-DCMAKE_BUILD_TYPE=Release")
+    run("cmake", "--build", work / "example")
+    picture = work / "mine" / "stimuli" / "bark.png"
+    lines = run(work / "example" / "example", picture, work / "example.png").splitlines()
+    run(program, "extract", picture, "--precision", "double", "-o", work / "program.png")
+    check("the C++ example has the program's texture, byte for byte",
+          (work / "example.png").read_bytes() == (work / "program.png").read_bytes())
+    check("and forces of a wall of 0.4 N/mm at 1 mm",
+          len(lines) == 21 and all(0.0 < float(line.split(",")[4]) < 3.3 for line in lines[1:]))
+
+    headers = [path.relative_to(tree / "include/touchtrial") for path in (tree / "include/touchtrial").rglob("*.hpp")]
+    (work / "headers.cpp").write_text("".join(f'#include "{path}"\n' for path in sorted(headers)))
+    run("c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Werror", "-I", tree / "include/touchtrial", work / "headers.cpp")
+    third = [line for path in headers for line in (tree / "include/touchtrial" / path).read_text().splitlines()
+             if line.startswith("#include <") and ("opencv" in line or "hwy" in line or "fftw" in line)]
+    check(f"all {len(headers)} headers compile by themselves, and show no library: {third}", not third)
+
+    script = tree / "share/bash-completion/completions/touchtrial"
+    check("completion knows commands", completed(script, "touchtrial", "device", "acc") == ["accept"])
+    check("completion knows options", "--precision" in completed(script, "touchtrial", "extract", "--pre"))
+    check("completion knows values",
+          completed(script, "touchtrial", "extract", "--precision", "") == ["float", "double"])
+    check("completion leaves files to the shell", completed(script, "touchtrial", "extract", "-o", "") == [])
+    commands = [line.split()[0] for line in run(program, "--help").partition("Subcommands:")[2].splitlines()
+                if line.startswith("  ") and not line.startswith("   ")]
+    pages = {path.name for path in (tree / "share/man/man1").iterdir()}
+    missing = [name for name in commands if f"touchtrial-{name}.1.gz" not in pages]
+    check(f"every command of {len(commands)} has its manual page: {missing}", len(commands) > 25 and not missing)
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as folder:
+        main(pathlib.Path(folder))
