@@ -34,6 +34,7 @@
 
 #include <benchmark/benchmark.h>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -77,8 +78,9 @@ constexpr double kReportRatio = 14.0;
 constexpr int kStartsPerRound = 11;
 
 struct Start {
-  double us = 0.0;      ///< processor time, including the kernel's
-  double faults = 0.0;  ///< minor page faults
+  double us = 0.0;       ///< processor time, including the kernel's
+  double faults = 0.0;   ///< minor page faults
+  double peak_kb = 0.0;  ///< peak resident memory
 };
 
 Start run_once(const Command& command) {
@@ -100,7 +102,8 @@ Start run_once(const Command& command) {
   const auto us = [](const timeval& time) {
     return 1e6 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec);
   };
-  return {us(usage.ru_utime) + us(usage.ru_stime), static_cast<double>(usage.ru_minflt)};
+  return {us(usage.ru_utime) + us(usage.ru_stime), static_cast<double>(usage.ru_minflt),
+          static_cast<double>(usage.ru_maxrss)};
 }
 
 /// Starts the command and the empty program by turns.
@@ -127,20 +130,61 @@ GoalResult beside_empty(std::string name, const Command& command, double target,
   return result;
 }
 
-GoalResult libraries_loaded() {
+/// The shared libraries that the dynamic linker loads for the program.
+std::vector<fs::path> libraries_loaded() {
   const std::string ask = "LD_TRACE_LOADED_OBJECTS=1 '" TOUCHTRIAL_PROGRAM "'";
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> list(popen(ask.c_str(), "r"), pclose);
-  GoalResult result;
-  result.goal = "shared libraries of a start";
-  result.count = 0;
-  result.count_unit = "libraries";
-  result.limit = Limit::count;
-  result.target = kMostLibraries;
-  char line[4096];
-  while (list && std::fgets(line, sizeof line, list.get()) != nullptr) {
-    if (std::string(line).find("=>") != std::string::npos) ++result.count;
+  std::vector<fs::path> files;
+  char buffer[4096];
+  while (list && std::fgets(buffer, sizeof buffer, list.get()) != nullptr) {
+    const std::string line = buffer;
+    const std::size_t arrow = line.find("=> ");
+    if (arrow != std::string::npos)
+      files.emplace_back(line.substr(arrow + 3, line.rfind(" (") - arrow - 3));
   }
+  return files;
+}
+
+GoalResult counted(std::string goal, double count, std::string unit, double target = kNotTaken) {
+  GoalResult result;
+  result.goal = std::move(goal);
+  result.count = count;
+  result.count_unit = std::move(unit);
+  result.limit = Limit::count;
+  result.target = target;
   return result;
+}
+
+double bytes_below(const fs::path& folder) {
+  double bytes = 0.0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
+  }
+  return bytes;
+}
+
+/// The program as its package installs it.
+std::vector<GoalResult> measure_installed(int rounds) {
+  const ScratchFolder folder;
+  run_once({TOUCHTRIAL_CMAKE, "--install", TOUCHTRIAL_BUILD_DIR, "--component", "program",
+            "--strip", "--prefix", folder.path().string()});
+  const std::string program = (folder.path() / "bin" / "touchtrial").string();
+  double with_libraries = bytes_below(folder.path());
+  const double alone = with_libraries;
+  for (const fs::path& library : libraries_loaded())
+    with_libraries += static_cast<double>(fs::file_size(library));
+  std::vector<double> peaks_kb;
+  for (int i = 0; i < rounds * kStartsPerRound; ++i)
+    peaks_kb.push_back(run_once({program, "--version"}).peak_kb);
+  const double empty_kb = run_once({TOUCHTRIAL_EMPTY_PROGRAM}).peak_kb;
+  GoalResult memory = counted("memory of a start, installed", median(peaks_kb), "kB");
+  memory.peer = fmt::format("empty C++ program, {:.0f} kB", empty_kb);
+  return {
+      beside_empty("start, installed, --version", {program, "--version"}, kStartRatio, rounds),
+      memory,
+      counted("installed: program, studies, pictures, manual", std::round(alone / 1e4) / 1e2, "MB"),
+      counted("installed, with the libraries that it loads", std::round(with_libraries / 1e4) / 1e2,
+              "MB")};
 }
 
 std::vector<GoalResult> measure_starts(int rounds) {
@@ -150,7 +194,8 @@ std::vector<GoalResult> measure_starts(int rounds) {
   run_once({program, "simulate", TOUCHTRIAL_SOURCE_DIR "/config/classification.json",
             "--participants", "20", "--seed", "1", "--db", database});
   return {beside_empty("start, --version", {program, "--version"}, kStartRatio, rounds),
-          libraries_loaded(),
+          counted("shared libraries of a start", static_cast<double>(libraries_loaded().size()),
+                  "libraries", kMostLibraries),
           beside_empty("report of 20 participants", {program, "report", database}, kReportRatio,
                        rounds)};
 }
@@ -243,18 +288,13 @@ std::vector<GoalResult> results_of(const StudyTimes& times) {
   time.ours_us = times.one_thread_us;
   time.limit = Limit::time_us;
   time.target = kStudyTarget_us;
-  GoalResult bytes;
-  bytes.goal = "database, a trial of 10 s";
-  bytes.count = std::round(times.bytes_a_trial);
-  bytes.count_unit = "bytes";
-  bytes.limit = Limit::count;
-  bytes.target = kTrialTarget_bytes;
   return {time,
           compared("the same study against its 5 million ticks", times.one_thread_us,
                    "hand and force alone", times.bare_ticks_us, kBareTicksRatio),
           compared("the same study, two threads", times.two_threads_us, "one thread",
                    times.one_thread_us, kTwoThreadsRatio),
-          bytes};
+          counted("database, a trial of 10 s", std::round(times.bytes_a_trial), "bytes",
+                  kTrialTarget_bytes)};
 }
 
 std::vector<GoalResult> measure_study(int rounds) {
@@ -373,7 +413,8 @@ std::vector<GoalResult> measure_acknowledgement(int rounds) {
 std::vector<Goal> program_goals() {
   return {[](const Effort& effort) { return measure_acknowledgement(effort.study_rounds); },
           [](const Effort& effort) { return measure_study(effort.study_rounds); },
-          [](const Effort& effort) { return measure_starts(effort.study_rounds); }};
+          [](const Effort& effort) { return measure_starts(effort.study_rounds); },
+          [](const Effort& effort) { return measure_installed(effort.study_rounds); }};
 }
 
 }  // namespace touchtrial::bench
