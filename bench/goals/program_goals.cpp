@@ -78,9 +78,8 @@ constexpr double kReportRatio = 14.0;
 constexpr int kStartsPerRound = 11;
 
 struct Start {
-  double us = 0.0;       ///< processor time, including the kernel's
-  double faults = 0.0;   ///< minor page faults
-  double peak_kb = 0.0;  ///< peak resident memory
+  double us = 0.0;      ///< processor time, including the kernel's
+  double faults = 0.0;  ///< minor page faults
 };
 
 Start run_once(const Command& command) {
@@ -102,8 +101,7 @@ Start run_once(const Command& command) {
   const auto us = [](const timeval& time) {
     return 1e6 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec);
   };
-  return {us(usage.ru_utime) + us(usage.ru_stime), static_cast<double>(usage.ru_minflt),
-          static_cast<double>(usage.ru_maxrss)};
+  return {us(usage.ru_utime) + us(usage.ru_stime), static_cast<double>(usage.ru_minflt)};
 }
 
 /// Starts the command and the empty program by turns.
@@ -163,6 +161,18 @@ double bytes_below(const fs::path& folder) {
   return bytes;
 }
 
+/// The peak resident memory of a start. GNU time measures it, because what this process spawns
+/// itself begins with this process's memory.
+double peak_kb(const std::string& program) {
+  const std::string ask = "/usr/bin/time -f %M '" + program + "' --version 2>&1 >/dev/null";
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> answer(popen(ask.c_str(), "r"), pclose);
+  double kb = 0.0;
+  if (!answer || std::fscanf(answer.get(), "%lf", &kb) != 1) {
+    throw FileError("/usr/bin/time: does not run; apt-get install time");
+  }
+  return kb;
+}
+
 /// The program as its package installs it.
 std::vector<GoalResult> measure_installed(int rounds) {
   const ScratchFolder folder;
@@ -173,12 +183,8 @@ std::vector<GoalResult> measure_installed(int rounds) {
   const double alone = with_libraries;
   for (const fs::path& library : libraries_loaded())
     with_libraries += static_cast<double>(fs::file_size(library));
-  std::vector<double> peaks_kb;
-  for (int i = 0; i < rounds * kStartsPerRound; ++i)
-    peaks_kb.push_back(run_once({program, "--version"}).peak_kb);
-  const double empty_kb = run_once({TOUCHTRIAL_EMPTY_PROGRAM}).peak_kb;
-  GoalResult memory = counted("memory of a start, installed", median(peaks_kb), "kB");
-  memory.peer = fmt::format("empty C++ program, {:.0f} kB", empty_kb);
+  GoalResult memory = counted("memory of a start, installed", peak_kb(program), "kB");
+  memory.peer = fmt::format("empty C++ program, {:.0f} kB", peak_kb(TOUCHTRIAL_EMPTY_PROGRAM));
   return {
       beside_empty("start, installed, --version", {program, "--version"}, kStartRatio, rounds),
       memory,
