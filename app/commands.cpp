@@ -5,6 +5,7 @@
 #include "app/study_inputs.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
+#include "protocols/design/protocol.hpp"
 
 #include <algorithm>
 #include <string_view>
@@ -80,6 +81,14 @@ int run_command(const std::vector<std::string>& words) {
   program.parse(
       std::vector<std::string>(words.rbegin(), words.rend()));  // the parser takes the last first
   return action();
+}
+
+std::vector<std::string> protocols_of_new_studies() {
+  std::vector<std::string> names;
+  for (const design::Protocol* one : design::protocols()) {
+    if (one->section().empty()) names.emplace_back(one->name());
+  }
+  return names;
 }
 
 void add_study_argument(CLI::App& command, std::filesystem::path& study) {

@@ -92,12 +92,6 @@ CLI::Validator number_within(Number low, Number high) {
       fmt::format("must be a number from {} to {}", low, high), "NUMBER");
 }
 
-std::vector<std::string> names_of_protocols() {
-  std::vector<std::string> names;
-  for (const design::Protocol* one : design::protocols()) names.emplace_back(one->name());
-  return names;
-}
-
 int methods_of(const Answers& answers) {
   return design::find_protocol(answers.at("--protocol"))->least_methods();
 }
@@ -130,7 +124,7 @@ std::vector<NewQuestion> new_questions() {
   const auto always = [](std::string answer) {
     return [answer = std::move(answer)](const Answers&) { return answer; };
   };
-  const std::vector<std::string> protocols = names_of_protocols();
+  const std::vector<std::string> protocols = protocols_of_new_studies();
   const std::vector<std::string> languages(design::language_codes().begin(),
                                            design::language_codes().end());
   const auto is_folder = [](const std::string& text) {
@@ -141,8 +135,10 @@ std::vector<NewQuestion> new_questions() {
       {"--name", "Name of the study",
        allowed_if(is_plain_name, "must have 1 to 64 of the characters 0-9 A-Z a-z _ -", "NAME"),
        always(kUsualName)},
-      {"--protocol", "Protocol: " + listed(protocols, " or "), CLI::IsMember(protocols),
-       always(protocols.front())},
+      {"--protocol",
+       "Protocol: " + listed(protocols, " or ") +
+           "; for thresholds, copy a ready study with touchtrial examples",
+       CLI::IsMember(protocols), always(protocols.front())},
       {"--pictures", "Folder of your photographs; empty: five textures of the program's own",
        allowed_if(is_folder, "is no folder", "FOLDER"), always("")},
       {"--people", "Number of participants", number_within(2, 100'000), always("20")},

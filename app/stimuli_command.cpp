@@ -44,12 +44,6 @@ const std::map<std::string, stimuli::LevelEqualising> kEqualisings = {
     {"rms", stimuli::LevelEqualising::rms},
     {"both", stimuli::LevelEqualising::both}};
 
-std::vector<std::string> protocol_names() {
-  std::vector<std::string> names;
-  for (const design::Protocol* one : design::protocols()) names.emplace_back(one->name());
-  return names;
-}
-
 struct ImportArguments {
   stimuli::ImportOptions options;
   std::string pixels_per_mm;
@@ -168,7 +162,7 @@ void add_import_command(CLI::App& stimuli, Action& action) {
       ->check(CLI::IsMember({"none", "mean", "rms", "both"}))
       ->capture_default_str();
   command->add_option("--protocol", arguments->protocol, "Protocol of the study")
-      ->check(CLI::IsMember(protocol_names()))
+      ->check(CLI::IsMember(protocols_of_new_studies()))
       ->capture_default_str();
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return import_with(*arguments); }; });
