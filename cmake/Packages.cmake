@@ -9,7 +9,10 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGE_DIRECTORY "${CMAKE_BINARY_DIR}/packages")
 set(CPACK_PACKAGE_NAME touchtrial)
-set(CPACK_PACKAGE_CONTACT "Touchtrial developers <touchtrial@localhost>")
+set(TOUCHTRIAL_MAINTAINER "Touchtrial developers <touchtrial@users.noreply.github.com>" CACHE STRING
+    "Name and address in the packages' fields")
+set(CPACK_PACKAGE_CONTACT "${TOUCHTRIAL_MAINTAINER}")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # would stand before each package's own
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS OFF)
