@@ -63,6 +63,7 @@ class Results {
 struct ResultTable {
   std::string file;  ///< the file's name
   DataTable table;
+  bool has_words = false;  ///< of people: for its reader alone
 };
 
 /// The part of a protocol that analyses outcomes. Stateless and thread-safe.

@@ -4,6 +4,7 @@
 #include "protocols/store/damage.hpp"
 #include "protocols/store/opened_parts.hpp"
 #include "protocols/store/payload_json.hpp"
+#include "protocols/store/sealing.hpp"
 
 #include <exception>
 #include <map>
@@ -210,6 +211,18 @@ void require_sealed_ends(const store::StudyStore& store, const SessionKeys& keys
                                             "it was made anew without the key; "
                                             "restore a backup of the database");
                   });
+}
+
+store::Trace open_trace(const std::optional<store::SealedTrace>& sealed,
+                        const store::TrialRow& trial, const SessionKeys& keys) {
+  const std::optional<SecretKey>& own = keys.at(trial.session).participant;
+  if (sealed && own) {
+    if (auto trace = store::unsealed_trace(*sealed, *own)) return *std::move(trace);
+  }
+  throw VerificationError(fmt::format(
+      "session {}, trial {}: its trace is missing or does not open; run `touchtrial verify` and "
+      "restore the database from a backup",
+      trial.session, trial.trial));
 }
 
 std::map<int, design::Schedule> open_schedules(const store::StudyStore& store,

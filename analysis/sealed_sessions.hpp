@@ -5,6 +5,7 @@
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/person_texts.hpp"
 #include "protocols/store/study_store.hpp"
+#include "protocols/store/trace.hpp"
 
 #include <map>
 #include <optional>
@@ -63,6 +64,12 @@ using Measures = std::map<std::pair<int, int>, store::TrialMeasures>;
 /// sealed with it. Somebody without the key can rebuild a chain, but cannot seal its end.
 /// \throws VerificationError, naming the session, if a sealed end belongs to another chain
 void require_sealed_ends(const store::StudyStore& store, const SessionKeys& keys);
+
+/// Opens a trial's trace.
+/// \param sealed  StudyStore::sealed_trace of the trial
+/// \throws VerificationError, naming the trial, if the trace is missing or does not open
+[[nodiscard]] store::Trace open_trace(const std::optional<store::SealedTrace>& sealed,
+                                      const store::TrialRow& trial, const SessionKeys& keys);
 
 /// Schedules and layouts of all sessions that are not erased, by session. Restarted blocks, in
 /// their new order, follow the schedule with which the session began.

@@ -20,8 +20,6 @@
 #include <memory>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 namespace touchtrial::app {
 namespace {
 
@@ -128,21 +126,14 @@ int report_question(const store::StudyStore& store, const ReportArguments& argum
   return 0;
 }
 
-/// With the levels of the stimuli, if the study's pack is in reach. Most of the time of a small
-/// study's report would go into them: the terminal only says where they are.
+/// With the levels of the stimuli. Most of the time of a small study's report would go into them:
+/// the terminal only says where they are.
 std::unique_ptr<const analysis::Results> with_levels_if_any(
     std::unique_ptr<const analysis::Results> results, const design::StudyKey& key,
     const ReportArguments& arguments) {
+  if (!arguments.folder.empty() || arguments.json) return with_levels(std::move(results), key);
   if (!is_there(key.pack_folder / "pack.json")) return results;
-  if (arguments.folder.empty() && !arguments.json) {
-    return planning::with_levels_elsewhere(std::move(results));
-  }
-  try {
-    return planning::with_levels(std::move(results), key.study, levels_of_pack(key));
-  } catch (const FileError& error) {
-    spdlog::warn("without the levels of the stimuli: {}", error.what());
-  }
-  return results;
+  return planning::with_levels_elsewhere(std::move(results));
 }
 
 int report(const ReportArguments& arguments) {

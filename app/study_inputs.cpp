@@ -1,5 +1,6 @@
 #include "app/study_inputs.hpp"
 
+#include "analysis/planning/level_report.hpp"
 #include "analysis/sealed_sessions.hpp"
 #include "app/console.hpp"
 #include "app/texts/study_texts.hpp"
@@ -23,6 +24,7 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -315,6 +317,18 @@ simulation::StimulusLevels levels_of_pack(const design::StudyCodes& key) {
 simulation::StimulusLevels levels_as_prepared(const design::StudyKey& key) {
   return simulation::kept_levels_of(key, engine::Pack(key.pack_folder),
                                     simulation::level_devices(key.study), cores(), notes_folder());
+}
+
+std::unique_ptr<const analysis::Results> with_levels(
+    std::unique_ptr<const analysis::Results> results, const design::StudyKey& key) {
+  if (!is_there(key.pack_folder / "pack.json")) return results;
+  try {
+    simulation::StimulusLevels levels = levels_of_pack(key);
+    return planning::with_levels(std::move(results), key.study, std::move(levels));
+  } catch (const FileError& error) {
+    spdlog::warn("without the levels of the stimuli: {}", error.what());
+  }
+  return results;
 }
 
 simulation::SubjectModel subject_for(const std::filesystem::path& path, const design::Study& study,

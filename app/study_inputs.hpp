@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/outcomes.hpp"
+#include "analysis/results.hpp"
 #include "app/heads.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/design/study_key.hpp"
@@ -11,6 +12,7 @@
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -125,6 +127,12 @@ void prepare_simulated_pack(const design::StudyKey& key, bool wait = false);
 
 /// The same for a pack that was just prepared: looked up if they were computed before.
 [[nodiscard]] simulation::StimulusLevels levels_as_prepared(const design::StudyKey& key);
+
+/// Results with those levels, if the key's pack is there; a warning says why they could not be
+/// computed.
+/// \throws StudyError as levels_of_pack
+[[nodiscard]] std::unique_ptr<const analysis::Results> with_levels(
+    std::unique_ptr<const analysis::Results> results, const design::StudyKey& key);
 
 /// Refuses to overwrite another key, of which there may be no copy. The same key may stay when its
 /// database was removed.

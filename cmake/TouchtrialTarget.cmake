@@ -10,25 +10,32 @@ set(TOUCHTRIAL_TEST_BATCH 16)
 # Only a test that hangs takes so long: on a busy machine all of them may wait for their turn.
 set(TOUCHTRIAL_TEST_TIMEOUT_S 1800)
 
-# touchtrial_library(NAME [UNHURRIED] [EXCEPT folders...] [PUBLIC targets...] [PRIVATE libraries...])
-# One static library a folder, of every .cpp file in and below it, except those of folders that are
-# libraries of their own. PUBLIC: targets of ours, along the arrows of docs/architecture.md; PRIVATE:
+# touchtrial_library(NAME [UNHURRIED] [ONLY files...] [EXCEPT folders and files...] [PUBLIC targets...]
+#                    [PRIVATE libraries...])
+# One static library a folder, of every .cpp file in and below it, except those that are in libraries
+# of their own. PUBLIC: targets of ours, along the arrows of docs/architecture.md; PRIVATE:
 # third-party libraries, whose headers no public header includes. UNHURRIED: nothing in it is worth
 # optimising. With TOUCHTRIAL_UNITY a few files that lie beside each other are compiled at a time:
-# names without linkage must differ among them.
+# names without linkage must differ among them. Position-independent for the Python module, which is
+# a shared library; hidden symbols keep the program's calls and data as direct as without.
 function(touchtrial_library name)
-  cmake_parse_arguments(ARG "UNHURRIED" "" "EXCEPT;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "UNHURRIED" "" "ONLY;EXCEPT;PUBLIC;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
   foreach(folder ${ARG_EXCEPT})
-    list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${folder}/")
+    list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${folder}(/|$)")
   endforeach()
+  if(ARG_ONLY)
+    list(TRANSFORM ARG_ONLY PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/" OUTPUT_VARIABLE sources)
+  endif()
   if(NOT sources)
     add_library(${name} INTERFACE)
     target_link_libraries(${name} INTERFACE ${ARG_PUBLIC})
     return()
   endif()
   add_library(${name} STATIC ${sources})
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
+                                           VISIBILITY_INLINES_HIDDEN ON)
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>)
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:touchtrial_settings> ${ARG_PRIVATE})
   if(ARG_UNHURRIED)

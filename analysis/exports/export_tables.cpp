@@ -10,8 +10,10 @@
 #include "core/strict_json.hpp"
 #include "protocols/store/payload_json.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
@@ -96,31 +98,41 @@ Json rows_json(const DataTable& table) {
   return rows;
 }
 
+std::vector<ExportFile> csv_files(const std::vector<ResultTable>& tables) {
+  std::vector<ExportFile> files;
+  for (const ResultTable& one : tables) {
+    files.push_back(said_file(one.file, one.table, one.has_words));
+  }
+  return files;
+}
+
 }  // namespace
+
+std::vector<ResultTable> exported_tables(const store::StudyStore& store,
+                                         const std::optional<Outcomes>& outcomes,
+                                         const std::vector<store::PersonalRecord>& consents) {
+  const bool simulated = store.commitment().simulated;
+  const Collection collection = collection_of(store, outcomes);
+  std::vector<ResultTable> tables = {{"trials.csv", trials_table(store, outcomes)},
+                                     {"participants.csv", participants_table(store, collection)},
+                                     {"deviations.csv", deviations_table(collection, simulated)},
+                                     {"servo.csv", servo_table(collection, simulated)}};
+  std::ranges::move(said_tables(store, outcomes, consents), std::back_inserter(tables));
+  if (outcomes) {
+    std::ranges::move(analysis_of(outcomes->design).tables(*outcomes), std::back_inserter(tables));
+    tables.push_back({"unscored_trials.csv", unscored_table(*outcomes)});
+    tables.push_back({"looks.csv", looks_table(*outcomes)});
+  }
+  tables.push_back({"study.csv", study_table(store, outcomes, collection)});
+  return tables;
+}
 
 std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
                                               const std::optional<Outcomes>& outcomes,
                                               const std::filesystem::path& folder,
                                               const std::vector<store::PersonalRecord>& consents) {
   const store::StudyCommitment& commitment = store.commitment();
-  const Collection collection = collection_of(store, outcomes);
-  std::vector<ExportFile> files;
-  const auto add = [&](const std::string& name, const DataTable& table) {
-    files.push_back(text_file(name, csv_text(table)));
-  };
-  add("trials.csv", trials_table(store, outcomes));
-  add("participants.csv", participants_table(store, collection));
-  add("deviations.csv", deviations_table(collection, commitment.simulated));
-  add("servo.csv", servo_table(collection, commitment.simulated));
-  for (ExportFile& file : said_files(store, outcomes, consents)) files.push_back(std::move(file));
-  if (outcomes) {
-    for (const auto& [file, table] : analysis_of(outcomes->design).tables(*outcomes)) {
-      add(file, table);
-    }
-    add("unscored_trials.csv", unscored_table(*outcomes));
-    add("looks.csv", looks_table(*outcomes));
-  }
-  add("study.csv", study_table(store, outcomes, collection));
+  std::vector<ExportFile> files = csv_files(exported_tables(store, outcomes, consents));
   if (outcomes)
     files.push_back(text_file("study_file.json", without_comments(outcomes->design.text)));
   files.push_back(text_file("export.json", contents_json(commitment, !outcomes, files)));
@@ -133,7 +145,7 @@ std::vector<std::filesystem::path> export_said(const store::StudyStore& store,
                                                const std::vector<store::PersonalRecord>& consents) {
   const store::StudyCommitment& commitment = store.commitment();
   return write_export(folder, {commitment.study, commitment.study_id, "r, what was said"},
-                      said_files(store, outcomes, consents));
+                      csv_files(said_tables(store, outcomes, consents)));
 }
 
 std::vector<ExportFile> event_files(const store::StudyStore& store, const design::StudyKey& key,

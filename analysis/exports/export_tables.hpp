@@ -4,6 +4,7 @@
 
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/outcomes.hpp"
+#include "analysis/results.hpp"
 #include "protocols/store/personal_data.hpp"
 
 #include <filesystem>
@@ -13,7 +14,14 @@
 
 namespace touchtrial::analysis {
 
-/// Writes trials.csv, participants.csv, deviations.csv, servo.csv, said_files and study.csv. With
+/// The tables that export_csv writes, under the names of their files.
+/// \param outcomes  of this store; nothing before unblinding
+/// \param consents  of the personal data, if they are known
+[[nodiscard]] std::vector<ResultTable> exported_tables(
+    const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
+    const std::vector<store::PersonalRecord>& consents = {});
+
+/// Writes trials.csv, participants.csv, deviations.csv, servo.csv, said_tables and study.csv. With
 /// outcomes it also writes the tables of the protocol's analysis (for example,
 /// confusion_<method>.csv for each presented method), unscored_trials.csv and study_file.json. The
 /// last file is export.json, which lists the others and says whether they are simulated. Creates
@@ -26,7 +34,7 @@ std::vector<std::filesystem::path> export_csv(
     const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
     const std::filesystem::path& folder, const std::vector<store::PersonalRecord>& consents = {});
 
-/// Writes said_files beside those of the protocol's `export_model`.
+/// Writes said_tables beside those of the protocol's `export_model`.
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written
 std::vector<std::filesystem::path> export_said(const store::StudyStore& store,

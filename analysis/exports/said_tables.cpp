@@ -107,20 +107,17 @@ ExportFile said_file(const std::string& name, const DataTable& table, bool has_w
   return text_file(name, csv_text(table), has_words ? FileMode::owner_only : FileMode::everyone);
 }
 
-std::vector<ExportFile> said_files(const store::StudyStore& store,
-                                   const std::optional<Outcomes>& outcomes,
-                                   const std::vector<store::PersonalRecord>& consents) {
-  std::vector<ExportFile> files;
-  if (outcomes) files.push_back(said_file("answers.csv", answers_table(*outcomes), true));
+std::vector<ResultTable> said_tables(const store::StudyStore& store,
+                                     const std::optional<Outcomes>& outcomes,
+                                     const std::vector<store::PersonalRecord>& consents) {
+  std::vector<ResultTable> tables;
+  if (outcomes) tables.push_back({"answers.csv", answers_table(*outcomes), true});
   if (outcomes && !outcomes->marks.empty()) {
-    files.push_back(said_file("marks.csv", marks_table(*outcomes), false));
+    tables.push_back({"marks.csv", marks_table(*outcomes)});
   }
-  files.push_back(
-      said_file("incidents.csv", incidents_table(store, outcomes), outcomes.has_value()));
-  if (!consents.empty()) {
-    files.push_back(said_file("consents.csv", consents_table(store, consents), false));
-  }
-  return files;
+  tables.push_back({"incidents.csv", incidents_table(store, outcomes), outcomes.has_value()});
+  if (!consents.empty()) tables.push_back({"consents.csv", consents_table(store, consents)});
+  return tables;
 }
 
 }  // namespace touchtrial::analysis

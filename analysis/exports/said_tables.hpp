@@ -7,6 +7,7 @@
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/incidents.hpp"
 #include "analysis/outcomes.hpp"
+#include "analysis/results.hpp"
 #include "protocols/store/personal_data.hpp"
 
 #include <optional>
@@ -47,7 +48,7 @@ enum class Typed { shown, left_out };
 
 /// answers.csv (with outcomes), marks.csv where instruments were told of sessions, incidents.csv,
 /// and consents.csv if there are any.
-[[nodiscard]] std::vector<ExportFile> said_files(
+[[nodiscard]] std::vector<ResultTable> said_tables(
     const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
     const std::vector<store::PersonalRecord>& consents);
 

@@ -115,6 +115,25 @@ engine::TvGaborOptions read_tv_gabor(const JsonObject& object) {
   return options;
 }
 
+nlohmann::json components_json(const engine::TvGaborOptions& options) {
+  if (options.automatic) return "auto";
+  nlohmann::json list = nlohmann::json::array();
+  for (const engine::GaborComponent& component : options.components) {
+    list.push_back(
+        {{"frequency", component.frequency_cycles_per_px}, {"direction", component.direction_deg}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string default_label(const engine::ExtractionOptions& method) {
+  std::string label(name_of(method.method));
+  if (method.control != engine::Control::none)
+    label += "-" + std::string(engine::name_among(engine::kControlNames, method.control));
+  return label;
+}
+
 StudyMethod read_method(const JsonValue& place) {
   using Options = engine::ExtractionOptions;
   const std::vector<std::string_view> known = known_keys();
@@ -139,25 +158,6 @@ StudyMethod read_method(const JsonValue& place) {
   const auto label = object.find("label");
   options.label = label ? read_plain_name(*label) : default_label(options);
   return options;
-}
-
-nlohmann::json components_json(const engine::TvGaborOptions& options) {
-  if (options.automatic) return "auto";
-  nlohmann::json list = nlohmann::json::array();
-  for (const engine::GaborComponent& component : options.components) {
-    list.push_back(
-        {{"frequency", component.frequency_cycles_per_px}, {"direction", component.direction_deg}});
-  }
-  return list;
-}
-
-}  // namespace
-
-std::string default_label(const engine::ExtractionOptions& method) {
-  std::string label(name_of(method.method));
-  if (method.control != engine::Control::none)
-    label += "-" + std::string(engine::name_among(engine::kControlNames, method.control));
-  return label;
 }
 
 std::vector<StudyMethod> read_methods(const JsonValue& place) {

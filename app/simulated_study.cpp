@@ -1,0 +1,68 @@
+#include "app/simulated_study.hpp"
+
+#include "app/console.hpp"
+#include "app/heads.hpp"
+#include "app/study_inputs.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/strict_json.hpp"
+#include "engine/pack/pack.hpp"
+#include "protocols/session/commitment.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <chrono>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+void refuse_existing(const std::filesystem::path& path) {
+  if (is_there(path)) {
+    throw StoreError(path.string() +
+                     ": exists already; give another --db, or move the old file away");
+  }
+}
+
+/// Simulated studies need no blinding, unless the blind phase itself is rehearsed.
+void end_collection(store::StudyStore& store) {
+  store.close_study(0ns);
+  store.unblind(0ns, "simulated study", false);
+}
+
+}  // namespace
+
+simulation::SimulationReport simulate_study(const StudyToSimulate& wanted) {
+  refuse_existing(wanted.database);
+  const design::Study study = design::load_study(wanted.study);
+  const simulation::SubjectModel subject = subject_for(wanted.subject, study, wanted.on);
+  const design::StudyKey key = simulated_key(study, wanted.study);
+  const std::filesystem::path key_file = key_path_for(wanted.database, {});
+  refuse_other_key(key_file, key);
+  prepare_simulated_pack(key);
+  const engine::Pack pack(key.pack_folder);
+  store::StudyStore store = store::StudyStore::create(
+      wanted.database, session::commitment_of(key, pack, true, false), 0ns, key.signer());
+  design::save_study_key(key_file, key);
+  const simulation::SimulationReport report = simulation::simulate_study(
+      key, pack, subject, wanted.options, store, progress_bar("simulating"));
+  if (!wanted.keep_blind) end_collection(store);
+  make_head(store, wanted.database, key.signer());
+  return report;
+}
+
+std::string simulation_json(const StudyToSimulate& wanted,
+                            const simulation::SimulationReport& report) {
+  return json_text(nlohmann::json{{"simulated", true},
+                                  {"sessions", report.sessions},
+                                  {"presentations", report.presentations},
+                                  {"invalid_trials", report.invalid_trials},
+                                  {"ticks", report.ticks},
+                                  {"blind", wanted.keep_blind},
+                                  {"database", wanted.database.string()},
+                                  {"key", key_path_for(wanted.database, {}).string()}});
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,30 @@
+/// \file A study that simulated participants take part in, from its file to its database.
+#pragma once
+
+#include "protocols/simulation/simulation.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace touchtrial::app {
+
+struct StudyToSimulate {
+  std::filesystem::path study;     ///< its file
+  std::filesystem::path database;  ///< to make; the key is written beside it
+  std::filesystem::path subject;   ///< a subject model; empty: the built-in one
+  std::string on;                  ///< as of subject_for
+  simulation::SimulationOptions options;
+  bool keep_blind = false;  ///< neither close the study nor unblind it
+};
+
+/// Prepares the study's pack, simulates its sessions, and closes and unblinds it. Shows progress on
+/// a terminal.
+/// \throws StoreError if the database, or another study's key, is there already
+/// \throws as load_study, subject_for, prepare_pack and simulation::simulate_study
+simulation::SimulationReport simulate_study(const StudyToSimulate& wanted);
+
+/// What was done, as `simulate --json` prints it.
+[[nodiscard]] std::string simulation_json(const StudyToSimulate& wanted,
+                                          const simulation::SimulationReport& report);
+
+}  // namespace touchtrial::app
