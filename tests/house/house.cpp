@@ -160,6 +160,7 @@ const std::vector<Room>& rooms() {
         {"protocols/registration", "touchtrial::registration", registered},
         {"stimuli", "touchtrial::stimuli", {"core", "engine"}},
         {"app", "touchtrial::app", app},
+        {"python", "touchtrial::python", bench},
         {"bench", "touchtrial::bench", bench, true},
     };
   }();

@@ -1,0 +1,245 @@
+#include "engine/rendering/field_statistics.hpp"
+#include "engine/rendering/gains.hpp"
+#include "engine/rendering/rendering_model.hpp"
+#include "protocols/design/stimulus_field.hpp"
+#include "protocols/design/study_sections.hpp"
+#include "python/arrays.hpp"
+#include "python/module.hpp"
+#include "python/options.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pybind11/stl.h>
+
+namespace touchtrial::python {
+namespace {
+
+namespace py = pybind11;
+
+/// A texture on the plane with the gains that are felt.
+class Field {
+ public:
+  Field(engine::TextureField field, engine::RenderingOptions options)
+      : field_(std::move(field)), options_(std::move(options)) {}
+
+  [[nodiscard]] engine::FieldView view() const { return field_.view(); }
+  [[nodiscard]] const engine::RenderingOptions& options() const { return options_; }
+  [[nodiscard]] engine::Gains gains() const { return gains_; }
+  [[nodiscard]] bool over_budget() const { return over_budget_; }
+  void set_gains(engine::Gains gains, bool over_budget) {
+    gains_ = gains;
+    over_budget_ = over_budget;
+  }
+
+ private:
+  engine::TextureField field_;
+  engine::RenderingOptions options_;
+  engine::Gains gains_;
+  bool over_budget_ = false;
+};
+
+/// What a field is made from: an image, or an extracted texture.
+struct FieldSource {
+  GreyImage image;
+  Plane<double> texture;
+};
+
+FieldSource source_of(const py::object& given) {
+  const bool is_texture = !is_path(given) && py::module_::import("numpy")
+                                                     .attr("asarray")(given)
+                                                     .attr("dtype")
+                                                     .attr("kind")
+                                                     .cast<std::string>() == "f";
+  if (is_texture) return {{}, plane_of(given, "texture")};
+  return {grey_image_of(given), {}};
+}
+
+engine::TextureField made_field(const FieldSource& source, const engine::ExtractionOptions& method,
+                                const engine::RenderingOptions& rendering) {
+  if (source.image.empty()) return engine::make_texture_field(source.texture, rendering);
+  std::optional<design::TakenTexture> none;
+  return design::build_field(source.image, method, rendering, none, false, nullptr).field;
+}
+
+/// The gains of all fields together, as of a study's stimuli.
+std::vector<std::shared_ptr<Field>> force_fields(const std::vector<py::object>& sources,
+                                                 const engine::ExtractionOptions& method,
+                                                 const std::string& rendering) {
+  if (sources.empty()) throw py::value_error("force_fields: give at least one image or texture");
+  const engine::RenderingOptions options = rendering_options(rendering);
+  std::vector<std::shared_ptr<Field>> fields;
+  std::vector<engine::FieldView> views;
+  for (const py::object& one : sources) {
+    const FieldSource source = source_of(one);
+    const py::gil_scoped_release others_run;
+    fields.push_back(std::make_shared<Field>(made_field(source, method, options), options));
+    views.push_back(fields.back()->view());
+  }
+  const py::gil_scoped_release others_run;
+  const engine::StudyGains gains = engine::choose_gains(views, options);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    fields[i]->set_gains(gains.of_field[i], gains.over_budget);
+  }
+  return fields;
+}
+
+py::array heights_of(const py::object& self) {
+  const engine::FieldView view = self.cast<const Field&>().view();
+  return read_only(py::array_t<float>({view.geometry.height_px, view.geometry.width_px},
+                                      view.heights.data(), self));
+}
+
+py::array lateral_force_of(const Field& field) {
+  engine::LateralField lateral;
+  {
+    const py::gil_scoped_release others_run;
+    lateral = engine::lateral_field(field.view(), field.gains());
+  }
+  const engine::ForceField<double>& force = lateral.force;
+  py::array_t<double> newtons({force.x.height(), force.x.width(), 2});
+  double* to = newtons.mutable_data();
+  for (std::size_t i = 0; i < force.x.size(); ++i) {
+    *to++ = lateral.n_per_grey * force.x.samples()[i];
+    *to++ = lateral.n_per_grey * force.y.samples()[i];
+  }
+  return newtons;
+}
+
+py::dict statistics_of(const Field& field) {
+  engine::FieldStatistics found;
+  {
+    const py::gil_scoped_release others_run;
+    found = engine::field_statistics(field.view(), field.gains(), field.options());
+  }
+  py::dict statistics;
+  statistics["tangential_rms_n"] = found.tangential_rms_n;
+  statistics["tangential_p999_n"] = found.tangential_p999_n;
+  statistics["normal_rms_n"] = found.normal_rms_n;
+  statistics["stiffness_p99_n_per_mm"] = found.stiffness_p99_n_per_mm;
+  statistics["share_below_1_mm"] = found.share_below_1_mm;
+  statistics["share_above_250_hz"] = found.share_above_250_hz;
+  return statistics;
+}
+
+py::dict gains_of(const Field& field) {
+  py::dict gains;
+  for (const engine::NamedGain& gain : engine::kGains) {
+    gains[std::string(gain.name).c_str()] = field.gains().*gain.value;
+  }
+  return gains;
+}
+
+/// Backward differences, as a loop in real time has them; the first velocity is 0.
+std::vector<Vec3> differences(const double* path, std::size_t count, double dt_s) {
+  std::vector<Vec3> velocities(count);
+  for (std::size_t i = 1; i < count; ++i) {
+    const double* now = path + 3 * i;
+    velocities[i] = {(now[0] - now[-3]) / dt_s, (now[1] - now[-2]) / dt_s,
+                     (now[2] - now[-1]) / dt_s};
+  }
+  return velocities;
+}
+
+std::vector<Vec3> velocities_along(const py::array_t<double>& path, const py::object& given,
+                                   std::optional<double> dt_s) {
+  const auto count = static_cast<std::size_t>(path.shape(0));
+  if (dt_s && !given.is_none()) {
+    throw py::value_error("render: give dt_s or velocities_mm_s, not both");
+  }
+  if (dt_s) {
+    if (!(*dt_s > 0.0)) throw py::value_error("dt_s: must be above 0");
+    return differences(path.data(), count, *dt_s);
+  }
+  if (given.is_none()) return std::vector<Vec3>(count);
+  const py::array_t<double> velocities = matrix_of(given, "velocities_mm_s", 3);
+  if (velocities.shape(0) != path.shape(0)) {
+    throw py::value_error("velocities_mm_s: has " + std::to_string(velocities.shape(0)) +
+                          " rows, and the path has " + std::to_string(path.shape(0)));
+  }
+  std::vector<Vec3> rows(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* row = velocities.data() + 3 * i;
+    rows[i] = {row[0], row[1], row[2]};
+  }
+  return rows;
+}
+
+py::array_t<double> render(const Field& field, const py::object& path_mm,
+                           std::optional<double> dt_s, const py::object& velocities_mm_s) {
+  const py::array_t<double> path = matrix_of(path_mm, "path_mm", 3);
+  const std::vector<Vec3> velocities = velocities_along(path, velocities_mm_s, dt_s);
+  py::array_t<double> forces({path.shape(0), py::ssize_t{3}});
+  const double* at = path.data();
+  double* to = forces.mutable_data();
+  const py::gil_scoped_release others_run;
+  const engine::RenderingModel model(field.view(), field.options(), field.gains());
+  engine::Bristle touch;
+  for (const Vec3& velocity : velocities) {
+    const Vec3 force = model.force_n({at[0], at[1], at[2]}, velocity, touch);
+    at += 3;
+    *to++ = force.x;
+    *to++ = force.y;
+    *to++ = force.z;
+  }
+  return forces;
+}
+
+}  // namespace
+
+void add_rendering(py::module_& module) {
+  py::class_<Field, std::shared_ptr<Field>>(
+      module, "Field",
+      "A texture on the virtual plane, with the gains that make newtons of grey levels.")
+      .def_property_readonly(
+          "heights", &heights_of,
+          "(H, W) float32, read-only and without a copy: for the model paper the "
+          "filtered texture, for surface the coefficients of its spline; grey "
+          "levels.")
+      .def_property_readonly(
+          "shape",
+          [](const Field& field) {
+            return std::pair(field.view().geometry.height_px, field.view().geometry.width_px);
+          },
+          "Height and width, pixels.")
+      .def_property_readonly(
+          "size_mm",
+          [](const Field& field) {
+            return std::pair(field.view().geometry.height_mm(), field.view().geometry.width_mm());
+          },
+          "Height and width of the textured plane, mm.")
+      .def_property_readonly(
+          "pitch_mm", [](const Field& field) { return field.view().geometry.pitch_mm; },
+          "Millimetres per pixel.")
+      .def_property_readonly(
+          "rendering",
+          [](const Field& field) {
+            const std::string text = design::to_json(field.options()).dump();
+            return py::module_::import("json").attr("loads")(text);
+          },
+          "The rendering options, every key of them.")
+      .def_property_readonly("gains", &gains_of,
+                             "tangential_n and normal_n (paper) or height_mm (surface) per grey "
+                             "level; the others are 0.")
+      .def_property_readonly("over_budget", &Field::over_budget,
+                             "Whether explicit gains exceed the stiffness budget.")
+      .def("lateral_force", &lateral_force_of,
+           "(H, W, 2) newtons at the pixels' centres, x then y, before the limit of the force; for "
+           "surface at a load of 0.7 N.")
+      .def("statistics", &statistics_of,
+           "Numbers that predict how the field feels; docs/method.md defines them.");
+  module.def("force_fields", &force_fields, py::arg("sources"), py::arg("method"),
+             py::arg("rendering"), "Fields of images or textures, with gains in common.");
+  module.def(
+      "render", &render, py::arg("field"), py::arg("path_mm"), py::arg("dt_s") = py::none(),
+      py::arg("velocities_mm_s") = py::none(),
+      "The force on a stylus along a path, (N, 3) newtons, by the model that the servo calls.");
+}
+
+}  // namespace touchtrial::python

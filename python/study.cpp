@@ -1,0 +1,227 @@
+#include "analysis/exports/export_tables.hpp"
+#include "analysis/results.hpp"
+#include "analysis/sealed_sessions.hpp"
+#include "app/simulated_study.hpp"
+#include "app/study_inputs.hpp"
+#include "core/errors.hpp"
+#include "protocols/collect/collect.hpp"
+#include "protocols/design/key_protection.hpp"
+#include "python/arrays.hpp"
+#include "python/module.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+namespace touchtrial::python {
+namespace {
+
+namespace py = pybind11;
+namespace fs = std::filesystem;
+
+/// Answers for protected keys as long as it lives.
+class Passphrase {
+ public:
+  explicit Passphrase(std::optional<std::string> passphrase) {
+    design::ask_passphrases_with(
+        [passphrase = std::move(passphrase)](const fs::path&, int attempt) {
+          return attempt == 1 ? passphrase : std::nullopt;
+        });
+  }
+  ~Passphrase() { design::ask_passphrases_with({}); }
+  Passphrase(const Passphrase&) = delete;
+  Passphrase& operator=(const Passphrase&) = delete;
+};
+
+store::StudyStore opened(const std::string& database) {
+  store::StudyStore store = collect::open_study(database);
+  const store::StudyState state = store.state();
+  if (state.unblinded) return store;
+  throw StoreError(one_line(collect::study_name(database)) + ": is " + app::blind_words(state) +
+                   ", so its outcomes are not shown; run `touchtrial close` and `touchtrial "
+                   "unblind`");
+}
+
+/// An unblinded study with its outcomes. Its functions may be called by several threads.
+class Study {
+ public:
+  Study(const std::string& database, const fs::path& key)
+      : store_(opened(database)),
+        key_(app::key_of_database(store_, database, key)),
+        outcomes_(app::outcomes_of(store_, key_)),
+        keys_(analysis::person_keys(store_, key_)) {}
+
+  [[nodiscard]] const analysis::Outcomes& outcomes() const { return outcomes_; }
+
+  /// As `report --json` prints it.
+  [[nodiscard]] std::string report() const {
+    const std::lock_guard lock(one_at_a_time_);
+    const analysis::TraceSource traces{store_, key_};
+    return app::with_levels(
+               analysis::analysis_of(outcomes_.design).results(outcomes_, {.source = &traces}),
+               key_)
+        ->json();
+  }
+
+  /// As `export --format csv` writes them, but for the consents.
+  [[nodiscard]] std::vector<analysis::ResultTable> tables() const {
+    const std::lock_guard lock(one_at_a_time_);
+    return analysis::exported_tables(store_, outcomes_);
+  }
+
+  /// \throws std::out_of_range if the study shows no such trial
+  [[nodiscard]] store::Trace trace(int session, int trial) const {
+    const auto found =
+        std::ranges::find_if(outcomes_.trials, [&](const analysis::TrialOutcome& one) {
+          return one.row.session == session && one.row.trial == trial;
+        });
+    if (found == outcomes_.trials.end()) {
+      throw std::out_of_range("the study shows no trial " + std::to_string(trial) + " of session " +
+                              std::to_string(session));
+    }
+    const std::lock_guard lock(one_at_a_time_);
+    return analysis::open_trace(store_.sealed_trace(session, trial), found->row, keys_);
+  }
+
+ private:
+  store::StudyStore store_;
+  design::StudyKey key_;
+  analysis::Outcomes outcomes_;
+  analysis::SessionKeys keys_;
+  mutable std::mutex one_at_a_time_;  ///< guards the store
+};
+
+std::unique_ptr<Study> read(const std::string& database, const fs::path& key,
+                            const std::optional<std::string>& passphrase) {
+  const py::gil_scoped_release others_run;
+  const Passphrase answers(passphrase);
+  return std::make_unique<Study>(database, key);
+}
+
+struct CellToPython {
+  py::object operator()(std::monostate) const { return py::none(); }
+  py::object operator()(const std::string& text) const {
+    return py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
+        text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
+  }
+  py::object operator()(std::int64_t number) const { return py::int_(number); }
+  py::object operator()(double number) const { return py::float_(number); }
+  py::object operator()(std::chrono::nanoseconds time) const {
+    return py::float_(std::chrono::duration<double>(time).count());
+  }
+};
+
+struct CellToNumber {
+  double operator()(std::monostate) const { return std::numeric_limits<double>::quiet_NaN(); }
+  double operator()(const std::string&) const { return 0.0; }
+  double operator()(std::int64_t number) const { return static_cast<double>(number); }
+  double operator()(double number) const { return number; }
+  double operator()(std::chrono::nanoseconds time) const {
+    return std::chrono::duration<double>(time).count();
+  }
+};
+
+/// int64 for whole numbers, float64 for numbers and for columns with missing ones, else objects.
+py::object column_of(const analysis::DataTable& table, std::size_t column) {
+  const auto all = [&](auto holds) {
+    return std::ranges::all_of(table.rows, [&](const auto& row) { return holds(row[column]); });
+  };
+  if (all([](const auto& cell) { return std::holds_alternative<std::int64_t>(cell); })) {
+    std::vector<std::int64_t> numbers;
+    for (const auto& row : table.rows) numbers.push_back(std::get<std::int64_t>(row[column]));
+    return py::array_t<std::int64_t>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+  }
+  if (all([](const auto& cell) { return !std::holds_alternative<std::string>(cell); })) {
+    std::vector<double> numbers;
+    for (const auto& row : table.rows) numbers.push_back(std::visit(CellToNumber{}, row[column]));
+    return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+  }
+  const auto numpy = py::module_::import("numpy");
+  py::object objects = numpy.attr("empty")(table.rows.size(), py::arg("dtype") = "object");
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    objects[py::int_(i)] = std::visit(CellToPython{}, table.rows[i][column]);
+  }
+  return objects;
+}
+
+py::dict tables_of(const Study& study) {
+  const std::vector<analysis::ResultTable> tables = [&] {
+    const py::gil_scoped_release others_run;
+    return study.tables();
+  }();
+  py::dict by_name;
+  for (const analysis::ResultTable& one : tables) {
+    py::dict columns;
+    for (std::size_t i = 0; i < one.table.columns.size(); ++i) {
+      columns[one.table.columns[i].c_str()] = column_of(one.table, i);
+    }
+    by_name[fs::path(one.file).stem().c_str()] = columns;
+  }
+  return by_name;
+}
+
+/// The rate, and an array (N, 6) that owns the samples.
+py::tuple trace_of(const Study& study, int session, int trial) {
+  store::Trace trace = [&] {
+    const py::gil_scoped_release others_run;
+    return study.trace(session, trial);
+  }();
+  static_assert(sizeof(store::TraceSample) == 6 * sizeof(double));
+  const auto [samples, base] = owned_by_python(std::move(trace.samples));
+  const auto* first = samples->empty() ? nullptr : &samples->front().position_mm.x;
+  return py::make_tuple(trace.rate_hz,
+                        py::array_t<double>({samples->size(), std::size_t{6}}, first, base));
+}
+
+/// \param jobs  threads; 0: one for each core
+std::string simulate(const fs::path& study, const fs::path& database, int participants,
+                     std::uint64_t seed, const fs::path& subject, const std::string& on, int jobs,
+                     int first_participant, bool keep_blind) {
+  const py::gil_scoped_release others_run;
+  if (jobs == 0) jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const app::StudyToSimulate wanted{.study = study,
+                                    .database = database,
+                                    .subject = subject,
+                                    .on = on,
+                                    .options = {.participants = participants,
+                                                .seed = seed,
+                                                .jobs = jobs,
+                                                .first_participant = first_participant},
+                                    .keep_blind = keep_blind};
+  return app::simulation_json(wanted, app::simulate_study(wanted));
+}
+
+}  // namespace
+
+void add_studies(py::module_& module) {
+  py::class_<Study>(module, "Study", "An unblinded study, opened for reading.")
+      .def("report", &Study::report, py::call_guard<py::gil_scoped_release>(),
+           "The text that `touchtrial report --json` prints.")
+      .def("tables", &tables_of, "Columns by table and name, as `export --format csv` has them.")
+      .def("trace", &trace_of, py::arg("session"), py::arg("trial"),
+           "The rate in Hz, and (N, 6) positions in mm and forces in N.")
+      .def_property_readonly("simulated",
+                             [](const Study& study) { return study.outcomes().simulated; })
+      .def_property_readonly("name", [](const Study& study) { return study.outcomes().study; });
+  module.def("read", &read, py::arg("database"), py::arg("key"), py::arg("passphrase"),
+             "Opens an unblinded study.");
+  module.def("simulate", &simulate, py::arg("study"), py::arg("database"), py::arg("participants"),
+             py::arg("seed"), py::arg("subject"), py::arg("on"), py::arg("jobs"),
+             py::arg("first_participant"), py::arg("keep_blind"),
+             "The text that `touchtrial simulate --json` prints.");
+}
+
+}  // namespace touchtrial::python
