@@ -1,0 +1,84 @@
+"""Run times of the Python module beside the C++ call, PyWavelets and scikit-image, as medians of
+rounds in which everything is measured in turn. Called by scripts/bench-python."""
+
+import statistics
+import sys
+import time
+
+import numpy as np
+import pywt
+import touchtrial
+from skimage.feature import graycomatrix, graycoprops
+from skimage.metrics import structural_similarity
+from touchtrial import _touchtrial
+
+SIDES = (256, 512, 1024)
+
+
+def picture(side):
+    random = np.random.default_rng(1)
+    y, x = np.mgrid[:side, :side]
+    waves = 128 + 60 * np.sin(x / 4.0) * np.cos(y / 5.0) + random.normal(0, 8, (side, side))
+    return np.clip(waves, 0, 255).astype(np.uint8)
+
+
+def co_occurrences(image):
+    matrix = graycomatrix(image, [1], [0, np.pi / 4, np.pi / 2, 3 * np.pi / 4], 256, normed=True)
+    return [graycoprops(matrix, name) for name in ("ASM", "energy", "contrast", "correlation")]
+
+
+def measured_by(call):
+    start = time.perf_counter()
+    call()
+    return time.perf_counter() - start
+
+
+def cases(side):
+    image = picture(side)
+    texture = touchtrial.extract(image).texture_u8
+    pixels = np.ascontiguousarray(image.astype(float))
+    return {
+        "texture, C++": lambda: _touchtrial._seconds_of_extraction(image, False),
+        "texture": lambda: measured_by(lambda: touchtrial.extract(image, planes=())),
+        "all planes, C++": lambda: _touchtrial._seconds_of_extraction(image, True),
+        "all planes": lambda: measured_by(lambda: touchtrial.extract(image)),
+        "pywt": lambda: measured_by(lambda: pywt.dwt2(pixels, "db2", mode="symmetric")),
+        "evaluate": lambda: measured_by(lambda: touchtrial.evaluate(image)),
+        "glcm": lambda: measured_by(lambda: (co_occurrences(image), co_occurrences(texture))),
+        "sweep": lambda: measured_by(lambda: touchtrial.evaluate(image, sweep=True)),
+        "ssim": lambda: measured_by(lambda: structural_similarity(image, texture)),
+    }
+
+
+def main():
+    rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 21
+    rows = []
+    for side in SIDES:
+        calls = cases(side)
+        seconds = {name: [] for name in calls}
+        for turn in range(rounds + 1):
+            for name, call in calls.items():
+                if name == "sweep" and turn % 5 != 1:
+                    continue
+                taken = call()
+                if turn > 0:  # the first round warms up
+                    seconds[name].append(taken)
+        ms = {name: 1000 * statistics.median(taken) for name, taken in seconds.items()}
+        rows += [
+            (side, "`extract(planes=())`", ms["texture"], "the C++ call", ms["texture, C++"]),
+            (side, "`extract()`", ms["all planes"], "the C++ call", ms["all planes, C++"]),
+            (side, "`extract()`", ms["all planes"], "PyWavelets, `dwt2` alone", ms["pywt"]),
+            (side, "`evaluate()`", ms["evaluate"], "scikit-image, both GLCMs alone", ms["glcm"]),
+            (side, "`evaluate(sweep=True)`", ms["sweep"], "scikit-image, 19 SSIMs alone", 19 * ms["ssim"]),
+        ]
+    print("| picture | ours | ms | peer | ms | ours / peer |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for side, ours, our_ms, peer, peer_ms in rows:
+        print(
+            f"| {side} x {side} | {ours} | {our_ms:.3g} | {peer} | {peer_ms:.3g} | "
+            f"{our_ms / peer_ms:.2f} |"
+        )
+
+
+if __name__ == "__main__":
+    main()
