@@ -1,5 +1,5 @@
-/// \file Options that Python hands over as JSON text: the study file's reader knows their keys.
-/// Private to python.
+/// \file Options that Python hands over as JSON text: the study file's reader knows their keys. In
+/// Python, a bad argument is a ValueError. Private to python.
 #pragma once
 
 #include "engine/extraction_options.hpp"

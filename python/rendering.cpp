@@ -2,7 +2,7 @@
 #include "engine/rendering/gains.hpp"
 #include "engine/rendering/rendering_model.hpp"
 #include "protocols/design/stimulus_field.hpp"
-#include "protocols/design/study_sections.hpp"
+#include "protocols/design/study_options.hpp"
 #include "python/arrays.hpp"
 #include "python/module.hpp"
 #include "python/options.hpp"
@@ -220,7 +220,7 @@ void add_rendering(py::module_& module) {
       .def_property_readonly(
           "rendering",
           [](const Field& field) {
-            const std::string text = design::to_json(field.options()).dump();
+            const std::string text = design::written_rendering(field.options());
             return py::module_::import("json").attr("loads")(text);
           },
           "The rendering options, every key of them.")

@@ -1,5 +1,6 @@
 /// \file The study file's "methods".
 #include "core/text.hpp"
+#include "protocols/design/study_options.hpp"
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
@@ -115,25 +116,6 @@ engine::TvGaborOptions read_tv_gabor(const JsonObject& object) {
   return options;
 }
 
-nlohmann::json components_json(const engine::TvGaborOptions& options) {
-  if (options.automatic) return "auto";
-  nlohmann::json list = nlohmann::json::array();
-  for (const engine::GaborComponent& component : options.components) {
-    list.push_back(
-        {{"frequency", component.frequency_cycles_per_px}, {"direction", component.direction_deg}});
-  }
-  return list;
-}
-
-}  // namespace
-
-std::string default_label(const engine::ExtractionOptions& method) {
-  std::string label(name_of(method.method));
-  if (method.control != engine::Control::none)
-    label += "-" + std::string(engine::name_among(engine::kControlNames, method.control));
-  return label;
-}
-
 StudyMethod read_method(const JsonValue& place) {
   using Options = engine::ExtractionOptions;
   const std::vector<std::string_view> known = known_keys();
@@ -160,6 +142,25 @@ StudyMethod read_method(const JsonValue& place) {
   return options;
 }
 
+nlohmann::json components_json(const engine::TvGaborOptions& options) {
+  if (options.automatic) return "auto";
+  nlohmann::json list = nlohmann::json::array();
+  for (const engine::GaborComponent& component : options.components) {
+    list.push_back(
+        {{"frequency", component.frequency_cycles_per_px}, {"direction", component.direction_deg}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string default_label(const engine::ExtractionOptions& method) {
+  std::string label(name_of(method.method));
+  if (method.control != engine::Control::none)
+    label += "-" + std::string(engine::name_among(engine::kControlNames, method.control));
+  return label;
+}
+
 std::vector<StudyMethod> read_methods(const JsonValue& place) {
   std::vector<StudyMethod> methods;
   for (const JsonValue& item : place.items(1, kMaxMethods)) {
@@ -174,6 +175,10 @@ std::vector<StudyMethod> read_methods(const JsonValue& place) {
     methods.push_back(std::move(method));
   }
   return methods;
+}
+
+engine::ExtractionOptions parse_method(std::string_view text, const std::string& source) {
+  return read_method(parse_strict_json(text, source));
 }
 
 nlohmann::json to_json(const engine::ExtractionOptions& method) {

@@ -1,4 +1,5 @@
 /// \file The study file's "rendering".
+#include "protocols/design/study_options.hpp"
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
@@ -101,6 +102,15 @@ engine::RenderingOptions read_rendering(const JsonValue& place, std::string& dev
   read_texture(object, options);
   if (const auto member = object.find("device")) device = read_device(*member);
   return options;
+}
+
+engine::RenderingOptions parse_rendering(std::string_view text, const std::string& source) {
+  std::string device;
+  return read_rendering(parse_strict_json(text, source), device);
+}
+
+std::string written_rendering(const engine::RenderingOptions& rendering) {
+  return to_json(rendering).dump();
 }
 
 nlohmann::json to_json(const engine::RenderingOptions& rendering) {

@@ -124,7 +124,6 @@ void refuse_same_label(const JsonValue& place, const std::string& label, const s
 /// \param fewest  classes
 [[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place, int fewest,
                                                    std::size_t most_images = kMaxImagesOfClass);
-[[nodiscard]] StudyMethod read_method(const JsonValue& place);
 [[nodiscard]] std::vector<StudyMethod> read_methods(const JsonValue& place);
 /// \param device  receives Study::device, if there is one
 [[nodiscard]] engine::RenderingOptions read_rendering(const JsonValue& place, std::string& device);
