@@ -65,6 +65,10 @@ study's trials, traces and report as arrays and data frames; simulated
 studies.")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-pandas")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+      "${CMAKE_SOURCE_DIR}/cmake/packages/python3-touchtrial/postinst"
+      "${CMAKE_SOURCE_DIR}/cmake/packages/python3-touchtrial/prerm")
   set(touchtrial_python_depends "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${touchtrial_python_depends}")
 endif()

@@ -43,10 +43,12 @@ def main(work):
               and any(os.fsencode(folder) + b"/" in path.read_bytes() for folder in (BUILD, SOURCE, work / "first"))]
     check(f"no installed file names the source or the build folder: {[str(path) for path in traces]}", not traces)
 
-    demo = run(program, "demo", work / "demo", "--participants", "2", cwd=work)
+    demo = run(program, "demo", work / "demo", cwd=work).splitlines()
     check("demo ends with both reports",
-          all((work / "demo" / f"{study}-report" / "report.html").exists() for study in ("classification", "comparison"))
-          and "Proportion of right answers, mean over" in demo)
+          all((work / "demo" / f"{study}-report" / "report.html").exists() for study in ("classification", "comparison")))
+    told = (SOURCE / "README.md").read_text().partition("```text\n[SIMULATED]")[2].partition("```")[0].splitlines()[1:]
+    check(f"the README's tables are the demo's: {len(told)} lines",
+          len(told) > 20 and [line for line in told if line not in demo] == [])
     again = subprocess.run([program, "demo", work / "demo"], capture_output=True, text=True)
     check("demo refuses a folder that is not empty", again.returncode == 2 and "exists already" in again.stderr)
 
@@ -77,6 +79,14 @@ def main(work):
     third = [line for path in headers for line in (tree / "include/touchtrial" / path).read_text().splitlines()
              if line.startswith("#include <") and ("opencv" in line or "hwy" in line or "fftw" in line)]
     check(f"all {len(headers)} headers compile by themselves, and show no library: {third}", not third)
+
+    modules = tree / "lib/python3/dist-packages"
+    if (modules / "touchtrial").exists():
+        run(program, "extract", picture, "--dump", work / "dump")
+        run("/usr/bin/python3", "-B", "-c", "import sys, numpy, touchtrial; texture = touchtrial.extract(sys.argv[1]).texture; "
+            "assert texture.tobytes() == numpy.load(sys.argv[2]).tobytes() and texture.size == 250000",
+            picture, work / "dump" / "texture.npy", env={**os.environ, "PYTHONPATH": str(modules)})
+        check("the moved Python package extracts what the program does, bit for bit", True)
 
     script = tree / "share/bash-completion/completions/touchtrial"
     check("completion knows commands", completed(script, "touchtrial", "device", "acc") == ["accept"])
