@@ -3,12 +3,18 @@
 import json
 import os
 import subprocess
+import tempfile
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 SOURCE = Path(__file__).resolve().parents[2]
+
+# Neither the module nor the program nor Jupyter leaves anything in the user's home.
+HOME = tempfile.TemporaryDirectory()
+for variable in ("XDG_CONFIG_HOME", "XDG_CACHE_HOME", "JUPYTER_RUNTIME_DIR", "IPYTHONDIR"):
+    os.environ[variable] = str(Path(HOME.name) / variable.lower())
 
 
 def write_pnm(path, samples):
