@@ -1,12 +1,14 @@
 """The package as such: stubs, docstrings, the manual's examples, the notebook."""
 
 import inspect
+import json
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 import touchtrial
 from conftest import SOURCE
@@ -41,6 +43,15 @@ def test_everything_public_says_what_it_does():
         for member, value in vars(one).items():
             if not member.startswith("_") and (callable(value) or isinstance(value, property)):
                 assert inspect.getdoc(value), f"{name}.{member}"
+
+
+def test_every_key_of_a_study_files_methods_is_an_option():
+    schema = json.loads((SOURCE / "config/schema/study.schema.json").read_text())
+    keys = set(schema["properties"]["methods"]["items"]["properties"]) - {"name", "label", "lambda"}
+    for function in (touchtrial.extract, touchtrial.force_fields):
+        assert keys | {"method", "lambda_", "seed"} <= set(inspect.signature(function).parameters)
+    keys = set(schema["properties"]["rendering"]["properties"]) - {"device"}
+    assert set(touchtrial.force_field(np.zeros((2, 2))).rendering) == keys
 
 
 def test_types_are_right(tmp_path):
