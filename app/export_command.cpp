@@ -163,7 +163,7 @@ int export_study(const ExportArguments& arguments) {
 void add_dataset_options(CLI::App& command, ExportArguments& arguments) {
   analysis::DatasetOptions& dataset = arguments.dataset;
   command.add_flag("--traces", dataset.traces,
-                   "bids: positions and forces of every trial (25 trials of 10 s: about 3 MB)");
+                   "bids: positions and forces of every trial (25 trials of 10 s: about 13 MB)");
   command.add_flag("--with-stimuli", dataset.stimuli, "bids: the study's images");
   command.add_flag("--with-database", arguments.with_database,
                    "bids: a copy of the database in sourcedata/, never its key");

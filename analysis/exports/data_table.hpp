@@ -38,7 +38,7 @@ struct DataTable {
 
 /// The table in the form of BIDS: tab-separated UTF-8 without a byte order mark, with line feeds
 /// and decimal points; "n/a" for a missing value. An empty text counts as missing; a tab or line
-/// end in a text becomes a space. Source: BIDS specification 1.10, "Tabular files".
+/// end in a text becomes a space. Source: BIDS specification 1.11, "Tabular files".
 /// \throws std::invalid_argument if a row and the header differ in length
 [[nodiscard]] std::string tsv_text(const DataTable& table);
 

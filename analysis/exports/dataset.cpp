@@ -37,7 +37,15 @@ Levels incident_levels() {
           {"participant-noted", "a note or deviation after the session"},
           {"participant-excluded", "the session was excluded"},
           {"participant-replaced", "somebody else took the participant's place"},
-          {"participant-withdrawn", "the participant withdrew"}};
+          {"participant-withdrawn", "the participant withdrew"},
+          {"session-begins", "the session begins, or goes on after the program had ended"},
+          {"session-ends", "the session ends"},
+          {"plane-on", "a plane can be felt from now on"},
+          {"contact", "the stylus comes near the plane"},
+          {"plane-off", "the plane can no longer be felt"},
+          {"time-up", "the time to explore was over, and the force has faded"},
+          {"answered", "the participant answered"},
+          {"practised", "the participant answered in practice"}};
 }
 
 Meanings of_trials() {
@@ -58,6 +66,9 @@ Meanings of_trials() {
       {"trial_type", {"Texture that was presented"}},
       {"exemplar", {"Image that the presented texture was taken from"}},
       {"stim_file", {"Image that the presented texture was taken from, below stimuli/"}},
+      {"motion_file",
+       {"Recording of the trial, below the folder of the participant's session; its run is the "
+        "trial"}},
       {"response", {"Texture or other choice that the participant named"}},
       {"correct", yes_or_no("Whether the response is the right one; a trial without a "
                             "response is wrong")},
@@ -171,8 +182,12 @@ Meanings of_what_was_said() {
       {"event", {"Place of the event in its chain"}},
       {"incident", {"What happened", "", incident_levels()}},
       {"at_s", {"Time since the session's opening", "s"}},
-      {"onset", {"Time since the session's opening", "s"}},
-      {"duration", {"Not recorded", "s"}},
+      {"onset",
+       {"Time since the session's opening; in motion/, since the first sample of the run", "s"}},
+      {"duration", {"How long it lasted; n/a: not recorded", "s"}},
+      {"exploration",
+       {"Which of the trial's explorations begins, from 1; if a trial presents several planes, "
+        "each is explored once"}},
       {"code",
        {"Why: the reason of an interruption, the program's reason for a stop, the code of a "
         "deviation, what a session was resumed after"}},
@@ -194,6 +209,10 @@ Meanings of_participants() {
   return {
       {"participant_id", {"The participant's label in this dataset"}},
       {"session_id", {"The session's label in this dataset"}},
+      {"filename", {"File, below the folder of the participant's session"}},
+      {"acq_time",
+       {"When the first sample was taken. Every first session opens on 1920-01-01 at 00:00:00, "
+        "and later ones as many days after it as they were; simulated ones have no day"}},
       {"age_band", {"Age as the participant gave it, in bands of ten years"}},
       {"sex", {"Sex or gender as the participant gave it"}},
       {"handedness",
@@ -206,24 +225,12 @@ Meanings of_participants() {
   };
 }
 
-Meanings of_traces() {
-  return {
-      {"x_mm", {"Stylus along the texture, from its left edge", "mm"}},
-      {"y_mm", {"Stylus along the texture, from its top edge", "mm"}},
-      {"z_mm", {"Stylus above the plane; negative: pressed into it", "mm"}},
-      {"force_x_n", {"Force sent to the device along x", "N"}},
-      {"force_y_n", {"Force sent to the device along y", "N"}},
-      {"force_z_n", {"Force sent to the device out of the plane", "N"}},
-  };
-}
-
 Meanings all_meanings() {
   Meanings all = of_trials();
   all.merge(of_sessions());
   all.merge(of_collection());
   all.merge(of_participants());
   all.merge(of_what_was_said());
-  all.merge(of_traces());
   return all;
 }
 

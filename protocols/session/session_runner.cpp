@@ -41,8 +41,12 @@ class TrialRun {
   [[nodiscard]] const engine::RenderingModel& model() const;
   /// Presents all planes of a trial with intervals.
   void run_intervals();
-  /// \return when the exploration ended
-  [[nodiscard]] Time note_exploration(const Exploration& done, Time plane_on);
+  /// When an exploration began, by the servo's clock, and ended.
+  struct Span {
+    Time began;
+    Time ended;
+  };
+  [[nodiscard]] Span note_exploration(const Exploration& done, Time plane_on);
   /// \return whether the participant is to answer
   [[nodiscard]] bool explore(const engine::RenderingModel& model);
   [[nodiscard]] bool explore_again(const engine::RenderingModel& model);
@@ -59,6 +63,7 @@ class TrialRun {
   device::ServoOptions servo_;
   std::optional<design::IntervalPlan> intervals_;
   TrialTrace trace_;
+  Time presented_at_{};
   int of_ = 0;                 ///< presentations in all, as far as is known
   int came_again_ = 0;         ///< trials that were not explored as asked for
   bool hand_was_off_ = false;  ///< in the trial before
@@ -96,13 +101,13 @@ const engine::RenderingModel& TrialRun::model() const {
 bool TrialRun::explore(const engine::RenderingModel& model) {
   if (parts_.explorer.in_real_time()) parts_.source.fetch();
   trace_.begin();
-  const Time plane_on = desk_.now();
-  session_.present(plane_on);
+  presented_at_ = desk_.now();
+  session_.present(presented_at_);
   desk_.enter("exploring");
   ++tally_.presentations;
   ModelForce force(model);
   return end_exploration(desk_.explore(force, parts_.source.plane(), servo_, trace_.next_part()),
-                         plane_on);
+                         presented_at_);
 }
 
 bool TrialRun::explore_again(const engine::RenderingModel& model) {
@@ -119,22 +124,22 @@ bool TrialRun::explore_again(const engine::RenderingModel& model) {
 /// Ticks count from the servo's start, a moment after plane-on was recorded. Events that follow the
 /// exploration have the time of its end and not the present one: how long it takes to pack a trace
 /// or to write a flight record tells rough textures from smooth ones.
-Session::Time TrialRun::note_exploration(const Exploration& done, Time plane_on) {
+TrialRun::Span TrialRun::note_exploration(const Exploration& done, Time plane_on) {
   const Time began =
       done.began ? std::clamp(parts_.clock.of(*done.began), plane_on, desk_.now()) : plane_on;
   const Time ended = std::min(began + done.lasted, desk_.now());
   tally_.ticks += done.servo.ticks;
   if (done.landed_at) session_.contact(std::min(began + *done.landed_at, ended));
-  return ended;
+  return {began, ended};
 }
 
 bool TrialRun::end_exploration(const Exploration& done, Time plane_on) {
-  const Time ended = note_exploration(done, plane_on);
+  const auto [began, ended] = note_exploration(done, plane_on);
   if (is_interrupted(done.servo)) {
     session_.interrupt(ended, desk_.note_interruption(done.servo), done.detail);
     return false;
   }
-  trace_.add(done);
+  trace_.add(done, began - presented_at_);
   trace_.pack(session_, parts_.explorer.in_real_time());
   time_is_up_ = done.servo.end == device::ServoEnd::time_limit;
   if (!time_is_up_) {
@@ -160,6 +165,7 @@ void TrialRun::run_intervals() {
     plane_on = desk_.now();
     if (!is_presented) {
       session_.present(plane_on);
+      presented_at_ = plane_on;
       ++tally_.presentations;
       is_presented = true;
     }
@@ -167,10 +173,11 @@ void TrialRun::run_intervals() {
     return trace_.next_part();
   };
   listener.explored = [&](const Exploration& done) {
-    ended = note_exploration(done, plane_on);
+    const Span span = note_exploration(done, plane_on);
+    ended = span.ended;
     last = done.servo;
     detail = done.detail;
-    if (!is_interrupted(done.servo)) trace_.add(done);
+    if (!is_interrupted(done.servo)) trace_.add(done, span.began - presented_at_);
   };
   switch (session::run_intervals(desk_, shown, false, listener)) {
     case IntervalsEnd::broken_off:

@@ -120,6 +120,7 @@ void TrialTrace::begin() {
   packing_ = {};
   trace_.samples.clear();
   explorations_.clear();
+  began_ns_.clear();
   ticks_ = overruns_ = limited_ticks_ = held_in_contact_ = 0;
   health_.reset();
 }
@@ -129,9 +130,10 @@ store::Trace& TrialTrace::next_part() {
   return explorations_.empty() ? trace_ : more_;
 }
 
-void TrialTrace::add(const Exploration& done) {
+void TrialTrace::add(const Exploration& done, std::chrono::nanoseconds began) {
   const store::Trace& part = explorations_.empty() ? trace_ : more_;
   explorations_.push_back(static_cast<std::int64_t>(part.samples.size()));
+  began_ns_.push_back(began.count());
   if (explorations_.size() > 1) {
     trace_.samples.insert(trace_.samples.end(), more_.samples.begin(), more_.samples.end());
   }
@@ -156,6 +158,7 @@ store::TraceBody TrialTrace::body(int trial) const {
   body.overruns = overruns_;
   body.servo = health_;
   if (explorations_.size() > 1) body.explorations = explorations_;
+  if (began_ns_ != std::vector<std::int64_t>{0}) body.began_ns = began_ns_;
   return body;
 }
 

@@ -7,6 +7,7 @@
 #include "protocols/store/payload.hpp"
 #include "protocols/store/trace.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <future>
 #include <optional>
@@ -54,7 +55,8 @@ class TrialTrace {
   /// The trace of the next exploration, for the explorer. Waits until packing is over.
   [[nodiscard]] store::Trace& next_part();
   /// Appends that exploration.
-  void add(const Exploration& done);
+  /// \param began  its first tick, since the presentation began
+  void add(const Exploration& done, std::chrono::nanoseconds began);
   /// Ticks of the servo's clock that the explorations took.
   [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
 
@@ -74,6 +76,7 @@ class TrialTrace {
   store::Trace trace_;
   store::Trace more_;                       ///< of an exploration after the first
   std::vector<std::int64_t> explorations_;  ///< samples of each
+  std::vector<std::int64_t> began_ns_;      ///< of each, since the presentation began
   std::int64_t ticks_ = 0;
   std::int64_t overruns_ = 0;
   std::int64_t limited_ticks_ = 0;

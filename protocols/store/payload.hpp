@@ -266,6 +266,9 @@ struct TraceBody {
   /// Samples of each exploration, if the participant explored again; they add up to `samples`.
   /// Sealed: empty if not opened.
   std::vector<std::int64_t> explorations{};
+  /// When the first sample of each exploration was taken, since the presentation began. Sealed.
+  /// Empty: of one exploration, at once; of several, not recorded.
+  std::vector<std::int64_t> began_ns{};
   std::optional<ServoHealth> servo{};  ///< real time only
 };
 

@@ -177,6 +177,7 @@ void members(Io& io, In<Io, TraceBody>& body) {
   io("trace", body.trace);
   io.sealed("largest_force_n", body.largest_force_n);
   io.if_any("explorations", body.explorations);
+  io.if_any("began_ns", body.began_ns);
   io.part("servo", body.servo);
 }
 

@@ -189,9 +189,9 @@ TEST_CASE("datasets for archives tell visits, and groups once outcomes are shown
     CHECK(bids_faults(bids).empty());
     CHECK(psych_ds_faults(psych).empty());
     CHECK_THAT(text_of(read_file(bids / "sub-P1/sub-P1_sessions.tsv")),
-               holds_text("\tvisit\tgroup\n"));
+               holds_text("\tpauses\tvisit\n"));
     const std::string people = text_of(read_file(bids / "participants.tsv"));
-    CHECK_THAT(people, holds_text("\tvisit\tgroup"));
+    CHECK_THAT(people, holds_text("participant_id\tparticipant\tgroup"));
     return people.find("trained") != std::string::npos ||
            people.find("control") != std::string::npos;
   };

@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cstdio>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -84,6 +87,15 @@ std::vector<DataCell> session_cells(const BidsSession& session) {
           std::int64_t{session.pauses}};
 }
 
+void append_columns(DataTable& table, const std::vector<std::string>& columns) {
+  table.columns.insert(table.columns.end(), columns.begin(), columns.end());
+}
+
+void append_cells(std::vector<DataCell>& row, std::vector<DataCell> cells) {
+  row.insert(row.end(), std::make_move_iterator(cells.begin()),
+             std::make_move_iterator(cells.end()));
+}
+
 /// The last session of each participant.
 std::vector<const BidsSession*> standing_sessions(const std::vector<BidsSession>& sessions) {
   std::vector<const BidsSession*> standing;
@@ -98,6 +110,18 @@ std::vector<const BidsSession*> standing_sessions(const std::vector<BidsSession>
     }
   }
   return standing;
+}
+
+/// Adds the group of each participant, if there are groups; it is missing where it is not shown.
+void add_group(DataTable& table, const std::vector<const BidsSession*>& standing,
+               const Collection& collection) {
+  if (collection.prescription.groups.empty()) return;
+  table.columns.emplace_back("group");
+  for (std::size_t i = 0; i < standing.size(); ++i) {
+    const auto record = std::ranges::find(collection.sessions, standing[i]->row.session,
+                                          [](const SessionRecord& of) { return of.row.session; });
+    table.rows[i].emplace_back(record->group);
+  }
 }
 
 /// The last answer that a participant gave to each question, over all sessions.
@@ -134,6 +158,15 @@ std::string snake_case(const std::string& name, const std::vector<std::string>& 
   return free;
 }
 
+/// The day of a session, if it is recorded.
+std::optional<std::chrono::sys_days> day_of(const std::string& opened_utc) {
+  int year = 0;
+  unsigned month = 0;
+  unsigned day = 0;
+  if (std::sscanf(opened_utc.c_str(), "%4d-%2u-%2u", &year, &month, &day) != 3) return std::nullopt;
+  return std::chrono::year(year) / std::chrono::month(month) / std::chrono::day(day);
+}
+
 void label_sessions(std::vector<BidsSession>& sessions) {
   std::map<std::string, int> count;
   for (const BidsSession& session : sessions) ++count[session.subject];
@@ -149,7 +182,7 @@ void label_sessions(std::vector<BidsSession>& sessions) {
 }  // namespace
 
 std::string BidsSession::folder() const {
-  return subject + (label.empty() ? "" : "/" + label) + "/beh";
+  return subject + (label.empty() ? "" : "/" + label);
 }
 
 std::string BidsSession::stem() const {
@@ -165,11 +198,19 @@ std::vector<BidsSession> bids_sessions(const store::StudyStore& store) {
     return row.erased || (state.unblinded && !state.reports(row.session));
   });
   const std::set<int> counted = counted_sessions(rows, store.commitment());
+  std::map<std::string, std::chrono::sys_days> first_days;
   for (const SessionRecord& record : collection.sessions) {
     const store::SessionRow& row = record.row;
     if (row.erased || (state.unblinded && !state.reports(row.session))) continue;
-    sessions.push_back({row, counted.contains(row.session), record.interruptions, record.pauses,
-                        "sub-" + participant_label(row.participant), ""});
+    BidsSession& session = sessions.emplace_back();
+    session.row = row;
+    session.counted = counted.contains(row.session);
+    session.interruptions = record.interruptions;
+    session.pauses = record.pauses;
+    session.subject = "sub-" + participant_label(row.participant);
+    if (const auto day = day_of(record.opened_utc)) {
+      session.days = *day - first_days.emplace(session.subject, *day).first->second;
+    }
   }
   label_sessions(sessions);
   return sessions;
@@ -183,19 +224,25 @@ DataTable bids_participants(const DatasetSource& source, const std::vector<BidsS
     by_session = demographics_of(source.outcomes->answers, source.outcomes->design);
   }
   DataTable table{{"participant_id", "participant"}, {}};
-  table.columns.insert(table.columns.end(), session_columns().begin(), session_columns().end());
+  // A column of *_sessions.tsv may not be one of participants.tsv.
+  const bool has_sessions = !sessions.empty() && !sessions.front().label.empty();
+  if (!has_sessions) append_columns(table, session_columns());
   std::vector<BidsPerson> people;
   for (const BidsSession* session : standing_sessions(sessions)) {
     std::vector<DataCell>& row = table.rows.emplace_back();
     row = {session->subject, session->row.participant};
-    for (DataCell& cell : session_cells(*session)) row.push_back(std::move(cell));
+    if (!has_sessions) append_cells(row, session_cells(*session));
     people.push_back(said_by(session->subject, sessions, by_session));
     for (const store::PersonalRecord& one : consents) {
       if (one.participant != session->row.participant) continue;
       people.back().consent_version = one.consent_version;
     }
   }
-  add_visit_and_group(table, collection);
+  if (has_sessions) {
+    add_group(table, standing_sessions(sessions), collection);
+  } else {
+    add_visit_and_group(table, collection);
+  }
   for (const OptionalColumn& column : kOptionalColumns) add_if_known(table, column, people);
   return table;
 }
@@ -215,24 +262,28 @@ std::vector<BidsQuestionnaire> bids_questionnaires(const DatasetSource& study,
       known.push_back(one);
     }
   }
+  std::set<std::string> labels;  // of the sessions, or one empty label
+  for (const BidsSession& session : sessions) labels.insert(session.label);
   std::vector<BidsQuestionnaire> all;
   for (auto& [name, of] : questions) {
     std::ranges::sort(of, {}, &QuestionAnswer::question);
-    BidsQuestionnaire& one = all.emplace_back();
-    one.name = snake_case(name, {});
-    one.table.columns = {"participant_id"};
-    if (!sessions.front().label.empty()) one.table.columns.emplace_back("session_id");
-    for (const QuestionAnswer& question : of) {
-      one.table.columns.push_back(snake_case(question.question, one.table.columns));
-      one.questions.push_back(question_of(outcomes.asked, question));
-    }
-    for (const BidsSession& session : sessions) {
-      const auto said = answers[name].find(session.row.session);
-      if (said == answers[name].end()) continue;
-      std::vector<DataCell>& row = one.table.rows.emplace_back();
-      row = {session.subject};
-      if (!session.label.empty()) row.emplace_back(session.label);
-      for (const QuestionAnswer& question : of) row.push_back(said->second[question.question]);
+    for (const std::string& label : labels) {
+      BidsQuestionnaire one;
+      one.tool = snake_case(name, {});
+      one.name = one.tool + (label.empty() ? "" : "_session_" + label.substr(label.find('-') + 1));
+      one.table.columns = {"participant_id"};
+      for (const QuestionAnswer& question : of) {
+        one.table.columns.push_back(snake_case(question.question, one.table.columns));
+        one.questions.push_back(question_of(outcomes.asked, question));
+      }
+      for (const BidsSession& session : sessions) {
+        const auto said = answers[name].find(session.row.session);
+        if (session.label != label || said == answers[name].end()) continue;
+        std::vector<DataCell>& row = one.table.rows.emplace_back();
+        row = {session.subject};
+        for (const QuestionAnswer& question : of) row.push_back(said->second[question.question]);
+      }
+      if (!one.table.rows.empty()) all.push_back(std::move(one));
     }
   }
   return all;
@@ -241,14 +292,16 @@ std::vector<BidsQuestionnaire> bids_questionnaires(const DatasetSource& study,
 DataTable bids_sessions_of(const std::string& subject, const std::vector<BidsSession>& sessions,
                            const Collection& collection) {
   DataTable table{{"session_id"}, {}};
-  table.columns.insert(table.columns.end(), session_columns().begin(), session_columns().end());
+  append_columns(table, session_columns());
+  const bool has_visits = collection.prescription.visits > 1;
+  if (has_visits) table.columns.emplace_back("visit");
   for (const BidsSession& session : sessions) {
     if (session.subject != subject) continue;
     std::vector<DataCell>& row = table.rows.emplace_back();
     row = {session.label};
-    for (DataCell& cell : session_cells(session)) row.push_back(std::move(cell));
+    append_cells(row, session_cells(session));
+    if (has_visits) row.emplace_back(std::int64_t{session.row.visit});
   }
-  add_visit_and_group(table, collection);
   return table;
 }
 

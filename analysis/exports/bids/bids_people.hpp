@@ -6,6 +6,7 @@
 #include "analysis/exports/data_table.hpp"
 #include "analysis/exports/dataset.hpp"
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,10 @@ struct BidsSession {
   int pauses = 0;
   std::string subject;  ///< for example "sub-P01"
   std::string label;    ///< for example "ses-1"; empty if nobody has more than one session
-  /// The folder of its files, for example "sub-P01/ses-1/beh".
+  /// Between the participant's first session and this one; 0 if days are not recorded, as of
+  /// simulated participants.
+  std::chrono::days days{};
+  /// The folder of its datatypes, for example "sub-P01/ses-1".
   [[nodiscard]] std::string folder() const;
   /// The beginning of their names, for example "sub-P01_ses-1".
   [[nodiscard]] std::string stem() const;
@@ -29,10 +33,12 @@ struct BidsSession {
 /// show.
 [[nodiscard]] std::vector<BidsSession> bids_sessions(const store::StudyStore& store);
 
-/// One participant's or session's answers to one questionnaire, as phenotype/<name>.tsv.
+/// Participants' answers to one questionnaire in one session each, as phenotype/<name>.tsv, in
+/// which BIDS wants one row a participant.
 struct BidsQuestionnaire {
-  std::string name;  ///< of letters, digits and underscores
-  DataTable table;   ///< participant_id, session_id if there are several, one column a question
+  std::string tool;  ///< the questionnaire, of letters, digits and underscores
+  std::string name;  ///< the same, and if there are sessions, which
+  DataTable table;   ///< participant_id, and one column a question
   /// The questions of the columns after these; null: nobody knows the wording.
   std::vector<const design::Question*> questions;
 };
@@ -46,7 +52,8 @@ struct BidsQuestionnaire {
 /// participants.tsv: one row for each participant, with the data of the participant's last session.
 /// Age (in bands), sex and handedness come from sealed questionnaires after unblinding; a column is
 /// missing if nobody has a value. Of the personal data it has the last version of the consent form.
-/// In studies with visits or groups it has those of the collection (add_visit_and_group).
+/// In studies with visits or groups it has those of the collection (add_visit_and_group). If there
+/// are labelled sessions, what belongs to a session (not the group) is in *_sessions.tsv alone.
 [[nodiscard]] DataTable bids_participants(const DatasetSource& source,
                                           const std::vector<BidsSession>& sessions,
                                           const Collection& collection,

@@ -1,9 +1,13 @@
 #include "analysis/exports/bids/bids_sidecars_json.hpp"
 
 #include "analysis/collection.hpp"
-#include "analysis/exports/bids/bids_traces.hpp"
+#include "analysis/exports/bids/bids_motion.hpp"
 #include "analysis/json_figures.hpp"
 #include "protocols/design/languages.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -65,6 +69,26 @@ std::string instructions(const design::Study& study) {
   return fmt::format("{}", fmt::join(own->second, "\n\n"));
 }
 
+/// What describes the task in the sidecars of every datatype.
+Json task_object(const DatasetSource& study, const DatasetOptions& options) {
+  const store::StudyCommitment& commitment = study.store.commitment();
+  Json object{{"TaskName", commitment.study}, {"TaskDescription", task_description(study)}};
+  if (study.key != nullptr) object["Instructions"] = instructions(study.key->study);
+  put_if_given(object, "InstitutionName", options.institution);
+  return object;
+}
+
+/// How many channels of each type a recording has.
+std::map<std::string_view, int> channel_counts() {
+  static const DataTable kChannels = motion_channels();
+  const auto type = std::ranges::find(kChannels.columns, "type") - kChannels.columns.begin();
+  std::map<std::string_view, int> counts;
+  for (const std::vector<DataCell>& channel : kChannels.rows) {
+    ++counts[std::get<std::string>(channel[static_cast<std::size_t>(type)])];
+  }
+  return counts;
+}
+
 }  // namespace
 
 std::string dataset_description_json(const DatasetSource& study, const DatasetOptions& options) {
@@ -103,22 +127,70 @@ std::string columns_json(const std::vector<std::string>& columns, bool simulated
 
 std::string task_json(const DatasetSource& study, const DatasetOptions& options,
                       const std::vector<std::string>& columns) {
-  const store::StudyCommitment& commitment = study.store.commitment();
-  Json object{{"TaskName", commitment.study}, {"TaskDescription", task_description(study)}};
-  if (study.key != nullptr) object["Instructions"] = instructions(study.key->study);
-  put_if_given(object, "InstitutionName", options.institution);
-  put_stamp(object, commitment.simulated);
+  Json object = task_object(study, options);
+  put_stamp(object, study.store.commitment().simulated);
   put_columns(object, columns);
+  return json_text(object);
+}
+
+std::string events_json(const DatasetSource& study, const DatasetOptions& options,
+                        const std::vector<std::string>& columns) {
+  Json object = task_object(study, options);
+  put_stamp(object, study.store.commitment().simulated);
+  object["StimulusPresentation"] = {{"SoftwareName", "Touchtrial"},
+                                    {"SoftwareVersion", study.store.commitment().program_version}};
+  put_columns(object, columns);
+  return json_text(object);
+}
+
+// Every recording has all fields, and no others than those of the specification: the validator that
+// npm serves looks at each file alone and refuses any other field.
+std::string motion_json(const DatasetSource& study, const DatasetOptions& options,
+                        const BidsSession& session, const store::TraceBody& body) {
+  Json object = task_object(study, options);
+  object["SamplingFrequency"] = body.rate_hz;
+  object["SamplingFrequencyEffective"] = body.servo ? body.servo->rate_hz : body.rate_hz;
+  object["TrackingSystemName"] = stamped(
+      "Handle of the force-feedback device, driver " + session.row.device, session.row.simulated);
+  for (const SessionRecord& record : study.outcomes->collection.sessions) {
+    if (record.row.session != session.row.session) continue;
+    put_if_given(object, "DeviceSerialNumber", record.device_serial);
+    if (!record.station) continue;
+    put_if_given(object, "ManufacturersModelName", record.station->model);
+    put_if_given(object, "SoftwareVersions", record.station->firmware);
+  }
+  const std::map<std::string_view, int> counts = channel_counts();
+  for (const char* type :
+       {"ACCEL", "ANGACCEL", "GYRO", "JNTANG", "LATENCY", "MAGN", "MISC", "ORNT", "POS", "VEL"}) {
+    const auto found = counts.find(type);
+    object[std::string(type) + "ChannelCount"] = found == counts.end() ? 0 : found->second;
+  }
+  object["MotionChannelCount"] = object["POSChannelCount"];
+  object["TrackedPointsCount"] = 1;
+  object["MissingValues"] = "n/a";
+  return json_text(object);
+}
+
+std::string channels_json() {
+  const Json object{
+      {"reference_frame",
+       {{"Description", "Frame of positions and forces"},
+        {"Levels",
+         {{"plane",
+           {{"Description",
+             "The plane that is felt: the origin is the top left corner of the texture, x goes to "
+             "its right edge, y to its bottom edge, and z out of the plane, towards the "
+             "hand"}}}}}}}};
   return json_text(object);
 }
 
 std::string questionnaire_json(const BidsQuestionnaire& questionnaire, const std::string& language,
                                bool simulated) {
   const std::string what =
-      questionnaire.name == "handedness"
+      questionnaire.tool == "handedness"
           ? "Edinburgh Handedness Inventory, short form (Veale 2014), and the "
             "hand that held the pen"
-          : "Questions of the study, questionnaire \"" + questionnaire.name + "\"";
+          : "Questions of the study, questionnaire \"" + questionnaire.tool + "\"";
   Json object{{"MeasurementToolMetadata", {{"Description", what}}}};
   put_stamp(object, simulated);
   const std::vector<std::string>& columns = questionnaire.table.columns;
@@ -132,15 +204,6 @@ std::string questionnaire_json(const BidsQuestionnaire& questionnaire, const std
     }
     object[columns[before + i]] = described;
   }
-  return json_text(object);
-}
-
-std::string trace_sidecar_json(const store::TrialRow& row, bool simulated) {
-  Json object{{"SamplingFrequency", row.rate_hz},
-              {"StartTime", std::chrono::duration<double>(row.presented_at).count()},
-              {"Columns", trace_columns()}};
-  put_stamp(object, simulated);
-  put_columns(object, trace_columns());
   return json_text(object);
 }
 

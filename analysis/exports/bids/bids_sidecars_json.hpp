@@ -1,9 +1,10 @@
 /// \file The JSON files of a BIDS dataset. Private to exports.
-/// Source: BIDS specification 1.10; docs/exports.md.
+/// Source: BIDS specification 1.11; docs/exports.md.
 #pragma once
 
 #include "analysis/exports/bids/bids_people.hpp"
 #include "analysis/exports/dataset.hpp"
+#include "protocols/store/payload.hpp"
 
 #include <string>
 #include <vector>
@@ -11,7 +12,7 @@
 namespace touchtrial::analysis {
 
 /// The version of BIDS that the datasets follow.
-inline constexpr const char* kBidsVersion = "1.10.0";
+inline constexpr const char* kBidsVersion = "1.11.1";
 
 [[nodiscard]] std::string dataset_description_json(const DatasetSource& study,
                                                    const DatasetOptions& options);
@@ -30,7 +31,17 @@ inline constexpr const char* kBidsVersion = "1.10.0";
 [[nodiscard]] std::string questionnaire_json(const BidsQuestionnaire& questionnaire,
                                              const std::string& language, bool simulated);
 
-/// Describes one recording. Its StartTime counts from the opening of the session.
-[[nodiscard]] std::string trace_sidecar_json(const store::TrialRow& row, bool simulated);
+/// task-*_events.json: describes the task and the columns of every *_events.tsv.
+[[nodiscard]] std::string events_json(const DatasetSource& study, const DatasetOptions& options,
+                                      const std::vector<std::string>& columns);
+
+/// *_motion.json of one run: the task, the rate, and the device as the database has it.
+/// \param study  unblinded
+/// \param body  of the trial's `trace-stored`, opened
+[[nodiscard]] std::string motion_json(const DatasetSource& study, const DatasetOptions& options,
+                                      const BidsSession& session, const store::TraceBody& body);
+
+/// task-*_channels.json: the frame of positions and forces.
+[[nodiscard]] std::string channels_json();
 
 }  // namespace touchtrial::analysis

@@ -1,8 +1,8 @@
 #include "analysis/exports/bids/export_bids.hpp"
 
+#include "analysis/exports/bids/bids_motion.hpp"
 #include "analysis/exports/bids/bids_people.hpp"
 #include "analysis/exports/bids/bids_sidecars_json.hpp"
-#include "analysis/exports/bids/bids_traces.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/trial_tables.hpp"
 #include "core/errors.hpp"
@@ -34,12 +34,14 @@ std::string bids_readme(const DatasetSource& study, const DatasetOptions& option
       study.outcomes != nullptr ? "in the order of presentation" : "by number");
   if (options.traces) {
     text +=
-        "*_recording-trial<number>_stim.tsv.gz hold the stylus' position and the force sent, from "
-        "the moment the plane could be felt; StartTime counts from the session's opening.\n";
+        "*_motion.tsv hold the stylus' position and the force sent while a plane could be felt: a "
+        "run is a trial, *_channels.tsv names the columns, and the *_events.tsv beside them count "
+        "from the run's first sample. *_scans.tsv tell when that was, on days that are not the "
+        "sessions'.\n";
   }
   if (study.outcomes != nullptr) {
     text +=
-        "*_events.tsv list what happened besides trials, such as interruptions and pauses; "
+        "beh/*_events.tsv list what happened besides trials, such as interruptions and pauses; "
         "phenotype/ has answers to questions";
     text += options.typed == Typed::shown ? ".\n" : ", without those in words.\n";
   }
@@ -126,17 +128,22 @@ struct BidsTrials {
   std::map<int, DataTable> by_session;
 };
 
-/// \param stimuli  whether the dataset includes the images, so that stim_file can name them
-BidsTrials bids_trials(const DatasetSource& study, bool stimuli) {
+/// \param options  whether the dataset includes the images and recordings, so that stim_file and
+///   motion_file can name them
+BidsTrials bids_trials(const DatasetSource& study, const DatasetOptions& options,
+                       const std::vector<BidsSession>& sessions, const std::string& task) {
   const bool unblinded = study.outcomes != nullptr;
   const std::vector<TrialColumn> columns = trial_columns_of(study.outcomes);
   BidsTrials trials;
   for (const TrialColumn& column : columns) {
     if (is_shown(column, unblinded)) trials.columns.push_back(bids_name(column.name));
   }
-  if (stimuli) trials.columns.emplace_back("stim_file");
-  for (const store::SessionRow& session : study.store.sessions()) {
-    if (!session.erased) trials.by_session[session.session].columns = trials.columns;
+  if (options.stimuli) trials.columns.emplace_back("stim_file");
+  if (options.traces) trials.columns.emplace_back("motion_file");
+  std::map<int, const BidsSession*> by_number;
+  for (const BidsSession& session : sessions) {
+    by_number[session.row.session] = &session;
+    trials.by_session[session.row.session].columns = trials.columns;
   }
   const std::vector<store::TrialRow> in_clear =
       unblinded ? std::vector<store::TrialRow>() : study.store.trials();
@@ -147,7 +154,11 @@ BidsTrials bids_trials(const DatasetSource& study, bool stimuli) {
     for (const TrialColumn& column : columns) {
       if (is_shown(column, unblinded)) row.push_back(column.value(trial));
     }
-    if (stimuli) row.push_back(stimulus_file(trial));
+    if (options.stimuli) row.push_back(stimulus_file(trial));
+    if (!options.traces) continue;
+    row.push_back(trial.row.has_trace() ? DataCell(motion_file(*by_number.at(trial.row.session),
+                                                               task, trial.row.trial))
+                                        : DataCell());
   }
   return trials;
 }
@@ -184,12 +195,12 @@ void add_people(Files& files, const DatasetSource& study, const DatasetOptions& 
 
 void add_trials(Files& files, const DatasetSource& study, const DatasetOptions& options,
                 const std::vector<BidsSession>& sessions, const std::string& task) {
-  const BidsTrials trials = bids_trials(study, options.stimuli);
+  const BidsTrials trials = bids_trials(study, options, sessions, task);
   files.push_back(
       text_file("task-" + task + "_beh.json", task_json(study, options, trials.columns)));
   for (const BidsSession& session : sessions) {
     files.push_back(
-        text_file(session.folder() + "/" + session.stem() + "_task-" + task + "_beh.tsv",
+        text_file(session.folder() + "/beh/" + session.stem() + "_task-" + task + "_beh.tsv",
                   tsv_text(trials.by_session.at(session.row.session))));
   }
 }
@@ -226,7 +237,7 @@ void add_what_was_said(Files& files, const DatasetSource& study, const DatasetOp
   const bool has_marks = !study.outcomes->marks.empty();
   if (has_marks) columns.insert(columns.end(), {"value", "lsl_time"});
   if (options.typed == Typed::shown) columns.emplace_back("text");
-  bool is_described = false;
+  bool has_events = false;
   for (const BidsSession& session : sessions) {
     DataTable table{columns, {}};
     for (const Incident& one : study.outcomes->incidents) {
@@ -245,17 +256,28 @@ void add_what_was_said(Files& files, const DatasetSource& study, const DatasetOp
     });
     if (table.rows.empty()) continue;
     files.push_back(
-        text_file(session.folder() + "/" + session.stem() + "_task-" + task + "_events.tsv",
+        text_file(session.folder() + "/beh/" + session.stem() + "_task-" + task + "_events.tsv",
                   tsv_text(table)));
-    if (std::exchange(is_described, true)) continue;
-    files.push_back(text_file("task-" + task + "_events.json", columns_json(columns, simulated)));
+    has_events = true;
   }
+  // One file describes the events of all datatypes: one level may not have two that apply to a run.
+  std::vector<std::string> described;
+  if (has_events) described = columns;
+  if (options.traces) {
+    for (const std::string& column : motion_event_columns()) {
+      if (std::ranges::count(described, column) == 0) described.push_back(column);
+    }
+  }
+  if (described.empty()) return;
+  files.push_back(
+      text_file("task-" + task + "_events.json", events_json(study, options, described)));
 }
 
 void add_report(Files& files, const DatasetSource& study, Typed typed) {
   const std::string folder = "derivatives/touchtrial/";
   files.push_back(
       text_file(folder + "dataset_description.json", derivative_description_json(study)));
+  files.push_back(text_file(folder + ".bidsignore", "results.json\nquality.json\n"));
   files.push_back(text_file(folder + (study.outcomes != nullptr ? "results.json" : "quality.json"),
                             report_in_dataset(study, typed)));
 }
@@ -304,7 +326,7 @@ std::vector<std::filesystem::path> export_bids(const DatasetSource& study,
   add_trials(files, study, options, sessions, task);
   add_what_was_said(files, study, options, sessions, task);
   if (options.stimuli) append(files, stimulus_files(study.key->study));
-  if (options.traces) append(files, trace_files(study, sessions, task));
+  if (options.traces) append(files, motion_files(study, options, sessions, task));
   add_report(files, study, options.typed);
   if (!options.database.empty()) {
     files.push_back({"sourcedata/" + options.database.filename().string(),

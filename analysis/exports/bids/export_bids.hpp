@@ -1,5 +1,5 @@
-/// \file Exports a study as a BIDS dataset of behaviour. Source: BIDS specification 1.10,
-/// "Behavioral experiments (with no neural recordings)". Layout: docs/exports.md.
+/// \file Exports a study as a BIDS dataset of behaviour. Source: BIDS specification 1.11,
+/// "Behavioral experiments (with no neural recordings)" and "Motion". Layout: docs/exports.md.
 #pragma once
 
 #include "analysis/exports/dataset.hpp"

@@ -8,8 +8,8 @@
 namespace touchtrial {
 
 /// What is wrong with a BIDS dataset of behaviour; empty: nothing.
-/// Source: BIDS specification 1.10, "Common principles", "Tabular files", "Modality agnostic
-/// files", "Behavioral experiments (with no neural recordings)", "Physiological recordings".
+/// Source: BIDS specification 1.11.1 and its schema: "Common principles", "Modality agnostic
+/// files", "Behavioral experiments (with no neural recordings)", "Motion".
 [[nodiscard]] std::vector<std::string> bids_faults(const std::filesystem::path& dataset);
 
 /// What is wrong with a Psych-DS dataset; empty: nothing. Source: Psych-DS schema 1.5.1.

@@ -1,9 +1,8 @@
-#include "analysis/exports/bids/bids_traces.hpp"
+#include "analysis/exports/bids/bids_motion.hpp"
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/csv_reading.hpp"
 #include "analysis/exports/dataset_rules.hpp"
 #include "analysis/exports/export_psych_ds.hpp"
-#include "analysis/exports/gunzip.hpp"
 #include "analysis/fake_study.hpp"
 #include "analysis/text_matching.hpp"
 #include "core/errors.hpp"
@@ -15,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <regex>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -95,21 +95,39 @@ TEST_CASE("A study as BIDS keeps to the specification, with traces, database and
                       analysis::identification::make_report(open.outcomes)));
 }
 
-TEST_CASE("A BIDS recording holds the trace and its beginning") {
+TEST_CASE("A BIDS run holds the trace of its trial, and tells when and what was felt") {
   FakeStudy study(design::identification::classification());
   fill(study);
   study.close_and_unblind();
   const OpenStudy open(study);
   const fs::path out = study.folder() / "bids";
   analysis::export_bids(open.source, {.traces = true}, out);
-  const fs::path stem = out / "sub-PZd01/beh/sub-PZd01_task-single_recording-trial002_stim";
-  const std::string rows = gunzip(read_file(stem.string() + ".tsv.gz"));
-  CHECK(rows.starts_with("0.000\t0.000\t-0.500\t0.0000\t0.0000\t0.2500\n0.100\t"));
+  CHECK(bids_faults(out) == kNoFaults);
+  const fs::path person = out / "sub-PZd01";
+  const std::string run =
+      (person / "motion/sub-PZd01_task-single_tracksys-stylus_run-002_").string();
+  const std::string rows = text_of_file(run + "motion.tsv");
+  CHECK(rows.starts_with(
+      "0.000000\t0.000\t0.000\t-0.500\t0.0000\t0.0000\t0.2500\n0.001000\t0.100\t"));
   CHECK(std::count(rows.begin(), rows.end(), '\n') == 20);
-  const auto sidecar = nlohmann::json::parse(text_of_file(stem.string() + ".json"));
-  CHECK(sidecar["StartTime"] == 20.0);
+  const auto sidecar = nlohmann::json::parse(text_of_file(run + "motion.json"));
   CHECK(sidecar["SamplingFrequency"] == 1000.0);
-  CHECK(sidecar["stamp"] == "SIMULATED");
+  CHECK(sidecar["TaskName"] == "single");
+  CHECK(contains(sidecar["TrackingSystemName"].get<std::string>(), "(SIMULATED)"));
+  const std::string trials = text_of_file(person / "beh/sub-PZd01_task-single_beh.tsv");
+  CHECK(contains(trials, "motion/sub-PZd01_task-single_tracksys-stylus_run-002_motion.tsv"));
+  const auto scans = text_of_file(person / "sub-PZd01_scans.tsv");
+  CHECK(contains(scans, "run-002_motion.tsv\t1920-01-01T00:00:20.000000\n"));
+  const std::string events = text_of_file(run + "events.tsv");
+  CHECK(events.starts_with("onset\tduration\ttrial_type\tincident\texploration\n0\t0.02\t"));
+  CHECK(contains(events, "\tplane-on\t1\n0.5\t0\t"));
+  CHECK(contains(events, "\tcontact\tn/a\n4.25\t0\t"));
+  CHECK(events.ends_with("\tanswered\tn/a\n"));
+  const std::string other =
+      text_of_file(out /
+                   "sub-ZZZu2Zp/motion/"
+                   "sub-ZZZu2Zp_task-single_tracksys-stylus_run-007_events.tsv");
+  CHECK(other.ends_with("\ttime-up\tn/a\n"));
 }
 
 TEST_CASE("A BIDS recording keeps a trace's steps distinct, and writes no zero with a sign") {
@@ -117,15 +135,45 @@ TEST_CASE("A BIDS recording keeps a trace's steps distinct, and writes no zero w
   for (int i = -9000; i <= 9000; i += 7) {
     trace.samples.push_back({{i / 1000.0, -0.0004, 0.0}, {i / 4096.0, 1 / 4096.0, -0.00004}});
   }
-  const std::string text = analysis::trace_text(trace);
-  CHECK(text.starts_with("-9.000\t0.000\t0.000\t-2.1973\t0.0002\t0.0000\n-8.993\t"));
+  store::TrialRow row;
+  row.rate_hz = trace.rate_hz;
+  row.samples = static_cast<std::int64_t>(trace.samples.size());
+  const std::string text = analysis::motion_text(trace, analysis::recording_of(row, {}));
+  CHECK(text.starts_with(
+      "0.000000\t-9.000\t0.000\t0.000\t-2.1973\t0.0002\t0.0000\n0.001000\t-8.993\t"));
   std::istringstream lines(text);
   for (int i = -9000; i <= 9000; i += 7) {
-    std::array<double, 6> read{};
+    std::array<double, 7> read{};
     for (double& number : read) lines >> number;
-    CHECK(std::lround(read[0] * 1000.0) == i);
-    CHECK(std::lround(read[3] * 4096.0) == i);
+    CHECK(std::lround(read[1] * 1000.0) == i);
+    CHECK(std::lround(read[4] * 4096.0) == i);
   }
+}
+
+TEST_CASE("Latencies of a recording skip the time between explorations, where it is known") {
+  store::Trace trace;
+  trace.rate_hz = 3000.0;
+  trace.samples.resize(5);
+  store::TrialRow row;
+  row.rate_hz = trace.rate_hz;
+  row.samples = 5;
+  row.presented_at = milliseconds(7000);
+  store::TraceBody body;
+  body.explorations = {2, 3};
+  const auto latencies = [&] {
+    const analysis::Recording recording = analysis::recording_of(row, body);
+    std::istringstream lines(analysis::motion_text(trace, recording));
+    std::vector<std::string> first;
+    for (std::string line; std::getline(lines, line);)
+      first.push_back(line.substr(0, line.find('\t')));
+    return first;
+  };
+  CHECK(latencies() == std::vector<std::string>{"0.000000", "0.000333", "n/a", "n/a", "n/a"});
+  CHECK(analysis::recording_of(row, body).first_sample == milliseconds(7000));
+  body.began_ns = {1'500'000, 4'251'500'000};
+  CHECK(latencies() ==
+        std::vector<std::string>{"0.000000", "0.000333", "4.250000", "4.250333", "4.250667"});
+  CHECK(analysis::recording_of(row, body).first_sample == std::chrono::microseconds(7'001'500));
 }
 
 TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is exported again") {
@@ -142,7 +190,8 @@ TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is
   for (const auto& [name, text] : contents(out)) {
     INFO(name);
     CHECK_FALSE(contains(text, "P-01"));
-    CHECK_FALSE(name.ends_with(".gz"));
+    CHECK_FALSE(contains(name, "motion"));
+    CHECK_FALSE(name.ends_with("scans.tsv"));
   }
 }
 
@@ -158,11 +207,15 @@ TEST_CASE("Participants with several sessions have folders for them") {
   study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
   study.close_and_unblind();
   const fs::path out = study.folder() / "bids";
-  analysis::export_bids(OpenStudy(study).source, {}, out);
+  analysis::export_bids(OpenStudy(study).source, {.traces = true}, out);
   CHECK(bids_faults(out) == kNoFaults);
   CHECK(is_there(out / "sub-P01/ses-2/beh/sub-P01_ses-2_task-single_beh.tsv"));
   CHECK(is_there(out / "sub-P02/ses-1/beh/sub-P02_ses-1_task-single_beh.tsv"));
   CHECK(is_there(out / "sub-P01/sub-P01_sessions.tsv"));
+  CHECK(text_of_file(out / "participants.tsv").starts_with("participant_id\tparticipant\n"));
+  const fs::path run =
+      out / "sub-P01/ses-1/motion/sub-P01_ses-1_task-single_tracksys-stylus_run-003_motion.tsv";
+  CHECK(is_there(run));
 }
 
 TEST_CASE("Datasets have what people said, and what they typed only if that is wanted") {
@@ -281,6 +334,29 @@ TEST_CASE("The checkers of datasets find what is wrong") {
   CHECK(spoilt(bids / "participants.tsv", "participant_id\nsub-other\n", in_bids));
   CHECK(spoilt(bids / "task-single_beh.json", "{}", in_bids));
   CHECK(spoilt(bids / "README", "short", in_bids));
+  const fs::path motion = bids / "sub-P03/motion";
+  const fs::path run = motion / "sub-P03_task-single_tracksys-stylus_run-001_motion.tsv";
+  const std::string rows = text_of_file(run);
+  CHECK(spoilt(run, "latency\tx\ty\tz\tforce_x\tforce_y\tforce_z\n" + rows, in_bids));
+  CHECK(spoilt(run, "0\t1\t2\n", in_bids));
+  CHECK(spoilt(run, "0.5\t0\t0\t0\t0\t0\t0\n", in_bids));
+  CHECK(spoilt(run, "0\t0\t0\t0\t0\t0\t0\n1e-3\t0\t0\t0\t0\t0\t0\n", in_bids));
+  const fs::path channels = bids / "task-single_channels.tsv";
+  const std::string names = text_of_file(channels);
+  CHECK(spoilt(channels, std::regex_replace(names, std::regex("POS"), "pos"), in_bids));
+  CHECK(spoilt(channels, std::regex_replace(names, std::regex("MISC"), "VEL"), in_bids));
+  CHECK(spoilt(channels,
+               std::regex_replace(names, std::regex("name\tcomponent"), "component\tname"),
+               in_bids));
+  CHECK(spoilt(bids / "task-single_channels.json", "{}", in_bids));
+  const fs::path sidecar = motion / "sub-P03_task-single_tracksys-stylus_run-001_motion.json";
+  CHECK(spoilt(sidecar, R"({"TaskName": "single"})", in_bids));
+  CHECK(spoilt(bids / "sub-P03/sub-P03_scans.tsv", "filename\tacq_time\n", in_bids));
+  const fs::path second = bids / "task-single_tracksys-stylus_events.json";
+  replace_file(second, "{}");
+  CHECK_FALSE(bids_faults(bids).empty());
+  fs::remove(second);
+  REQUIRE(bids_faults(bids) == kNoFaults);
   replace_file(bids / "stray.tsv", "a\n1\n");
   CHECK_FALSE(bids_faults(bids).empty());
   const fs::path table = psych / "data/study-single_description-trials_data.csv";

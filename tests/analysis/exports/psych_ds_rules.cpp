@@ -1,6 +1,8 @@
 #include "analysis/exports/csv_reading.hpp"
 #include "analysis/exports/dataset_rules.hpp"
 
+#include <algorithm>
+#include <array>
 #include <regex>
 #include <set>
 
@@ -12,6 +14,11 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using Faults = std::vector<std::string>;
+
+// A fault is the code of the schema's rule (rules/errors), or the path of a recommended file.
+
+/// Required fields. Source: schema, rules/compiled_metadata.
+constexpr std::array<const char*, 3> kRequired{"name", "description", "variableMeasured"};
 
 /// The names in variableMeasured.
 std::set<std::string> check_description(const fs::path& dataset, Faults& faults) {
@@ -25,7 +32,7 @@ std::set<std::string> check_description(const fs::path& dataset, Faults& faults)
     faults.emplace_back("INVALID_JSON_FORMATTING");
     return {};
   }
-  for (const char* key : {"name", "description", "variableMeasured"}) {
+  for (const char* key : kRequired) {
     if (!object.contains(key)) faults.push_back(std::string("JSON_KEY_REQUIRED: ") + key);
   }
   if (object.value("@type", "") != "Dataset") faults.emplace_back("INCORRECT_DATASET_TYPE");
@@ -44,6 +51,7 @@ std::set<std::string> check_description(const fs::path& dataset, Faults& faults)
   return names;
 }
 
+/// Source: schema, rules/files/tabular_data/data (fileRegex), and the keywords of objects.
 void check_name(const std::string& name, Faults& faults) {
   static const std::regex kName("([a-z]+-[a-zA-Z0-9]+)(_[a-z]+-[a-zA-Z0-9]+)*_data\\.csv");
   static const std::regex kKey("([a-z]+)-[a-zA-Z0-9]+");
@@ -64,6 +72,14 @@ void check_table(const fs::path& path, std::set<std::string>& seen, Faults& faul
     return;
   }
   const std::set<std::string> header(records[0].begin(), records[0].end());
+  const auto row_id = std::ranges::find(records[0], "row_id") - records[0].begin();
+  std::set<std::string> ids;
+  for (const auto& record : records) {
+    const auto place = static_cast<std::size_t>(row_id);
+    if (place < record.size() && !ids.insert(record[place]).second) {
+      faults.push_back("ROWID_VALUES_NOT_UNIQUE: " + path.string());
+    }
+  }
   if (header.size() != records[0].size()) faults.push_back("CSV_HEADER_REPEATED: " + path.string());
   for (const auto& record : records) {
     if (record.size() != records[0].size()) {

@@ -108,6 +108,9 @@ TEST_CASE("members for sessions in real time are written for those alone, and re
                             .lost = 1,
                             .held = 3};
   REQUIRE(trace_body_from_json(to_json(trace)).servo == trace.servo);
+  REQUIRE(to_json(trace).find("began_ns") == std::string::npos);
+  trace.began_ns = {1'250'000, 8'000'000'000};
+  REQUIRE(trace_body_from_json(to_json(trace)).began_ns == trace.began_ns);
 
   TrialMeasures measures;
   REQUIRE_FALSE(measures_from_json(to_json(measures)).limited_ticks);

@@ -1,14 +1,21 @@
 // Whole sessions of thresholds: what they present, store, and how they are checked.
+#include "analysis/exports/bids/export_bids.hpp"
+#include "analysis/exports/csv_reading.hpp"
+#include "analysis/exports/dataset_rules.hpp"
+#include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/outcomes.hpp"
+#include "analysis/sealed_sessions.hpp"
 #include "analysis/verification/verification.hpp"
 #include "core/errors.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/interval_run.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/simulation.hpp"
+#include "protocols/store/payload_json.hpp"
 #include "protocols/threshold/design/threshold.hpp"
 #include "protocols/threshold/threshold_study.hpp"
 #include "support/catch.hpp"
+#include "support/temp_folder.hpp"
 
 #include <cmath>
 
@@ -111,6 +118,37 @@ TEST_CASE("an adaptive threshold study is complete and passes every check") {
     scored += trial.counted ? 1 : 0;
   }
   CHECK(scored == 2 * 5 * 8);
+}
+
+TEST_CASE("datasets of a threshold study keep to BIDS and Psych-DS, and tell intervals apart") {
+  SimulatedThresholds study(threshold_options(kTinyDetection), 1);
+  const analysis::Outcomes outcomes = study.outcomes();
+  const analysis::DatasetSource source{study.store(), &outcomes, &study.tiny().key()};
+  const TempFolder folder;
+  const std::filesystem::path bids = folder.path() / "bids";
+  const std::filesystem::path psych = folder.path() / "psych";
+  analysis::export_bids(source, {.traces = true}, bids);
+  analysis::export_psych_ds(source, {}, psych);
+  CHECK(bids_faults(bids) == std::vector<std::string>{});
+  CHECK(psych_ds_faults(psych) == std::vector<std::string>{});
+  const store::PersonKeys keys =
+      analysis::person_keys(study.store(), study.tiny().key(), study.store().sessions().at(0));
+  int trials = 0;
+  study.store().for_each(store::EventKind::trace_stored, [&](const store::Event& stored) {
+    const store::TraceBody body = store::trace_body_from_json(
+        analysis::whole_event(stored, keys.participant.value()).event.body);
+    REQUIRE(body.explorations.size() == 2);
+    REQUIRE(body.began_ns.size() == 2);
+    CHECK(body.began_ns[0] == 0);
+    const double first_s = static_cast<double>(body.explorations[0]) / body.rate_hz;
+    CHECK(static_cast<double>(body.began_ns[1]) > 1e9 * first_s);
+    ++trials;
+  });
+  CHECK(trials > 8);
+  const std::string events =
+      text_of_file(bids / "sub-P001/motion/sub-P001_task-tiny_tracksys-stylus_run-001_events.tsv");
+  CHECK(events.find("\tplane-on\t1\n") < events.find("\tplane-on\t2\n"));
+  CHECK(events.find("\tplane-on\t2\n") != std::string::npos);
 }
 
 TEST_CASE("nothing in clear of an adaptive study tells a level, or whether answers were right") {

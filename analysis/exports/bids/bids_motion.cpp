@@ -1,0 +1,282 @@
+#include "analysis/exports/bids/bids_motion.hpp"
+
+#include "analysis/exports/bids/bids_sidecars_json.hpp"
+#include "analysis/exports/trial_tables.hpp"
+#include "analysis/sealed_sessions.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/store/marks.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+using std::chrono::nanoseconds;
+
+/// Shared by the recordings that are written at the same time.
+struct SharedReading {
+  SessionKeys keys;
+  std::mutex store;  ///< held by the one thread that reads the store
+};
+
+store::Trace opened_trace(const DatasetSource& study, const store::TrialRow& row,
+                          SharedReading& shared) {
+  const auto box = [&] {
+    const std::lock_guard lock(shared.store);
+    return study.store.sealed_trace(row.session, row.trial);
+  }();
+  if (box) {
+    auto trace = store::unsealed_trace(*box, *shared.keys.at(row.session).participant);
+    if (trace) return *std::move(trace);
+  }
+  throw VerificationError(fmt::format(
+      "session {}, trial {}: its trace is missing or does not open; run `touchtrial verify` and "
+      "restore the database from a backup",
+      row.session, row.trial));
+}
+
+/// What the events of a trial say of its recording.
+struct TraceEvents {
+  store::TraceBody body;
+  std::vector<nanoseconds> timed_out{};  ///< of all presentations, since the session's opening
+};
+
+std::map<store::TrialId, TraceEvents> trace_events(const store::StudyStore& store,
+                                                   const SessionKeys& keys) {
+  std::map<store::TrialId, TraceEvents> all;
+  const auto visit = [&](const store::Event& stored) {
+    const auto own = keys.find(stored.session);
+    if (own == keys.end() || !own->second.participant) return;
+    const store::Event event = whole_event(stored, *own->second.participant).event;
+    if (event.kind == store::EventKind::timed_out) {
+      const int trial = store::trial_from_json(event.body).trial;
+      all[{stored.session, trial}].timed_out.push_back(event.at);
+    } else {
+      store::TraceBody body = store::trace_body_from_json(event.body);
+      all[{stored.session, body.trial}].body = std::move(body);
+    }
+  };
+  store.for_each(store::EventKind::timed_out, visit);
+  store.for_each(store::EventKind::trace_stored, visit);
+  return all;
+}
+
+/// The time between the first sample of an exploration and the end of another one's.
+nanoseconds lasting(std::int64_t samples, double rate_hz) {
+  constexpr double kNanosecondsPerS = 1e9;
+  return nanoseconds(std::llround(static_cast<double>(samples) * kNanosecondsPerS / rate_hz));
+}
+
+/// Appends a number of steps of 10^-kDecimals, and the character after it. This is several times
+/// faster than general formatting of doubles, and never gives -0.000.
+template <int kDecimals>
+void put_fixed(std::string& text, std::int64_t steps, char after) {
+  constexpr std::int64_t kSteps = [] {
+    std::int64_t power = 1;
+    for (int i = 0; i < kDecimals; ++i) power *= 10;
+    return power;
+  }();
+  const std::int64_t size = std::abs(steps);
+  if (steps < 0) text += '-';
+  const fmt::format_int whole(size / kSteps);
+  text.append(whole.data(), whole.size());
+  text += '.';
+  std::int64_t rest = size % kSteps;
+  for (std::int64_t place = kSteps / 10; place > 0; rest %= place, place /= 10) {
+    text += static_cast<char>('0' + rest / place);
+  }
+  text += after;
+}
+
+void put_sample(std::string& text, const store::TraceSample& sample) {
+  const Vec3& at = sample.position_mm;
+  const Vec3& force = sample.force_n;
+  for (const double position_mm : {at.x, at.y, at.z}) {
+    put_fixed<3>(text, std::llround(position_mm * 1e3), '\t');
+  }
+  for (const double force_n : {force.x, force.y}) {
+    put_fixed<4>(text, std::llround(force_n * 1e4), '\t');
+  }
+  put_fixed<4>(text, std::llround(force.z * 1e4), '\n');
+}
+
+/// The textures that trials presented, as their rows in *_beh.tsv have them.
+DataCell texture_of(const DatasetSource& study, const TrialOutcome& trial) {
+  static const std::string kNobody;
+  const std::span<const TrialColumn> columns = trial_columns();
+  const auto column = std::ranges::find(columns, std::string_view("class"), &TrialColumn::name);
+  return column->value({kNobody, trial.row, false, study.outcomes, &trial});
+}
+
+/// The explorations of a run and what happened in it, by their times since its first sample; times
+/// that are not known come last.
+DataTable motion_events(const Recording& recording, const TraceEvents& events,
+                        const store::TrialRow& row, const DataCell& texture) {
+  DataTable table{motion_event_columns(), {}};
+  const auto add = [&](DataCell onset, nanoseconds duration, store::Mark mark,
+                       DataCell exploration) {
+    table.rows.push_back(
+        {std::move(onset), duration, texture, std::string(name_of(mark)), std::move(exploration)});
+  };
+  for (std::size_t i = 0; i < recording.samples.size(); ++i) {
+    add(recording.began[i] ? DataCell(*recording.began[i]) : DataCell(),
+        lasting(recording.samples[i], recording.rate_hz), store::Mark::plane_on,
+        static_cast<std::int64_t>(i) + 1);
+  }
+  const auto add_moment = [&](nanoseconds at, store::Mark mark) {
+    add(at - recording.first_sample, {}, mark, {});
+  };
+  if (row.contact_at) add_moment(*row.contact_at, store::Mark::contact);
+  for (const nanoseconds at : events.timed_out) {
+    if (at >= row.presented_at) add_moment(at, store::Mark::time_up);
+  }
+  if (row.answered_at) add_moment(*row.answered_at, store::Mark::answered);
+  std::ranges::stable_sort(table.rows, {}, [](const std::vector<DataCell>& cells) {
+    const auto* onset = std::get_if<nanoseconds>(&cells.front());
+    return onset != nullptr ? *onset : nanoseconds::max();
+  });
+  return table;
+}
+
+/// Date and time as BIDS has them, on days that are not the session's (BidsSession::days).
+std::string shifted_time(const BidsSession& session, nanoseconds since_opening) {
+  const std::chrono::sys_days day =
+      std::chrono::sys_days(std::chrono::year(1920) / 1 / 1) + session.days;
+  const auto at = day + std::chrono::round<std::chrono::microseconds>(since_opening);
+  const auto whole = std::chrono::floor<std::chrono::seconds>(at);
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:06}", fmt::gmtime(whole.time_since_epoch().count()),
+                     (at - whole).count());
+}
+
+}  // namespace
+
+Recording recording_of(const store::TrialRow& row, const store::TraceBody& body) {
+  Recording recording;
+  recording.rate_hz = row.rate_hz;
+  recording.samples = body.explorations;
+  if (recording.samples.empty()) recording.samples = {row.samples};
+  recording.began.resize(recording.samples.size());
+  recording.began.front() = nanoseconds{};
+  recording.first_sample = row.presented_at;
+  if (body.began_ns.empty()) return recording;
+  recording.first_sample += nanoseconds(body.began_ns.front());
+  for (std::size_t i = 0; i < std::min(recording.began.size(), body.began_ns.size()); ++i) {
+    recording.began[i] = nanoseconds(body.began_ns[i] - body.began_ns.front());
+  }
+  return recording;
+}
+
+DataTable motion_channels() {
+  const std::monostate none;
+  const std::string hand = "hand";
+  const std::string stylus = "stylus";
+  const std::string plane = "plane";
+  const auto place = [&](const char* axis, const char* description) -> std::vector<DataCell> {
+    return {axis, axis, "POS", stylus, "mm", hand, plane, description};
+  };
+  const auto force = [&](const char* name, const char* axis,
+                         const char* description) -> std::vector<DataCell> {
+    return {name, axis, "MISC", stylus, "N", hand, plane, description};
+  };
+  return {{"name", "component", "type", "tracked_point", "units", "placement", "reference_frame",
+           "description"},
+          {{"latency", none, "LATENCY", none, "s", none, none, "Time since the run's first sample"},
+           place("x", "Stylus along the texture, from its left edge"),
+           place("y", "Stylus along the texture, from its top edge"),
+           place("z", "Stylus above the plane; negative: pressed into it"),
+           force("force_x", "x", "Force sent to the device along x"),
+           force("force_y", "y", "Force sent to the device along y"),
+           force("force_z", "z", "Force sent to the device out of the plane")}};
+}
+
+std::string motion_text(const store::Trace& trace, const Recording& recording) {
+  std::string text;
+  text.reserve(trace.samples.size() * 60);
+  auto sample = trace.samples.begin();
+  for (std::size_t i = 0; i < recording.samples.size(); ++i) {
+    for (std::int64_t k = 0; k < recording.samples[i] && sample != trace.samples.end(); ++k) {
+      if (recording.began[i]) {
+        const nanoseconds at = *recording.began[i] + lasting(k, recording.rate_hz);
+        put_fixed<6>(text, std::chrono::round<std::chrono::microseconds>(at).count(), '\t');
+      } else {
+        text += "n/a\t";
+      }
+      put_sample(text, *sample++);
+    }
+  }
+  return text;
+}
+
+std::string motion_file(const BidsSession& session, const std::string& task, int trial) {
+  return fmt::format("motion/{}_task-{}_tracksys-stylus_run-{:03}_motion.tsv", session.stem(), task,
+                     trial);
+}
+
+const std::vector<std::string>& motion_event_columns() {
+  static const std::vector<std::string> kColumns{"onset", "duration", "trial_type", "incident",
+                                                 "exploration"};
+  return kColumns;
+}
+
+std::vector<ExportFile> motion_files(const DatasetSource& study, const DatasetOptions& options,
+                                     const std::vector<BidsSession>& sessions,
+                                     const std::string& task) {
+  const auto shared = std::make_shared<SharedReading>();
+  shared->keys = person_keys(study.store, *study.key);
+  const auto events = trace_events(study.store, shared->keys);
+  const bool simulated = study.store.commitment().simulated;
+  const std::string all = "task-" + task;
+  std::vector<ExportFile> files{
+      text_file(all + "_channels.tsv", tsv_text(motion_channels())),
+      text_file(all + "_channels.json", channels_json()),
+      text_file("scans.json", columns_json({"filename", "acq_time"}, simulated))};
+  for (const BidsSession& session : sessions) {
+    DataTable scans{{"filename", "acq_time"}, {}};
+    const auto add_scan = [&](std::string file, nanoseconds at) {
+      scans.rows.push_back({std::move(file), shifted_time(session, at)});
+    };
+    add_scan("beh/" + session.stem() + "_task-" + task + "_beh.tsv", {});
+    for (const TrialOutcome& trial : study.outcomes->trials) {
+      const store::TrialRow& row = trial.row;
+      if (row.session != session.row.session || !row.has_trace()) continue;
+      const TraceEvents& own = events.at({row.session, row.trial});
+      const Recording recording = recording_of(row, own.body);
+      const std::string name = motion_file(session, task, row.trial);
+      const std::string path = session.folder() + "/" + name;
+      const auto with = [&](const std::string& end) {
+        return path.substr(0, path.size() - std::string_view("motion.tsv").size()) + end;
+      };
+      add_scan(name, recording.first_sample);
+      files.push_back({path,
+                       [study, row, recording, shared](const std::filesystem::path& to) {
+                         const store::Trace trace = opened_trace(study, row, *shared);
+                         replace_file(to, motion_text(trace, recording));
+                       },
+                       true});
+      files.push_back(
+          text_file(with("motion.json"), motion_json(study, options, session, own.body)));
+      files.push_back(
+          text_file(with("events.tsv"),
+                    tsv_text(motion_events(recording, own, row, texture_of(study, trial)))));
+    }
+    std::ranges::stable_sort(scans.rows, {},
+                             [](const auto& cells) { return std::get<std::string>(cells[1]); });
+    files.push_back(
+        text_file(session.folder() + "/" + session.stem() + "_scans.tsv", tsv_text(scans)));
+  }
+  return files;
+}
+
+}  // namespace touchtrial::analysis
