@@ -133,16 +133,6 @@ std::string task_json(const DatasetSource& study, const DatasetOptions& options,
   return json_text(object);
 }
 
-std::string events_json(const DatasetSource& study, const DatasetOptions& options,
-                        const std::vector<std::string>& columns) {
-  Json object = task_object(study, options);
-  put_stamp(object, study.store.commitment().simulated);
-  object["StimulusPresentation"] = {{"SoftwareName", "Touchtrial"},
-                                    {"SoftwareVersion", study.store.commitment().program_version}};
-  put_columns(object, columns);
-  return json_text(object);
-}
-
 // Every recording has all fields, and no others than those of the specification: the validator that
 // npm serves looks at each file alone and refuses any other field.
 std::string motion_json(const DatasetSource& study, const DatasetOptions& options,

@@ -31,10 +31,6 @@ inline constexpr const char* kBidsVersion = "1.11.1";
 [[nodiscard]] std::string questionnaire_json(const BidsQuestionnaire& questionnaire,
                                              const std::string& language, bool simulated);
 
-/// task-*_events.json: describes the task and the columns of every *_events.tsv.
-[[nodiscard]] std::string events_json(const DatasetSource& study, const DatasetOptions& options,
-                                      const std::vector<std::string>& columns);
-
 /// *_motion.json of one run: the task, the rate, and the device as the database has it.
 /// \param study  unblinded
 /// \param body  of the trial's `trace-stored`, opened
