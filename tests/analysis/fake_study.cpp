@@ -171,6 +171,10 @@ void FakeStudy::add(const FakeSession& session) {
   const design::GroupPlan& groups = key_.study.groups;
   const auto group = key_.group_of(session.enrolment, draws);
   if (group && groups.open) opening.group = groups.labels[static_cast<std::size_t>(*group)];
+  if (session.after.count() > 0) {
+    const auto day = 1 + session.after.count() / 24;
+    opening.opened_utc = (day < 10 ? "2026-03-0" : "2026-03-") + std::to_string(day) + "T09:00:00Z";
+  }
   opening.participant = session.participant;
   opening.enrolment = session.enrolment;
   opening.study_id = key_.study_id;

@@ -196,15 +196,22 @@ TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is
 }
 
 TEST_CASE("Participants with several sessions have folders for them") {
-  FakeStudy study(design::identification::classification(), {.simulated = false});
-  study.add({.participant = "P01",
-             .enrolment = 1,
+  FakeStudy study(design::identification::classification(),
+                  {.simulated = false, .session = R"({"closing_questions": [
+                    {"id": "hard", "kind": "number", "text": {"en": "How hard was it?"}}]})"});
+  FakeSession first = talkative("P01", 1, R"({"hard":7})");
+  first.complete = false;
+  first.stop_after = 3;
+  first.after = std::chrono::hours(30);
+  study.add(first);
+  study.store().replace(1, "P01", std::chrono::hours(31), "the device failed");
+  FakeSession second = talkative("P01", 1, R"({"hard":5})");
+  second.after = std::chrono::hours(24 * 9);
+  study.add(second);
+  study.add({.participant = "P02",
+             .enrolment = 2,
              .answers = FakeStudy::always_right(),
-             .complete = false,
-             .stop_after = 3});
-  study.store().replace(1, "P01", milliseconds(900), "the device failed");
-  study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
-  study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
+             .after = std::chrono::hours(24 * 10)});
   study.close_and_unblind();
   const fs::path out = study.folder() / "bids";
   analysis::export_bids(OpenStudy(study).source, {.traces = true}, out);
@@ -212,10 +219,19 @@ TEST_CASE("Participants with several sessions have folders for them") {
   CHECK(is_there(out / "sub-P01/ses-2/beh/sub-P01_ses-2_task-single_beh.tsv"));
   CHECK(is_there(out / "sub-P02/ses-1/beh/sub-P02_ses-1_task-single_beh.tsv"));
   CHECK(is_there(out / "sub-P01/sub-P01_sessions.tsv"));
-  CHECK(text_of_file(out / "participants.tsv").starts_with("participant_id\tparticipant\n"));
+  CHECK(text_of_file(out / "participants.tsv")
+            .starts_with("participant_id\tparticipant\thandedness"));
   const fs::path run =
       out / "sub-P01/ses-1/motion/sub-P01_ses-1_task-single_tracksys-stylus_run-003_motion.tsv";
   CHECK(is_there(run));
+  CHECK(text_of_file(out / "phenotype/closing_session_1.tsv") ==
+        "participant_id\thard\nsub-P01\t7\n");
+  CHECK(text_of_file(out / "phenotype/closing_session_2.tsv") ==
+        "participant_id\thard\nsub-P01\t5\n");
+  const auto first_scan = [&](const char* file) { return text_of_file(out / file).substr(0, 200); };
+  CHECK(contains(first_scan("sub-P01/ses-1/sub-P01_ses-1_scans.tsv"), "\t1920-01-01T00:00:00"));
+  CHECK(contains(first_scan("sub-P01/ses-2/sub-P01_ses-2_scans.tsv"), "\t1920-01-09T00:00:00"));
+  CHECK(contains(first_scan("sub-P02/ses-1/sub-P02_ses-1_scans.tsv"), "\t1920-01-01T00:00:00"));
 }
 
 TEST_CASE("Datasets have what people said, and what they typed only if that is wanted") {
