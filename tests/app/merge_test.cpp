@@ -119,7 +119,7 @@ TEST_CASE("a merged study verifies with its key, its pack and its traces, and ex
   int recordings = 0;
   int copies = 0;
   for (const auto& [name, text] : files_of(study.in("bids"))) {
-    if (name.find("sub-") == 0 && name.ends_with(".tsv.gz")) ++recordings;
+    if (name.find("sub-") == 0 && name.ends_with("_motion.tsv")) ++recordings;
     if (!name.ends_with(".db")) continue;
     const ProgramResult copy =
         study.run({"verify", study.in("bids/" + name), "--key", study.in("C.db.key")});

@@ -230,53 +230,80 @@ const std::vector<std::string>& motion_event_columns() {
   return kColumns;
 }
 
-std::vector<ExportFile> motion_files(const DatasetSource& study, const DatasetOptions& options,
-                                     const std::vector<BidsSession>& sessions,
-                                     const std::string& task) {
-  const auto shared = std::make_shared<SharedReading>();
-  shared->keys = person_keys(study.store, *study.key);
-  const auto events = trace_events(study.store, shared->keys);
-  const bool simulated = study.store.commitment().simulated;
-  const std::string all = "task-" + task;
-  std::vector<ExportFile> files{
-      text_file(all + "_channels.tsv", tsv_text(motion_channels())),
-      text_file(all + "_channels.json", channels_json()),
-      text_file("scans.json", columns_json({"filename", "acq_time"}, simulated))};
-  for (const BidsSession& session : sessions) {
-    DataTable scans{{"filename", "acq_time"}, {}};
-    const auto add_scan = [&](std::string file, nanoseconds at) {
-      scans.rows.push_back({std::move(file), shifted_time(session, at)});
-    };
-    add_scan("beh/" + session.stem() + "_task-" + task + "_beh.tsv", {});
-    for (const TrialOutcome& trial : study.outcomes->trials) {
-      const store::TrialRow& row = trial.row;
-      if (row.session != session.row.session || !row.has_trace()) continue;
-      const TraceEvents& own = events.at({row.session, row.trial});
-      const Recording recording = recording_of(row, own.body);
-      const std::string name = motion_file(session, task, row.trial);
-      const std::string path = session.folder() + "/" + name;
-      const auto with = [&](const std::string& end) {
-        return path.substr(0, path.size() - std::string_view("motion.tsv").size()) + end;
-      };
-      add_scan(name, recording.first_sample);
-      files.push_back({path,
-                       [study, row, recording, shared](const std::filesystem::path& to) {
-                         const store::Trace trace = opened_trace(study, row, *shared);
-                         replace_file(to, motion_text(trace, recording));
-                       },
-                       true});
-      files.push_back(
-          text_file(with("motion.json"), motion_json(study, options, session, own.body)));
-      files.push_back(
-          text_file(with("events.tsv"),
-                    tsv_text(motion_events(recording, own, row, texture_of(study, trial)))));
+namespace {
+
+/// Collects the files of recordings.
+class MotionFiles {
+ public:
+  MotionFiles(const DatasetSource& study, const DatasetOptions& options, const std::string& task)
+      : study_(study), options_(options), task_(task), shared_(std::make_shared<SharedReading>()) {
+    shared_->keys = person_keys(study.store, *study.key);
+    events_ = trace_events(study.store, shared_->keys);
+  }
+
+  void add_shared() {
+    const bool simulated = study_.store.commitment().simulated;
+    const std::string all = "task-" + task_;
+    files_.push_back(text_file(all + "_channels.tsv", tsv_text(motion_channels())));
+    files_.push_back(text_file(all + "_channels.json", channels_json()));
+    files_.push_back(text_file("scans.json", columns_json({"filename", "acq_time"}, simulated)));
+  }
+
+  void add(const BidsSession& session) {
+    const std::string trials = "beh/" + session.stem() + "_task-" + task_ + "_beh.tsv";
+    DataTable scans{{"filename", "acq_time"}, {{trials, shifted_time(session, {})}}};
+    for (const TrialOutcome& trial : study_.outcomes->trials) {
+      if (trial.row.session != session.row.session || !trial.row.has_trace()) continue;
+      const nanoseconds at = add_run(session, trial);
+      scans.rows.push_back(
+          {motion_file(session, task_, trial.row.trial), shifted_time(session, at)});
     }
     std::ranges::stable_sort(scans.rows, {},
                              [](const auto& cells) { return std::get<std::string>(cells[1]); });
-    files.push_back(
+    files_.push_back(
         text_file(session.folder() + "/" + session.stem() + "_scans.tsv", tsv_text(scans)));
   }
-  return files;
+
+  [[nodiscard]] std::vector<ExportFile> take() { return std::move(files_); }
+
+ private:
+  /// \return when its first sample was taken
+  nanoseconds add_run(const BidsSession& session, const TrialOutcome& trial) {
+    const store::TrialRow& row = trial.row;
+    const TraceEvents& own = events_.at({row.session, row.trial});
+    const Recording recording = recording_of(row, own.body);
+    const std::string path = session.folder() + "/" + motion_file(session, task_, row.trial);
+    const std::string run = path.substr(0, path.size() - std::string_view("motion.tsv").size());
+    files_.push_back({path,
+                      [study = study_, row, recording, shared = shared_](const auto& to) {
+                        const store::Trace trace = opened_trace(study, row, *shared);
+                        replace_file(to, motion_text(trace, recording));
+                      },
+                      true});
+    files_.push_back(
+        text_file(run + "motion.json", motion_json(study_, options_, session, own.body)));
+    const DataTable events = motion_events(recording, own, row, texture_of(study_, trial));
+    files_.push_back(text_file(run + "events.tsv", tsv_text(events)));
+    return recording.first_sample;
+  }
+
+  const DatasetSource& study_;
+  const DatasetOptions& options_;
+  const std::string& task_;
+  std::shared_ptr<SharedReading> shared_;
+  std::map<store::TrialId, TraceEvents> events_;
+  std::vector<ExportFile> files_;
+};
+
+}  // namespace
+
+std::vector<ExportFile> motion_files(const DatasetSource& study, const DatasetOptions& options,
+                                     const std::vector<BidsSession>& sessions,
+                                     const std::string& task) {
+  MotionFiles files(study, options, task);
+  files.add_shared();
+  for (const BidsSession& session : sessions) files.add(session);
+  return files.take();
 }
 
 }  // namespace touchtrial::analysis
