@@ -83,8 +83,8 @@ void add_device_compensation_command(CLI::App& device, Action& action);
 /// Every variable must live as long as the command.
 ///@{
 
-/// The protocols whose studies `new` and `stimuli import` can write: those without a section of their
-/// own in the study file. The others begin with a ready study (touchtrial examples).
+/// The protocols whose studies `new` and `stimuli import` can write: those without a section of
+/// their own in the study file. The others begin with a ready study (touchtrial examples).
 [[nodiscard]] std::vector<std::string> protocols_of_new_studies();
 /// STUDY, required.
 void add_study_argument(CLI::App& command, std::filesystem::path& study);

@@ -21,7 +21,9 @@ struct DemoArguments {
   int participants = 20;
 };
 
-int write_examples(const fs::path& folder) {
+int write_examples(const fs::path& given) {
+  // A shell would take "-x" for an option.
+  const fs::path folder = given.string().starts_with('-') ? "." / given : given;
   copy_examples(folder);
   print(fmt::format(
       "studies  {}\npictures {}\n\nGo there, and try one:\n\n  cd {}\n  touchtrial preview "

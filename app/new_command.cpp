@@ -1,6 +1,7 @@
 // new: asks a few questions and writes a study that runs, with a comment at every key.
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/made_folder.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
@@ -246,45 +247,6 @@ void interview(NewArguments& arguments) {
     }
     if (question.option == "--pictures") try_pictures(arguments, question, !is_given);
   }
-}
-
-/// A folder that is made, and is gone again with what is in it, and folders above it that were made
-/// for it, unless it is kept.
-class MadeFolder {
- public:
-  explicit MadeFolder(const fs::path& folder) : folder_(folder), had_(is_there(folder)) {
-    for (first_ = folder; !had_ && first_.has_parent_path() && !is_there(first_.parent_path());) {
-      first_ = first_.parent_path();
-    }
-    make_folder(folder);
-  }
-  ~MadeFolder() {
-    if (is_kept_) return;
-    std::error_code ignored;
-    if (!had_) {
-      fs::remove_all(first_, ignored);
-      return;
-    }
-    for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
-      fs::remove_all(entry.path(), ignored);
-    }
-  }
-  MadeFolder(const MadeFolder&) = delete;
-  MadeFolder& operator=(const MadeFolder&) = delete;
-
-  void keep() noexcept { is_kept_ = true; }
-
- private:
-  fs::path folder_;
-  fs::path first_;  ///< the topmost that is made
-  bool had_;        ///< it was there, and empty
-  bool is_kept_ = false;
-};
-
-void require_free(const fs::path& folder) {
-  std::error_code unreadable;
-  if (!is_there(folder) || fs::is_empty(folder, unreadable)) return;
-  throw UsageError(one_line(folder.string()) + ": exists already; name a new folder");
 }
 
 /// The study file to be, and what is beside it.

@@ -212,7 +212,7 @@ struct PowerPreparation {
         key(simulated_key(study, arguments.study)) {
     if (stated) return;
     // Shards begin at the same time and share the pack.
-    prepare_simulated_pack(key, true);
+    prepare_simulated_pack(key);
     pack.emplace(key.pack_folder);
   }
 

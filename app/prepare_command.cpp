@@ -4,6 +4,7 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/passphrases.hpp"
+#include "app/shipped_files.hpp"
 #include "app/study_inputs.hpp"
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
@@ -406,6 +407,7 @@ std::string places_text(const design::StudyKey& key, const design::PackPlace& pl
 }
 
 int prepare(const PrepareArguments& arguments) {
+  if (arguments.pack.empty()) refuse_installed_study(arguments.study);
   const design::Study study = design::load_study(arguments.study);
   design::check_images_exist(study);
   static_cast<void>(simulation::level_devices(study));  // whether the device is there

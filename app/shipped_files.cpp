@@ -1,9 +1,12 @@
 #include "app/shipped_files.hpp"
 
+#include "app/made_folder.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/text.hpp"
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <system_error>
 
@@ -31,31 +34,49 @@ void copy_below(const fs::path& from, const fs::path& to) {
   }
 }
 
+/// Where they may be: beside an installed program's folder, and in the source tree.
+std::array<fs::path, 2> places() {
+  std::error_code unknown;
+  const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
+  const fs::path folder = program.parent_path();
+  return {folder.parent_path() / "share" / "touchtrial", folder.parent_path().parent_path()};
+}
+
 }  // namespace
 
 fs::path shipped_folder() {
-  std::error_code unknown;
-  const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
-  const fs::path installed = program.parent_path().parent_path() / "share" / "touchtrial";
-  if (holds_examples(installed)) return installed;
-  const fs::path source = program.parent_path().parent_path().parent_path();
-  if (holds_examples(source)) return source;
+  for (const fs::path& place : places()) {
+    if (holds_examples(place)) return place;
+  }
   throw FileError(
-      one_line(installed.string()) +
+      one_line(places().front().string()) +
       ": has none of the ready studies, which are installed there; install Touchtrial again");
 }
 
 void copy_examples(const fs::path& folder) {
   const fs::path shipped = shipped_folder();
-  std::error_code unreadable;
-  if (is_there(folder) && !fs::is_empty(folder, unreadable)) {
-    throw UsageError(one_line(folder.string()) + ": exists already; name a new folder");
-  }
+  MadeFolder made(folder);
   try {
     for (const char* part : {"config", "stimuli"}) copy_below(shipped / part, folder / part);
   } catch (const fs::filesystem_error& error) {
     throw FileError(one_line(error.path1().string()) + ": " + error.code().message());
   }
+  made.keep();
+}
+
+void refuse_installed_study(const fs::path& study) {
+  std::error_code unknown;
+  const fs::path installed = fs::canonical(places().front(), unknown);
+  if (unknown) return;
+  const fs::path place = fs::canonical(study, unknown);
+  if (unknown) return;
+  const auto [end, ignored] =
+      std::mismatch(installed.begin(), installed.end(), place.begin(), place.end());
+  if (end != installed.end()) return;
+  throw UsageError(
+      one_line(study.string()) +
+      ": belongs to the installation, where no pack can be made; copy the ready studies with "
+      "`touchtrial examples FOLDER`, and use that copy");
 }
 
 }  // namespace touchtrial::app

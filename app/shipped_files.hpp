@@ -11,8 +11,12 @@ namespace touchtrial::app {
 [[nodiscard]] std::filesystem::path shipped_folder();
 
 /// Copies the ready studies and what they name, in the same layout, into a new or empty folder.
-/// \throws UsageError if the folder has something in it
-/// \throws FileError with the system's reason; what was copied before stays
+/// \throws as require_free of app/made_folder.hpp
+/// \throws FileError with the system's reason; nothing is left of the folder then
 void copy_examples(const std::filesystem::path& folder);
+
+/// Refuses a study file of an installation: a pack would be made beside it.
+/// \throws UsageError with the remedy
+void refuse_installed_study(const std::filesystem::path& study);
 
 }  // namespace touchtrial::app

@@ -3,6 +3,7 @@
 #include "analysis/planning/level_report.hpp"
 #include "analysis/sealed_sessions.hpp"
 #include "app/console.hpp"
+#include "app/shipped_files.hpp"
 #include "app/texts/study_texts.hpp"
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
@@ -259,6 +260,7 @@ void save_station_files(const design::StudyKey& key, const design::PackPlace& pl
 
 design::StudyKey simulated_key(const design::Study& study,
                                const std::filesystem::path& study_file) {
+  refuse_installed_study(study_file);
   design::StudyKey key = design::simulated_study_key(study);
   key.pack_folder = design::simulated_pack_place(study_file).pack;
   return key;
@@ -283,9 +285,9 @@ design::PrepareReport prepare_here(const design::StudyKey& key, design::PrepareO
   return design::prepare_pack(key, key.pack_folder, progress_bar("preparing"), options);
 }
 
-void prepare_simulated_pack(const design::StudyKey& key, bool wait) {
+void prepare_simulated_pack(const design::StudyKey& key) {
   static_cast<void>(design::plane_of(key.study));
-  const design::PrepareReport prepared = prepare_here(key, {.statistics = false, .wait = wait});
+  const design::PrepareReport prepared = prepare_here(key, {.statistics = false, .wait = true});
   for (const std::string& warning : prepared.warnings) spdlog::warn("{}", warning);
 }
 

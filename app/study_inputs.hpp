@@ -108,10 +108,10 @@ void save_station_files(const design::StudyKey& key, const design::PackPlace& pl
 [[nodiscard]] design::PrepareReport prepare_here(const design::StudyKey& key,
                                                  design::PrepareOptions options);
 
-/// Makes what is missing of the key's pack, with a progress bar, and prints the warnings.
-/// \param wait  whether to wait while another process prepares the pack
+/// Makes what is missing of the key's pack, with a progress bar, and prints the warnings. Waits
+/// while somebody else prepares the pack.
 /// \throws as plane_of and prepare_pack
-void prepare_simulated_pack(const design::StudyKey& key, bool wait = false);
+void prepare_simulated_pack(const design::StudyKey& key);
 
 /// The key of a study that is prepared beside its file, with the study as it is now, if anybody may
 /// read the key.

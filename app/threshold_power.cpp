@@ -97,7 +97,7 @@ int plan_thresholds(const design::Study& study, const std::filesystem::path& fil
                  .difference = compared_standards(study, arguments)};
   if (const auto& analysis = study.registration.analysis) report.plan.alpha = analysis->alpha;
   const design::StudyKey key = simulated_key(study, file);
-  prepare_simulated_pack(key, true);
+  prepare_simulated_pack(key);
   const engine::Pack pack(key.pack_folder);
   const session::StimulusSource source(pack, key);
   const planning::ThresholdPoolOptions options{arguments.pool, plan.seed, jobs};

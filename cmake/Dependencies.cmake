@@ -1,5 +1,9 @@
 # Everything that Touchtrial uses and did not write. Debian 12's versions serve.
+set(TOUCHTRIAL_NEED REQUIRED)
 include(EngineDependencies)
+if(NOT OPENCV_HEADERS OR NOT OPENCV_CORE OR NOT OPENCV_IMGPROC)
+  message(FATAL_ERROR "OpenCV's core and imgproc are missing; run scripts/install-dependencies")
+endif()
 find_package(nlohmann_json REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(fmt REQUIRED)

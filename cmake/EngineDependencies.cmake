@@ -1,18 +1,24 @@
-# What core and engine use and did not write. A program that is built on the installed engine reads this
-# file too, to link the same libraries: cmake/touchtrial-config.cmake.in.
-find_package(PkgConfig REQUIRED)
-find_package(Threads REQUIRED)
-find_package(TBB REQUIRED)
-find_package(ZLIB REQUIRED)
-pkg_check_modules(fftw3 REQUIRED IMPORTED_TARGET GLOBAL fftw3)
-pkg_check_modules(fftw3f REQUIRED IMPORTED_TARGET GLOBAL fftw3f)
-pkg_check_modules(libsodium REQUIRED IMPORTED_TARGET GLOBAL libsodium)
-pkg_check_modules(nettle REQUIRED IMPORTED_TARGET GLOBAL nettle)
+# What core and engine use and did not write. TOUCHTRIAL_NEED is REQUIRED, or QUIET: a program that is
+# built on the installed engine reads this file too, to link the same libraries, perhaps in several of its
+# folders (cmake/touchtrial-config.cmake.in).
+find_package(PkgConfig ${TOUCHTRIAL_NEED})
+find_package(Threads ${TOUCHTRIAL_NEED})
+find_package(TBB ${TOUCHTRIAL_NEED})
+find_package(ZLIB ${TOUCHTRIAL_NEED})
+if(NOT COMMAND pkg_check_modules OR NOT TARGET TBB::tbb OR NOT TARGET ZLIB::ZLIB)
+  return()
+endif()
+pkg_check_modules(fftw3 ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL fftw3)
+pkg_check_modules(fftw3f ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL fftw3f)
+pkg_check_modules(libsodium ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL libsodium)
+pkg_check_modules(nettle ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL nettle)
 
 # Highway's library calibrates a clock when it is loaded: of the series whose functions the forwarders
 # name, it is loaded with the first kernel (decision 47).
-pkg_check_modules(hwy REQUIRED IMPORTED_TARGET GLOBAL libhwy)
-add_library(touchtrial_hwy INTERFACE IMPORTED GLOBAL)
+pkg_check_modules(hwy ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL libhwy)
+if(NOT TARGET touchtrial_hwy)
+  add_library(touchtrial_hwy INTERFACE IMPORTED GLOBAL)
+endif()
 if(hwy_VERSION MATCHES "^1\\.0\\." AND EXISTS "${hwy_LIBDIR}/libhwy.so.1" AND CMAKE_SIZEOF_VOID_P EQUAL 8)
   set(TOUCHTRIAL_HIGHWAY_LATER ON)  # engine/CMakeLists.txt makes touchtrial_highway, the forwarders
   target_include_directories(touchtrial_hwy SYSTEM INTERFACE ${hwy_INCLUDE_DIRS})
@@ -22,9 +28,9 @@ endif()
 
 # Only what OpenCV computes with: its own package file wants all of its modules installed, and what
 # these bring along. Its headers warn under C++20; as a system target they stay quiet.
-find_path(OPENCV_HEADERS opencv2/imgproc.hpp PATH_SUFFIXES opencv4 REQUIRED)
-find_library(OPENCV_CORE opencv_core REQUIRED)
-find_library(OPENCV_IMGPROC opencv_imgproc REQUIRED)
+find_path(OPENCV_HEADERS opencv2/imgproc.hpp PATH_SUFFIXES opencv4)
+find_library(OPENCV_CORE opencv_core)
+find_library(OPENCV_IMGPROC opencv_imgproc)
 # Of the archives, where there are any that link, only what is called comes into the program; BLAS,
 # LAPACK and GLX, which the shared libraries load at every start, are then needed by the benchmark's
 # matrices alone (decision 47).
@@ -51,7 +57,9 @@ if(OPENCV_CORE_ARCHIVE AND OPENCV_IMGPROC_ARCHIVE)
   unset(CMAKE_REQUIRED_INCLUDES)
   unset(CMAKE_REQUIRED_LIBRARIES)
 endif()
-add_library(touchtrial_opencv INTERFACE IMPORTED GLOBAL)
+if(NOT TARGET touchtrial_opencv)
+  add_library(touchtrial_opencv INTERFACE IMPORTED GLOBAL)
+endif()
 target_include_directories(touchtrial_opencv SYSTEM INTERFACE "${OPENCV_HEADERS}")
 if(OPENCV_ARCHIVES_LINK)
   target_link_libraries(touchtrial_opencv INTERFACE ${OPENCV_ARCHIVES})
@@ -61,8 +69,10 @@ endif()
 
 # What reads pictures: shared, so that the system's security updates reach them (decision 47). libtiff has
 # handlers of errors for each file from 4.5 on.
-find_package(PNG REQUIRED)
-find_package(JPEG REQUIRED)
-find_package(TIFF 4.5 REQUIRED)
-add_library(touchtrial_pictures INTERFACE IMPORTED GLOBAL)
+find_package(PNG ${TOUCHTRIAL_NEED})
+find_package(JPEG ${TOUCHTRIAL_NEED})
+find_package(TIFF 4.5 ${TOUCHTRIAL_NEED})
+if(NOT TARGET touchtrial_pictures)
+  add_library(touchtrial_pictures INTERFACE IMPORTED GLOBAL)
+endif()
 target_link_libraries(touchtrial_pictures INTERFACE PNG::PNG JPEG::JPEG TIFF::TIFF)

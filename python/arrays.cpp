@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <new>
 #include <string_view>
 
 #include <pybind11/stl/filesystem.h>
@@ -46,7 +47,7 @@ void check_sides(const py::array& array, const std::string& argument) {
 template <typename Sample>
 GreyImage grey_image_from(const py::array& given, int channels) {
   const auto samples = py::array_t<Sample, CStyle::value>::ensure(given);
-  if (!samples) throw py::error_already_set();
+  if (!samples) throw std::bad_alloc();
   GreyImage image(static_cast<int>(given.shape(0)), static_cast<int>(given.shape(1)));
   if constexpr (sizeof(Sample) == 1) {
     if (channels == 1) {
@@ -104,7 +105,7 @@ py::array_t<double> matrix_of(const py::handle& object, const std::string& argum
   }
   if (columns == 0) check_sides(array, argument);
   auto matrix = py::array_t<double, CStyle::value>::ensure(array);
-  if (!matrix) throw py::error_already_set();
+  if (!matrix) throw std::bad_alloc();
   return matrix;
 }
 

@@ -160,7 +160,7 @@ std::string evaluate(const std::vector<py::object>& images, bool sweep) {
   std::vector<analysis::EvaluatedImage> evaluated;
   for (const py::object& image : images) {
     const std::string name =
-        is_path(image) ? py::module_::import("os").attr("fsdecode")(image).cast<std::string>()
+        is_path(image) ? py::module_::import("os").attr("fsencode")(image).cast<std::string>()
                        : "array " + std::to_string(evaluated.size());
     const GreyImage grey = grey_image_of(image);
     const py::gil_scoped_release others_run;

@@ -32,10 +32,11 @@ namespace {
 namespace py = pybind11;
 namespace fs = std::filesystem;
 
-/// Answers for protected keys as long as it lives.
+/// Answers for protected keys as long as it lives. There is one at a time: who is asked, and which
+/// keys have been opened, is known to the whole process.
 class Passphrase {
  public:
-  explicit Passphrase(std::optional<std::string> passphrase) {
+  explicit Passphrase(std::optional<std::string> passphrase) : lock_(one_at_a_time()) {
     design::ask_passphrases_with(
         [passphrase = std::move(passphrase)](const fs::path&, int attempt) {
           return attempt == 1 ? passphrase : std::nullopt;
@@ -44,6 +45,13 @@ class Passphrase {
   ~Passphrase() { design::ask_passphrases_with({}); }
   Passphrase(const Passphrase&) = delete;
   Passphrase& operator=(const Passphrase&) = delete;
+
+ private:
+  static std::mutex& one_at_a_time() {
+    static std::mutex mutex;
+    return mutex;
+  }
+  std::lock_guard<std::mutex> lock_;
 };
 
 store::StudyStore opened(const std::string& database) {

@@ -16,6 +16,8 @@ ValueError. Warnings go to the logger "touchtrial".
 from __future__ import annotations
 
 import json
+import math
+import operator
 import os
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -152,8 +154,12 @@ class Study:
 
     def table(self, name: str) -> "pandas.DataFrame":
         """One of these tables, for instance "deviations", as a data frame."""
-        import pandas
-
+        try:
+            import pandas
+        except ModuleNotFoundError:
+            raise ModuleNotFoundError(
+                "pandas is not installed (Debian: python3-pandas); `columns` has the same as arrays"
+            ) from None
         if name not in self.columns:
             raise KeyError(f"there is no table {name}; choose among {', '.join(self.columns)}")
         return pandas.DataFrame(self.columns[name])
@@ -175,8 +181,68 @@ class Study:
 
     def trace(self, session: int, trial: int) -> Trace:
         """Position and force of a trial; the numbers are those of the table `trials`."""
-        rate_hz, samples = self._native.trace(session, trial)
+        numbers = (
+            _whole(name, number, *_INT)
+            for name, number in (("session", session), ("trial", trial))
+        )
+        rate_hz, samples = self._native.trace(*numbers)
         return Trace(rate_hz, samples[:, :3], samples[:, 3:])
+
+
+_INT = (-(2**31), 2**31 - 1)
+
+
+def _shown(value: Any) -> str:
+    """A value in a message of one line."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _whole(name: str, value: Any, low: int, high: int) -> int:
+    """A whole number, Python's or NumPy's, within its range."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name}: is {_shown(value)}, must be a whole number") from None
+    if not low <= number <= high:
+        raise ValueError(f"{name}: is {number}, must be from {low} to {high}")
+    return number
+
+
+def _text(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: is {_shown(value)}, must be a text")
+    return value
+
+
+def _path(name: str, value: Any) -> bytes:
+    """A path's bytes: names of files need not be UTF-8."""
+    try:
+        path = os.fsencode(value)
+    except TypeError:
+        raise TypeError(f"{name}: is {_shown(value)}, must be a path") from None
+    if b"\0" in path:
+        raise ValueError(f"{name}: has a NUL, which no path can have")
+    return path
+
+
+def _is_masked(array: Any) -> bool:
+    return isinstance(array, np.ma.MaskedArray) and bool(np.any(array.mask))
+
+
+def _image(name: str, value: Any) -> Any:
+    """A picture's path or samples, as the native functions take them."""
+    if isinstance(value, (str, bytes, os.PathLike)):
+        _path(name, value)
+        return value if isinstance(value, (str, bytes)) else os.fspath(value)
+    if _is_masked(value):
+        raise ValueError(f"{name}: has masked samples, which would count; fill them with .filled()")
+    return value
+
+
+def _is_picture(source: Any) -> bool:
+    """Whether a source of a field is still to be extracted."""
+    return isinstance(source, (str, bytes, os.PathLike)) or np.asarray(source).dtype.kind == "u"
 
 
 def _method(
@@ -203,7 +269,10 @@ def _method(
     if seed is not None and control in (None, "none"):
         raise ValueError('seed has no effect here; it belongs to control="phase-scrambled"')
     if components is not None and not isinstance(components, str):
-        pairs = np.asarray(components, dtype=float)
+        try:
+            pairs = np.asarray(components, dtype=float)
+        except (TypeError, ValueError):
+            pairs = np.empty(0)
         if pairs.ndim != 2 or pairs.shape[1] != 2:
             raise ValueError('components: give "auto" or pairs of cycles per pixel and degrees')
         components = tuple((f, d) for f, d in pairs.tolist())
@@ -225,9 +294,10 @@ def _method(
         "control": control,
     }
     given = {key: value for key, value in keys.items() if value is not None}
-    if seed is not None and not 0 <= seed < 2**64:
-        raise ValueError(f"seed: is {seed}, must be from 0 to 2^64 - 1")
-    return _known_method(seed or 0, **given)
+    for key, value in given.items():
+        if not isinstance(value, (str, int, float, tuple, np.generic)):
+            raise TypeError(f"{key}: is {_shown(value)}, must be a number or a text")
+    return _known_method(0 if seed is None else _whole("seed", seed, 0, 2**64 - 1), **given)
 
 
 @lru_cache(maxsize=64, typed=True)
@@ -241,7 +311,17 @@ def _json(options: Dict[str, Any]) -> str:
     pairs = options.get("components")
     if isinstance(pairs, tuple):
         options["components"] = [{"frequency": f, "direction": d} for f, d in pairs]
-    return json.dumps(options, allow_nan=False, default=lambda number: number.item())
+    for key, value in options.items():
+        if isinstance(value, (float, np.floating)) and not math.isfinite(value):
+            raise ValueError(f"{key}: is {value}, must be finite")
+    return json.dumps(options, allow_nan=False, default=_plain)
+
+
+def _plain(value: Any) -> Any:
+    """NumPy's numbers as Python's."""
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"an option is {_shown(value)}, must be a number, a text or an object of them")
 
 
 def extract(
@@ -282,19 +362,19 @@ def extract(
     needs is not computed: planes=() is the fastest.
     """
     if precision not in ("float", "double"):
-        raise ValueError(f'precision: is {precision!r}, must be "float" or "double"')
+        raise ValueError(f'precision: is {_shown(precision)}, must be "float" or "double"')
     known = _method(
         method, order, radius, norm, gradient, combine, levels, sigma_px, threshold, divisor,
         lambda_, components, gap, max_steps, control, seed,
     )
     return Extraction(
         **_touchtrial.extract(
-            image,
+            _image("image", image),
             known,
-            mapping,
-            neighbourhood,
+            _text("mapping", mapping),
+            _whole("neighbourhood", neighbourhood, *_INT),
             precision == "double",
-            None if planes is None else list(planes),
+            None if planes is None else [_text("planes", name) for name in planes],
         )
     )
 
@@ -342,7 +422,16 @@ def force_fields(
         method, order, radius, norm, gradient, combine, levels, sigma_px, threshold, divisor,
         lambda_, components, gap, max_steps, control, seed,
     )
-    textures = [one.texture if isinstance(one, Extraction) else one for one in sources]
+    textures = [
+        one.texture if isinstance(one, Extraction) else _image("source", one) for one in sources
+    ]
+    options = (
+        order, radius, norm, gradient, combine, levels, sigma_px, threshold, divisor, lambda_,
+        components, gap, max_steps, control, seed,
+    )
+    is_asked = method != "adaptive" or any(option is not None for option in options)
+    if is_asked and not any(_is_picture(texture) for texture in textures):
+        raise ValueError("method and its options have no effect: every source is a texture already")
     return _touchtrial.force_fields(textures, known, _json(dict(rendering or {})))
 
 
@@ -370,6 +459,13 @@ def render(
     if the wall has damping. Friction carries over from position to position. A position or velocity
     that is not finite gives no force.
     """
+    if not isinstance(field, Field):
+        raise TypeError(f"field: is {_shown(field)}, must be a Field, as force_field makes it")
+    if dt_s is not None and not isinstance(dt_s, (int, float, np.integer, np.floating)):
+        raise TypeError(f"dt_s: is {_shown(dt_s)}, must be a number")
+    for name, points in (("path_mm", path_mm), ("velocities_mm_s", velocities_mm_s)):
+        if _is_masked(points):
+            raise ValueError(f"{name}: has masked points, which would count; fill them with .filled()")
     return _touchtrial.render(field, path_mm, dt_s, velocities_mm_s)
 
 
@@ -380,7 +476,10 @@ def evaluate(*images: Image, sweep: bool = False) -> Dict[str, Any]:
     Returns what `touchtrial evaluate --json` prints; docs/data-dictionary.md explains it. A picture
     that is no file is called "array 0", by its place.
     """
-    evaluation: Dict[str, Any] = json.loads(_touchtrial.evaluate(list(images), sweep))
+    if not isinstance(sweep, (bool, np.bool_)):
+        raise TypeError(f"sweep: is {_shown(sweep)}, must be True or False")
+    pictures = [_image(f"array {place}", one) for place, one in enumerate(images)]
+    evaluation: Dict[str, Any] = json.loads(_touchtrial.evaluate(pictures, bool(sweep)))
     return evaluation
 
 
@@ -391,7 +490,16 @@ def read(db: Path, key: Optional[Path] = None, *, passphrase: Optional[str] = No
     passphrase: of a protected key.
     Raises touchtrial.Error if the study is not unblinded, or its evidence does not hold.
     """
-    return Study(_touchtrial.read(os.fspath(db), "" if key is None else key, passphrase))
+    if passphrase is not None:
+        _text("passphrase", passphrase)
+    place = _path("db", db)
+    try:
+        return Study(_touchtrial.read(place, b"" if key is None else _path("key", key), passphrase))
+    except Error as error:
+        what, asks, _ = str(error).partition("; name a file")
+        if not asks:
+            raise
+        raise Error(what + "; give it as passphrase=") from None
 
 
 def simulate(
@@ -414,19 +522,17 @@ def simulate(
     keep_blind: neither close nor unblind the study at the end.
     Returns what `touchtrial simulate --json` prints.
     """
-    for name, number, most in (
-        ("participants", participants, 100_000),
-        ("first_participant", first_participant, 1_000_000),
-        ("jobs", 1 if jobs is None else jobs, 1024),
-    ):
-        if not 1 <= number <= most:
-            raise ValueError(f"{name}: is {number}, must be from 1 to {most}")
-    if not 0 <= seed < 2**64:
-        raise ValueError(f"seed: is {seed}, must be from 0 to 2^64 - 1")
     summary: Dict[str, Any] = json.loads(
         _touchtrial.simulate(
-            study, db, participants, seed, "" if subject is None else subject, on or "",
-            jobs or 0, first_participant, keep_blind,
+            _path("study", study),
+            _path("db", db),
+            _whole("participants", participants, 1, 100_000),
+            _whole("seed", seed, 0, 2**64 - 1),
+            b"" if subject is None else _path("subject", subject),
+            "" if on is None else _text("on", on),
+            0 if jobs is None else _whole("jobs", jobs, 1, 1024),
+            _whole("first_participant", first_participant, 1, 1_000_000),
+            bool(keep_blind),
         )
     )
     return summary

@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 import numpy as np
 import numpy.typing as npt
 
-_Path = Union[str, "os.PathLike[str]"]
+_Path = Union[str, bytes, "os.PathLike[str]"]
 
 __version__: str
 
@@ -92,7 +92,7 @@ def render(
 ) -> npt.NDArray[np.float64]:
     """The force on a stylus along a path, (N, 3) newtons, by the model that the servo calls."""
 
-def read(database: str, key: _Path, passphrase: Optional[str]) -> Study:
+def read(database: _Path, key: _Path, passphrase: Optional[str]) -> Study:
     """Opens an unblinded study."""
 
 def simulate(

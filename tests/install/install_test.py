@@ -52,6 +52,14 @@ def main(work):
     again = subprocess.run([program, "demo", work / "demo"], capture_output=True, text=True)
     check("demo refuses a folder that is not empty", again.returncode == 2 and "exists already" in again.stderr)
 
+    nameless = subprocess.run([program, "examples", ""], capture_output=True, text=True, cwd=work)
+    check("examples wants a name", nameless.returncode == 2 and not (work / "config").exists())
+    own = tree / "share/touchtrial/config/classification.json"
+    inside = subprocess.run([program, "simulate", own, "--participants", "1", "--db", work / "own.db"],
+                            capture_output=True, text=True)
+    check("no pack is made in the installation",
+          inside.returncode == 2 and "touchtrial examples" in inside.stderr and not list(own.parent.glob("*.pack")))
+
     run(program, "examples", work / "mine")
     studies = sorted((work / "mine" / "config").glob("*.json"))
     ready = [study for study in studies if study.name != "devices.json"]
@@ -72,6 +80,27 @@ def main(work):
           (work / "example.png").read_bytes() == (work / "program.png").read_bytes())
     check("and forces of a wall of 0.4 N/mm at 1 mm",
           len(lines) == 21 and all(0.0 < float(line.split(",")[4]) < 3.3 for line in lines[1:]))
+
+    (work / "twice").mkdir()
+    (work / "twice" / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.22)\nproject(twice LANGUAGES CXX)\n" +
+        "".join(f"add_subdirectory({folder})\n" for folder in ("one", "two")))
+    for folder in ("one", "two"):
+        (work / "twice" / folder).mkdir()
+        (work / "twice" / folder / "CMakeLists.txt").write_text(
+            "find_package(touchtrial REQUIRED)\nfind_package(touchtrial REQUIRED)\n"
+            f"add_executable({folder} {SOURCE}/examples/engine/main.cpp)\n"
+            f"target_link_libraries({folder} PRIVATE touchtrial::engine)\n")
+    run("cmake", "-S", work / "twice", "-B", work / "twice/build", f"-DCMAKE_PREFIX_PATH={tree}")
+    run("cmake", "--build", work / "twice/build", "--target", "two")
+    (work / "without").mkdir()
+    (work / "without" / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.22)\nproject(without LANGUAGES CXX)\nfind_package(touchtrial QUIET)\n"
+        "message(STATUS \"found ${touchtrial_FOUND}: ${touchtrial_NOT_FOUND_MESSAGE}\")\n")
+    said = run("cmake", "-S", work / "without", "-B", work / "without/build", f"-DCMAKE_PREFIX_PATH={tree}",
+               "-DCMAKE_DISABLE_FIND_PACKAGE_TIFF=ON")
+    check("it can be found from several folders, and says what it lacks",
+          "found 0: libraries that the engine needs are missing: TIFF." in said)
 
     headers = [path.relative_to(tree / "include/touchtrial") for path in (tree / "include/touchtrial").rglob("*.hpp")]
     (work / "headers.cpp").write_text("".join(f'#include "{path}"\n' for path in sorted(headers)))

@@ -302,7 +302,7 @@ def test_arrays_of_any_kind_are_taken_or_refused_in_one_line():
         ({"radius": 2.5}, "/radius"),
         ({"radius": "2"}, "/radius"),
         ({"norm": "additiv"}, "additive"),
-        ({"method": "gaussian", "sigma_px": float("nan")}, "JSON"),
+        ({"method": "gaussian", "sigma_px": float("nan")}, "sigma_px: is nan"),
         ({"method": "gaussian", "sigma_px": 0.0}, "/sigma_px"),
         ({"method": "tv-gabor", "components": [0.2]}, "components"),
         ({"method": "tv-gabor", "components": [(0.6, 0.0)]}, "/frequency"),

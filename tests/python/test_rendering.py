@@ -152,7 +152,7 @@ def test_rendering_options_are_those_of_a_study_file():
     [
         ({"stifness_n_per_mm": 1.0}, "stiffness_n_per_mm"),
         ({"pitch_mm": 0.0}, "/pitch_mm"),
-        ({"pitch_mm": float("inf")}, "JSON"),
+        ({"pitch_mm": float("inf")}, "pitch_mm: is inf"),
         ({"model": "papr"}, "paper"),
         ({"friction": 0.3}, "friction"),
         ({"neighbourhood": 2}, "/neighbourhood"),
@@ -246,3 +246,33 @@ def test_no_field_of_nothing():
         touchtrial.force_fields([])
     with pytest.raises(TypeError):
         touchtrial._touchtrial.Field()
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: touchtrial.extract("bark\0.png"),
+        lambda: touchtrial.extract(np.ones((9, 9), np.uint8), planes=[5]),
+        lambda: touchtrial.extract(np.ones((9, 9), np.uint8), mapping=None),
+        lambda: touchtrial.extract(np.ones((9, 9), np.uint8), neighbourhood=3.0),
+        lambda: touchtrial.extract(np.ones((9, 9), np.uint8), neighbourhood=10**12),
+        lambda: touchtrial.extract(np.ones((9, 9), np.uint8), radius=object()),
+        lambda: touchtrial.extract(np.ones((9, 9), np.uint8), radius=[3]),
+        lambda: touchtrial.extract(np.ones((9, 9), np.uint8), method="fixed", order=np.nan),
+        lambda: touchtrial.extract(np.ma.masked_array(np.ones((9, 9), np.uint8), mask=np.eye(9))),
+        lambda: touchtrial.force_field(np.ones((9, 9)), method="gaussian", sigma_px=3),
+        lambda: touchtrial.force_field(np.ones((9, 9)), rendering={"pitch_mm": object()}),
+        lambda: touchtrial.render(None, np.zeros((3, 3))),
+        lambda: touchtrial.render(touchtrial.force_field(np.ones((9, 9))), np.zeros((3, 3)), "a"),
+        lambda: touchtrial.evaluate(np.ones((9, 9), np.uint8), sweep="yes"),
+    ],
+)
+def test_wrong_arguments_have_one_line(call):
+    with pytest.raises((TypeError, ValueError), match=r"^[^\n]+$"):
+        call()
+
+
+def test_a_path_larger_than_the_memory_is_a_memory_error():
+    field = touchtrial.force_field(np.ones((9, 9)))
+    with pytest.raises(MemoryError):
+        touchtrial.render(field, np.broadcast_to(np.zeros(3, np.float32), (10**12, 3)))

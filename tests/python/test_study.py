@@ -1,8 +1,10 @@
 """read and simulate: the same numbers as the program's report and exports."""
 
-import gzip
 import json
+import os
+import shutil
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -63,12 +65,12 @@ def test_traces_are_those_of_the_export(program, study_folder, study, tmp_path):
     program(
         "export", study_folder / "mine.db", "--format", "bids", "--traces", "--out", tmp_path / "bids"
     )
-    files = sorted((tmp_path / "bids").rglob("*_stim.tsv.gz"))
+    files = sorted((tmp_path / "bids").rglob("*_motion.tsv"))
     assert len(files) == len(study.trials)
     for row, file in zip(study.trials.itertuples(), files):
         trace = study.trace(row.session, row.trial)
         samples = np.hstack((trace.position_mm, trace.force_n))
-        exported = np.loadtxt(gzip.open(file))
+        exported = np.loadtxt(file)[:, 1:]  # the first is the latency
         assert samples.shape == exported.shape
         # Exports have 3 and 4 decimals.
         np.testing.assert_allclose(samples[:, :3], exported[:, :3], atol=0.000501)
@@ -191,3 +193,60 @@ def test_a_bad_study_file_has_the_programs_message(program, tmp_path):
         touchtrial.simulate(bad, tmp_path / "x.db")
     stderr = program("simulate", bad, "--db", tmp_path / "x.db", fails=True)
     assert stderr == f"touchtrial: {caught.value}\n"
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda db: touchtrial.read(db, key=5),
+        lambda db: touchtrial.read(db, passphrase=5),
+        lambda db: touchtrial.read(None),
+        lambda db: touchtrial.read(f"{db}\0x"),
+        lambda db: touchtrial.read(db).trace("a", 1),
+        lambda db: touchtrial.read(db).trace(1, 2**40),
+        lambda db: touchtrial.simulate(None, "x.db"),
+        lambda db: touchtrial.simulate("x.json", 5),
+        lambda db: touchtrial.simulate("x.json", "x.db", participants=1.5),
+        lambda db: touchtrial.simulate("x.json", "x.db", on=5),
+    ],
+)
+def test_wrong_arguments_are_named_in_one_line(study_folder, call):
+    with pytest.raises((TypeError, ValueError), match=r"^\w+: [^\n]+$"):
+        call(study_folder / "mine.db")
+
+
+def test_a_name_that_is_not_utf_8(study_folder, tmp_path):
+    odd = tmp_path / os.fsdecode(b"\xff.db")
+    shutil.copy(study_folder / "mine.db", odd)
+    study = touchtrial.read(odd, study_folder / "mine.db.key")
+    assert study.report["participants"] == touchtrial.read(study_folder / "mine.db").report["participants"]
+
+
+def test_threads_open_protected_keys_with_their_own_passphrase(program, study_folder, tmp_path):
+    database, key, word = (tmp_path / name for name in ("p.db", "p.db.key", "passphrase"))
+    shutil.copy(study_folder / "mine.db", database)
+    shutil.copy(study_folder / "mine.db.key", key)
+    word.write_text("correct horse")
+    word.chmod(0o600)
+    program("key", "protect", key, "--new-passphrase-file", word)
+
+    def opens(passphrase):
+        try:
+            touchtrial.read(database, key, passphrase=passphrase)
+        except touchtrial.Error as error:
+            assert passphrase is not None or str(error).endswith("give it as passphrase=")
+            return False
+        return True
+
+    with ThreadPoolExecutor(4) as threads:
+        answers = list(threads.map(opens, ["correct horse", None] * 6))
+    assert answers == [True, False] * 6
+
+
+def test_threads_simulate_one_study(study_folder, tmp_path):
+    study = tmp_path / "config" / "mine.json"
+    shutil.copytree(study_folder, study.parent, ignore=shutil.ignore_patterns("*.pack", "*.db*"))
+    with ThreadPoolExecutor(3) as threads:
+        done = list(threads.map(
+            lambda n: touchtrial.simulate(study, tmp_path / f"{n}.db", participants=1), range(3)))
+    assert [one["sessions"] for one in done] == [1, 1, 1]

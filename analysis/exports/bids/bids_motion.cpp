@@ -37,14 +37,7 @@ store::Trace opened_trace(const DatasetSource& study, const store::TrialRow& row
     const std::lock_guard lock(shared.store);
     return study.store.sealed_trace(row.session, row.trial);
   }();
-  if (box) {
-    auto trace = store::unsealed_trace(*box, *shared.keys.at(row.session).participant);
-    if (trace) return *std::move(trace);
-  }
-  throw VerificationError(fmt::format(
-      "session {}, trial {}: its trace is missing or does not open; run `touchtrial verify` and "
-      "restore the database from a backup",
-      row.session, row.trial));
+  return open_trace(box, row, shared.keys);
 }
 
 /// What the events of a trial say of its recording.
