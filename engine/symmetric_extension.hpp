@@ -11,6 +11,8 @@ namespace touchtrial::engine {
 /// \param n  length of the sequence, 1 .. 2^28
 [[nodiscard]] constexpr int symmetric_index(int i, int n) noexcept {
   if (i >= 0 && i < n) return i;
+  if (i < 0 && i >= -n) return -1 - i;  // no division for the nearest mirror images
+  if (i >= n && i < 2 * n) return 2 * n - 1 - i;
   const int period = 2 * n;
   const int remainder = i % period;
   const int folded = remainder < 0 ? remainder + period : remainder;

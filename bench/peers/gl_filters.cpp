@@ -2,7 +2,6 @@
 
 #include "engine/kernels/aligned_rows.hpp"
 #include "engine/kernels/gl_row.hpp"
-#include "engine/kernels/texture_sink.hpp"
 #include "engine/symmetric_extension.hpp"
 #include "tests/engine/reference/gl_weights.hpp"
 
@@ -10,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 namespace touchtrial::bench {
@@ -60,10 +58,7 @@ void filter_adaptive(const GreyImage& image, int radius, const Plane<float>& ord
   constexpr std::size_t kReadPast = 2 * engine::kVectorBytes / sizeof(float);
   const auto width = static_cast<std::size_t>(image.width());
   engine::AlignedRows<float> last(1, width, kReadPast);
-  engine::Extraction<float> result;
-  result.texture = std::move(texture);
-  engine::shape_planes(image.height(), image.width(), {}, result);
-  engine::TextureSink sink(result);
+  if (texture.size() != image.size()) texture = {image.height(), image.width()};
   engine::ExtendedRows rows(image, radius);
   for (int y = 0; y < image.height(); ++y) {
     const float* order = orders.row(y).data();
@@ -73,11 +68,8 @@ void filter_adaptive(const GreyImage& image, int radius, const Plane<float>& ord
       order = last.row(0);
     }
     rows.next_row();
-    engine::gl_row(rows, radius, order, sink.row(y), sink.waiting());
-    sink.finish_row(y);
+    engine::gl_row(rows, radius, order, texture.row(y).data());
   }
-  sink.finish();
-  texture = std::move(result.texture);
 }
 
 template <typename Real>

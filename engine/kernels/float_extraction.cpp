@@ -3,18 +3,48 @@
 #include "engine/kernels/aligned_rows.hpp"
 #include "engine/kernels/gl_row.hpp"
 #include "engine/kernels/half_gradient.hpp"
+#include "engine/kernels/rows_ahead.hpp"
 #include "engine/kernels/strips.hpp"
-#include "engine/kernels/texture_sink.hpp"
+#include "engine/kernels/texture_rows.hpp"
+#include "engine/kernels/wavelet_rows.hpp"
 #include "engine/order_map.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace touchtrial::engine {
 namespace {
 
 static_assert(ExtractionOptions::kMaxRadius <= kMaxGlRadius);
+
+/// Gives the plane a shape. If it has another one, its samples become 0; otherwise they stay.
+template <typename Sample>
+void reshape(Plane<Sample>& plane, const GreyImage& like) {
+  const int height = like.height();
+  if (plane.height() != height || plane.width() != like.width()) plane = {height, like.width()};
+}
+
+/// The same if the plane is wanted; otherwise empties it.
+template <typename Sample>
+void reshape_if(bool wanted, Plane<Sample>& plane, const GreyImage& like) {
+  if (wanted) {
+    reshape(plane, like);
+  } else {
+    plane = {};
+  }
+}
+
+void shape_planes(const GreyImage& image, const WantedPlanes& wanted, Extraction<float>& result) {
+  reshape(result.texture, image);
+  reshape_if(wanted.picture, result.picture, image);
+}
+
+void fill_flat(Extraction<float>& result) {
+  std::ranges::fill(result.texture.samples(), 0.0F);
+  std::ranges::fill(result.picture.samples(), std::uint8_t{128});
+}
 
 /// Clears what an extraction by another method may have left.
 void forget_other_methods(Extraction<float>& result) {
@@ -66,14 +96,16 @@ template <typename OrderOf>
 void filter_rows(const GreyImage& image, int radius, Rows strip, Extraction<float>& result,
                  OrderOf order_of) {
   ExtendedRows rows(image, radius, strip.first);
-  TextureSink sink(result);
   for (int y = strip.first; y < strip.last; ++y) {
     const auto order = order_of(y);
     rows.next_row();
-    gl_row(rows, radius, order, sink.row(y), sink.waiting());
-    sink.finish_row(y);
+    float* const texture = result.texture.row(y).data();
+    fetch_ahead(result.texture, y + 1, image.width());
+    gl_row(rows, radius, order, texture);
+    if (!result.picture.empty()) {  // while the row is in the cache
+      picture_row(texture, image.width(), result.picture.row(y).data());
+    }
   }
-  sink.finish();
 }
 
 void second_pass(const GreyImage& image, int radius, const HalfGradient& gradient,
@@ -97,11 +129,11 @@ void extract_adaptive(const GreyImage& image, int radius, const WantedPlanes& wa
     if (!wanted.sub_bands) *plane = {};
   }
   if (wanted.sub_bands) extract_sub_bands(image, result);
-  const HalfGradient gradient(image);
-  reshape_if(wanted.csgv, result.csgv, image.height(), image.width());
+  shape_planes(image, wanted, result);
+  const HalfGradient gradient(image, result.texture);
+  reshape_if(wanted.csgv, result.csgv, image);
   keep_csgv(gradient, result.csgv);
-  reshape_if(wanted.order, result.order, image.height(), image.width());
-  shape_planes(image.height(), image.width(), wanted, result);
+  reshape_if(wanted.order, result.order, image);
   if (gradient.largest() < static_cast<float>(kFlatBelowCsgv)) {
     std::ranges::fill(result.order.samples(), 0.0F);
     fill_flat(result);
@@ -115,10 +147,10 @@ void extract_fixed(const GreyImage& image, int radius, double order, const Wante
   forget_other_methods(result);
   for (Plane<float>* const plane : sub_bands_of(result)) *plane = {};
   result.csgv = {};
-  reshape_if(wanted.order, result.order, image.height(), image.width());
+  reshape_if(wanted.order, result.order, image);
   std::fill(result.order.samples().begin(), result.order.samples().end(),
             static_cast<float>(order));
-  shape_planes(image.height(), image.width(), wanted, result);
+  shape_planes(image, wanted, result);
   for_each_strip(image.height(), image.width(), [&](Rows strip) {
     filter_rows(image, radius, strip, result, [=](int) { return order; });
   });
@@ -128,7 +160,9 @@ void extract_sub_bands(const GreyImage& image, Extraction<float>& result) {
   const int height = (image.height() + 1) / 2;
   const int width = (image.width() + 1) / 2;
   const auto planes = sub_bands_of(result);
-  for (Plane<float>* const plane : planes) reshape(*plane, height, width);
+  for (Plane<float>* const plane : planes) {
+    if (plane->height() != height || plane->width() != width) *plane = {height, width};
+  }
   ColumnFilter filter(image, {0, width});
   for (int y = 0; y < height; ++y) {
     BandRows<float> to;

@@ -1,5 +1,6 @@
 #include "engine/kernels/gl_row.hpp"
 
+#include "engine/kernels/rows_ahead.hpp"
 #include "engine/symmetric_extension.hpp"
 
 #include <algorithm>
@@ -13,9 +14,8 @@
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// clang-format off: the next ones are compiled for the target that those two have set.
+// clang-format off: the next one is compiled for the target that those two have set.
 #include "engine/kernels/real_pairs-inl.hpp"
-#include "engine/kernels/streamed_row-inl.hpp"
 // clang-format on
 
 #ifndef TOUCHTRIAL_GL_ROW_ONCE
@@ -182,61 +182,43 @@ HWY_INLINE RealPair texture_block(const Workspace& work, const std::int16_t* cen
   return orders.finish(order, sum);
 }
 
-/// \param before_block  called before each block with its first column
-template <int kRadius, class Orders, class BeforeBlock>
-HWY_INLINE void texture_blocks(const Workspace& work, const std::int16_t* centres, int radius,
-                               Tile tile, const Orders& orders, float* texture,
-                               const BeforeBlock& before_block) {
+template <int kRadius, class Orders>
+HWY_INLINE void texture_tile(const Workspace& work, const std::int16_t* centres, int radius,
+                             Tile tile, const Orders& orders, float* texture) {
   int i = 0;
   for (; i + kBlock <= tile.width; i += kBlock) {
-    before_block(tile.x0 + i);
     store_pair(texture_block<kRadius>(work, centres, radius, tile.x0, i, orders),
                texture + tile.x0 + i);
   }
   if (i == tile.width) return;
-  before_block(tile.x0 + i);
   alignas(64) float rest[kBlock];
   store_pair(texture_block<kRadius>(work, centres, radius, tile.x0, i, orders), rest);
   std::copy_n(rest, tile.width - i, texture + tile.x0 + i);
 }
 
-template <int kRadius, class Orders>
-HWY_INLINE void texture_tile(const Workspace& work, const std::int16_t* centres, int radius,
-                             Tile tile, const Orders& orders, float* texture,
-                             std::span<const StreamedRow> beside) {
-  if (beside.empty()) {
-    texture_blocks<kRadius>(work, centres, radius, tile, orders, texture, [](int) {});
-    return;
-  }
-  texture_blocks<kRadius>(work, centres, radius, tile, orders, texture, [=](int x) {
-    for (const StreamedRow& row : beside) move_samples(row, x, kBlock);
-  });
-}
-
 template <class Orders>
 HWY_INLINE void texture_row(const ExtendedRows& rows, int radius, const Orders& orders,
-                            float* texture, std::span<const StreamedRow> beside) {
+                            float* texture) {
   Workspace work;
   for (int x0 = 0; x0 < rows.width(); x0 += kTile) {
     const Tile tile{x0, std::min(kTile, rows.width() - x0)};
     if (radius == 2) {  // the usual radius has code of its own
       sum_columns_of_two(rows, tile, work);
-      texture_tile<2>(work, rows.row(0), radius, tile, orders, texture, beside);
+      texture_tile<2>(work, rows.row(0), radius, tile, orders, texture);
     } else {
       for (int k = 1; k <= radius; ++k) sum_columns(rows, k, tile, work);
-      texture_tile<0>(work, rows.row(0), radius, tile, orders, texture, beside);
+      texture_tile<0>(work, rows.row(0), radius, tile, orders, texture);
     }
   }
 }
 
-void row_of_orders(const ExtendedRows& rows, int radius, const float* orders, float* texture,
-                   std::span<const StreamedRow> beside) {
-  texture_row(rows, radius, PixelOrders(orders), texture, beside);
+void row_of_orders(const ExtendedRows& rows, int radius, const float* orders, float* texture) {
+  texture_row(rows, radius, PixelOrders(orders), texture);
 }
 
 void row_of_one_order(const ExtendedRows& rows, int radius, const FixedFactors& factors,
-                      float* texture, std::span<const StreamedRow> beside) {
-  texture_row(rows, radius, OneOrder(factors), texture, beside);
+                      float* texture) {
+  texture_row(rows, radius, OneOrder(factors), texture);
 }
 
 }  // namespace
@@ -260,31 +242,33 @@ ExtendedRows::ExtendedRows(const GreyImage& image, int reach, int first)
       y_(first - 1),
       rows_(2 * static_cast<std::size_t>(reach) + 1, static_cast<std::size_t>(image.width()),
             static_cast<std::size_t>(reach)) {
-  for (int y = first - reach; y < first + reach; ++y) load(y);
+  // The current row is the one before the first: what lies at -reach is not needed.
+  for (int offset = 1 - reach; offset <= reach; ++offset) load(offset);
 }
 
 void ExtendedRows::next_row() {
   ++y_;
-  load(y_ + reach_);
+  current_ = current_ == 2 * reach_ ? 0 : current_ + 1;
+  load(reach_);
 }
 
-void ExtendedRows::load(int y) {
+void ExtendedRows::load(int offset) {
+  const int y = y_ + offset;
   const int width = image_.width();
-  std::int16_t* const to = rows_.row(slot(y));
+  fetch_ahead(image_, y + 1, width);
+  std::int16_t* const to = rows_.row(slot(offset));
   HWY_DYNAMIC_DISPATCH(widened)
   (image_.row(symmetric_index(y, image_.height())).data(), width, to);
   mirror_ends(to, width, reach_);
 }
 
-void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture,
-            std::span<const StreamedRow> beside) {
-  HWY_DYNAMIC_DISPATCH(row_of_orders)(rows, radius, orders, texture, beside);
+void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture) {
+  HWY_DYNAMIC_DISPATCH(row_of_orders)(rows, radius, orders, texture);
 }
 
-void gl_row(const ExtendedRows& rows, int radius, double order, float* texture,
-            std::span<const StreamedRow> beside) {
+void gl_row(const ExtendedRows& rows, int radius, double order, float* texture) {
   HWY_DYNAMIC_DISPATCH(row_of_one_order)
-  (rows, radius, FixedFactors(order, radius), texture, beside);
+  (rows, radius, FixedFactors(order, radius), texture);
 }
 
 }  // namespace touchtrial::engine

@@ -9,11 +9,9 @@
 
 #include "core/plane.hpp"
 #include "engine/kernels/aligned_rows.hpp"
-#include "engine/kernels/streamed_row.hpp"
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 namespace touchtrial::engine {
 
@@ -34,20 +32,26 @@ class ExtendedRows {
   /// width - 1 + reach may be read, and a vector more. Valid until next_row().
   /// \param offset  -reach .. reach
   [[nodiscard]] const std::int16_t* row(int offset) const noexcept {
-    return rows_.row(slot(y_ + offset));
+    return rows_.row(slot(offset));
   }
   [[nodiscard]] int width() const noexcept { return image_.width(); }
 
  private:
-  void load(int y);
-  /// For any y, the rows y - reach .. y + reach have different slots.
-  [[nodiscard]] std::size_t slot(int y) const noexcept {
-    return static_cast<std::size_t>(y + reach_) % (2 * static_cast<std::size_t>(reach_) + 1);
+  /// Puts a row of the image into the place for an offset.
+  void load(int offset);
+  /// The rows at offsets -reach .. reach have different slots, which turn with the current row.
+  [[nodiscard]] std::size_t slot(int offset) const noexcept {
+    const int place = current_ + offset;
+    const int count = 2 * reach_ + 1;
+    return static_cast<std::size_t>(place < 0        ? place + count
+                                    : place >= count ? place - count
+                                                     : place);
   }
 
   const GreyImage& image_;
   int reach_;
   int y_;
+  int current_ = 0;  // slot of row y_
   AlignedRows<std::int16_t> rows_;
 };
 
@@ -59,12 +63,9 @@ inline constexpr int kMaxGlRadius = 63;
 /// \param radius  1 .. kMaxGlRadius
 /// \param orders  v in [0, 1) for each pixel; read up to a vector past the row's end
 /// \param texture  receives width() samples and no more
-/// \param beside  rows of at most width() samples to move meanwhile
-void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture,
-            std::span<const StreamedRow> beside = {});
+void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture);
 
 /// The same with one order for all pixels.
-void gl_row(const ExtendedRows& rows, int radius, double order, float* texture,
-            std::span<const StreamedRow> beside = {});
+void gl_row(const ExtendedRows& rows, int radius, double order, float* texture);
 
 }  // namespace touchtrial::engine

@@ -4,38 +4,38 @@
 #pragma once
 
 #include "core/plane.hpp"
-#include "engine/kernels/aligned_rows.hpp"
 #include "engine/kernels/strips.hpp"
-#include "engine/kernels/wavelet_rows.hpp"
 
 #include <cstddef>
 
 namespace touchtrial::engine {
 
 /// CSGV at half resolution, and its maximum. As the maximum is known only after the last row, the
-/// orders need a second pass. Takes as many bytes as the image has pixels.
+/// orders need a second pass. Until then CSGV waits in the plane that will receive the texture.
 ///
 /// Everything up to the gradient is exact in whole numbers: CSGV is exact where the gradient is a
 /// whole number along one axis, as for ramps, and 0 where there is no gradient.
 class HalfGradient {
  public:
   /// \param image  not empty
-  explicit HalfGradient(const GreyImage& image);
+  /// \param room  a plane of the image's shape, which is overwritten. Two rows of it belong to each
+  ///   row of CSGV, and nothing else is kept there: who has read row(y) may write rows 2 y and
+  ///   2 y + 1. Must outlive this.
+  HalfGradient(const GreyImage& image, Plane<float>& room);
 
-  [[nodiscard]] const float* row(int y) const noexcept {
-    return rows_.row(static_cast<std::size_t>(y));
-  }
+  [[nodiscard]] const float* row(int y) const noexcept { return place(y); }
   [[nodiscard]] int height() const noexcept { return height_; }
   [[nodiscard]] int width() const noexcept { return width_; }
   [[nodiscard]] float largest() const noexcept { return largest_; }
 
  private:
+  [[nodiscard]] float* place(int y) const noexcept { return room_.row(2 * y).data(); }
   /// \return the largest CSGV of these rows
-  float compute(const GreyImage& image, Columns columns, Rows rows);
+  float compute(const GreyImage& image, Rows rows);
 
+  Plane<float>& room_;
   int height_;
   int width_;
-  AlignedRows<float> rows_;
   float largest_ = 0.0F;
 };
 

@@ -10,9 +10,6 @@
 #define HWY_TARGET_INCLUDE "engine/kernels/texture_rows.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// clang-format off: the next one is compiled for the target that those two have set.
-#include "engine/kernels/streamed_row-inl.hpp"
-// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace touchtrial::engine {
@@ -67,10 +64,6 @@ float highest_of_samples(const float* samples, std::size_t count) {
   return std::bit_cast<float>(all >= kInfinite ? all : top ^ ((top >> 31) & 0x7fffffff));
 }
 
-void all_of_row(const StreamedRow& row) {
-  move_samples(row, 0, row.count);
-}
-
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace touchtrial::engine
@@ -81,7 +74,6 @@ namespace touchtrial::engine {
 namespace {
 
 HWY_EXPORT(row_of_picture);
-HWY_EXPORT(all_of_row);
 HWY_EXPORT(highest_of_samples);
 
 }  // namespace
@@ -92,10 +84,6 @@ void picture_row(const float* texture, int width, std::uint8_t* picture) {
 
 float highest_sample(std::span<const float> samples) noexcept {
   return HWY_DYNAMIC_DISPATCH(highest_of_samples)(samples.data(), samples.size());
-}
-
-void move_row(const StreamedRow& row) {
-  HWY_DYNAMIC_DISPATCH(all_of_row)(row);
 }
 
 }  // namespace touchtrial::engine

@@ -1,7 +1,5 @@
-/// \file Rows of the picture of a texture, its largest sample, and copies past the caches, vectorised for every target.
+/// \file Rows of the picture of a texture, and its largest sample, vectorised for every target.
 #pragma once
-
-#include "engine/kernels/streamed_row.hpp"
 
 #include <cstdint>
 #include <span>
@@ -15,8 +13,5 @@ void picture_row(const float* texture, int width, std::uint8_t* picture);
 /// The largest of the samples; not finite if any of them is not.
 /// \param samples  at least one
 [[nodiscard]] float highest_sample(std::span<const float> samples) noexcept;
-
-/// Moves a whole row past the caches.
-void move_row(const StreamedRow& row);
 
 }  // namespace touchtrial::engine

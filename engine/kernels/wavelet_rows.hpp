@@ -69,20 +69,8 @@ class ColumnFilter {
 template <typename Sample>
 using BandRows = std::array<Sample*, 4>;
 
-/// The rolling rows from which the Sobel gradient of the sub-bands is computed. All rows have a
-/// vector of slack at both ends, which may be overwritten.
-struct SobelRows {
-  BandRows<std::int32_t> last_but_one;  ///< of each sub-band
-  BandRows<std::int32_t> last;
-  BandRows<std::int32_t> smoothed;    ///< out: [1 2 1] of the last three rows, along y
-  BandRows<std::int32_t> difference;  ///< out: the last row minus the last but two
-};
-
-/// Filters along x, keeps every second sample, and advances `out` by that row of the sub-bands.
+/// Filters along x, and keeps every second sample: the values of the sub-bands in single precision.
 /// \param rows  2 * count + 2 samples each, and two vectors of slack
-void filter_along_x(const FilteredRows& rows, int count, SobelRows& out);
-
-/// The same, with the values of the sub-bands in single precision as the result.
 /// \param out  receives `count` samples each and no more
 void filter_along_x(const FilteredRows& rows, int count, const BandRows<float>& out);
 

@@ -188,7 +188,7 @@ TEST_CASE("the adaptive kernels give the by-products of double on every target")
 }
 
 TEST_CASE(
-    "an image whose planes are written past the caches has the same texture, "
+    "an image of many rows has the same texture with and without other planes, and their "
     "picture and force on every target") {
   const GreyImage image = cloth_image({651, 619});
   const Plane<double> truth = engine::extract_texture<double>(image, adaptive_options(2)).texture;
