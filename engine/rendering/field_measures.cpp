@@ -8,7 +8,6 @@
 #include <complex>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 
 namespace touchtrial::engine {
@@ -67,31 +66,31 @@ double mean_of_nonzero(std::span<const double> values) {
   return sum == 0.0 ? 0.0 : sum / static_cast<double>(std::ssize(values) - zeros);
 }
 
-/// Transforms a plane without its mean.
-void transform(const Plane<double>& plane, RealFft<double>& fft) {
-  const auto samples = plane.samples();
-  const double mean =
-      std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
-  std::ranges::transform(samples, fft.plane().begin(),
-                         [mean](double sample) { return sample - mean; });
+/// Transforms one component of the force without its mean.
+void transform(SampledView field, float FieldSample::*component, RealFft<double>& fft) {
+  double sum = 0.0;
+  for (const FieldSample& sample : field.samples) sum += double{sample.*component};
+  const double mean = sum / static_cast<double>(field.samples.size());
+  std::ranges::transform(field.samples, fft.plane().begin(), [=](const FieldSample& sample) {
+    return double{sample.*component} - mean;
+  });
   fft.forward();
 }
 
-/// Visits every coefficient of the half spectrum but the mean with its radial frequency and power;
-/// the power counts twice where the conjugate, which is not stored, belongs to another column.
-template <typename Visit>
-void for_each_power(RealFft<double>& fft, int height, int width, Visit visit) {
+/// The first column of a row of the half spectrum whose radial frequency is above a limit; the
+/// number of columns if there is none. All columns behind it are above the limit as well.
+int first_above(double limit_cycles_per_px, double fy, int width) {
+  const double limit = limit_cycles_per_px * (1.0 + kRoundingOfRadii);
+  const auto is_above = [=](int column) {
+    const double fx = static_cast<double>(column) / width;
+    return std::sqrt(fx * fx + fy * fy) > limit;
+  };
   const int columns = width / 2 + 1;
-  for (int row = 0; row < height; ++row) {
-    const double fy = static_cast<double>(std::min(row, height - row)) / height;
-    for (int column = 0; column < columns; ++column) {
-      if (row == 0 && column == 0) continue;
-      const double fx = static_cast<double>(column) / width;
-      const bool has_twin = column != 0 && 2 * column != width;
-      const std::size_t at = static_cast<std::size_t>(row) * columns + column;
-      visit(std::sqrt(fx * fx + fy * fy), (has_twin ? 2.0 : 1.0) * std::norm(fft.spectrum()[at]));
-    }
-  }
+  const double rest = std::sqrt(std::max(0.0, limit * limit - fy * fy));
+  int first = static_cast<int>(std::min(rest * width, static_cast<double>(columns)));
+  while (first > 0 && is_above(first - 1)) --first;
+  while (first < columns && !is_above(first)) ++first;
+  return first;
 }
 
 }  // namespace
@@ -169,19 +168,34 @@ double percentile(std::span<const std::vector<float>> pools, double share) {
   return rest > 0.0 ? *middle + rest * (double{next} - *middle) : *middle;
 }
 
-std::vector<double> power_shares_above(const Plane<double>& x, const Plane<double>& y,
+std::vector<double> power_shares_above(SampledView field,
                                        std::span<const double> limits_cycles_per_px) {
-  RealFft<double> fft(x.height(), x.width());
+  const int height = field.geometry.height_px;
+  const int width = field.geometry.width_px;
+  const int columns = width / 2 + 1;
+  RealFft<double> fft(height, width);
   std::vector<double> shares(limits_cycles_per_px.size(), 0.0);
+  std::vector<int> first(shares.size());
   double total = 0.0;
-  for (const Plane<double>* component : {&x, &y}) {
-    transform(*component, fft);
-    for_each_power(fft, x.height(), x.width(), [&](double cycles_per_px, double power) {
-      total += power;
-      for (std::size_t i = 0; i < shares.size(); ++i) {
-        if (cycles_per_px > limits_cycles_per_px[i] * (1.0 + kRoundingOfRadii)) shares[i] += power;
+  for (float FieldSample::*component : {&FieldSample::force_x, &FieldSample::force_y}) {
+    transform(field, component, fft);
+    fft.spectrum()[0] = 0.0;  // the mean's rounding
+    for (int row = 0; row < height; ++row) {
+      const double fy = static_cast<double>(std::min(row, height - row)) / height;
+      std::ranges::transform(limits_cycles_per_px, first.begin(),
+                             [=](double limit) { return first_above(limit, fy, width); });
+      const std::complex<double>* line =
+          fft.spectrum().data() + static_cast<std::size_t>(row) * columns;
+      for (int column = 0; column < columns; ++column) {
+        // The conjugate, which is not stored, has the same power in another column.
+        const bool has_twin = column != 0 && 2 * column != width;
+        const double power = (has_twin ? 2.0 : 1.0) * std::norm(line[column]);
+        total += power;
+        for (std::size_t i = 0; i < shares.size(); ++i) {
+          if (column >= first[i]) shares[i] += power;
+        }
       }
-    });
+    }
   }
   for (double& share : shares) share = total > 0.0 ? share / total : 0.0;
   return shares;

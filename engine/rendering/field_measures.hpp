@@ -66,12 +66,12 @@ struct SampledField {
 /// \param share  0 .. 1
 [[nodiscard]] double percentile(std::span<const std::vector<float>> pools, double share);
 
-/// For each limit, the share of the power of a vector field (both components, means removed) at
-/// radial spatial frequencies above it; 0 for a constant field. The spectrum is that of the plane
-/// repeated periodically. Thread-safe. Cost: two real Fourier transforms.
-/// \param x,y  the components, of one shape, at least 1 x 1
+/// For each limit, the share of the force's power (both components, means removed) at radial
+/// spatial frequencies above it; 0 for a constant force. The spectrum is that of the plane repeated
+/// periodically. Thread-safe. Cost: two real Fourier transforms.
+/// \param field  at least 1 x 1
 /// \param limits_cycles_per_px  a frequency within rounding of a limit is not above it
-[[nodiscard]] std::vector<double> power_shares_above(const Plane<double>& x, const Plane<double>& y,
+[[nodiscard]] std::vector<double> power_shares_above(SampledView field,
                                                      std::span<const double> limits_cycles_per_px);
 
 }  // namespace touchtrial::engine

@@ -41,8 +41,7 @@ void add_power_shares(SampledView field, FieldStatistics& statistics) {
   for (const double speed_mm_per_s : kStrokeSpeedsMmPerS) {
     limits_cycles_per_px.push_back(kVibrationHz / speed_mm_per_s * pitch_mm);
   }
-  const ForceField<double> force = force_planes(field);
-  const std::vector<double> shares = power_shares_above(force.x, force.y, limits_cycles_per_px);
+  const std::vector<double> shares = power_shares_above(field, limits_cycles_per_px);
   statistics.share_below_1_mm = shares[0];
   std::copy(shares.begin() + 1, shares.end(), statistics.share_above_250_hz.begin());
 }

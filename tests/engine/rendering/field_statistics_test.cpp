@@ -77,20 +77,30 @@ double share_slowly(const std::array<const Plane<double>*, 2>& components, doubl
 TEST_CASE("power_shares_above agrees with the transform written out, on even and odd sizes") {
   const int height = GENERATE(1, 5, 6);
   const int width = GENERATE(4, 7);
-  const Plane<double> x = random_texture(height, width, 1);
-  const Plane<double> y = random_texture(height, width, 2, 15.0);
-  const std::vector<double> limits = {0.0, 0.19, 0.31, 0.45, 0.6};
-  const std::vector<double> shares = engine::power_shares_above(x, y, limits);
+  const auto in_single = [](const Plane<double>& plane) {
+    return converted<double>(converted<float>(plane));
+  };
+  const Plane<double> x = in_single(random_texture(height, width, 1));
+  const Plane<double> y = in_single(random_texture(height, width, 2, 15.0));
+  std::vector<engine::FieldSample> samples;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    samples.push_back(
+        {0.0F, static_cast<float>(x.samples()[i]), static_cast<float>(y.samples()[i])});
+  }
+  const std::vector<double> limits = {0.6, 0.0, 0.19, 0.31, 0.45, 1.0};
+  const std::vector<double> shares =
+      engine::power_shares_above({{0.2, height, width}, samples}, limits);
   for (std::size_t i = 0; i < limits.size(); ++i) {
     CAPTURE(height, width, limits[i]);
     CHECK(shares[i] == Approx(share_slowly({&x, &y}, limits[i])).margin(1e-12));
   }
-  CHECK(shares[0] == Approx(1.0).epsilon(1e-12));
+  CHECK(shares[1] == Approx(1.0).epsilon(1e-12));
+  CHECK(shares[5] == 0.0);
 }
 
 TEST_CASE("power_shares_above is zero for a constant field") {
-  const Plane<double> constant(8, 9, 3.25);
-  CHECK(engine::power_shares_above(constant, constant, std::vector<double>{0.0}) ==
+  const std::vector<engine::FieldSample> constant(8 * 9, {0.0F, 3.25F, 3.25F});
+  CHECK(engine::power_shares_above({{0.2, 8, 9}, constant}, std::vector<double>{0.0}) ==
         std::vector<double>{0.0});
 }
 
