@@ -109,8 +109,8 @@ design::Question question(const design::SessionPlan& plan, const char* section,
                           std::initializer_list<const char*> options) {
   const auto wording = [&](const char* of) {
     design::Translated words;
-    for (const design::Language& language : design::languages()) {
-      words[language.code] = language.texts.at(section).at(of);
+    for (const std::string_view code : design::language_codes()) {
+      words[std::string(code)] = design::language_of(code).texts.at(section).at(of);
     }
     words[plan.language] = texts.at(of);
     return words;

@@ -3,7 +3,10 @@
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
+#include <mutex>
+#include <vector>
 
 namespace touchtrial::design {
 namespace {
@@ -141,29 +144,20 @@ Language parse_language(std::string_view text, const std::string& source) {
   return language;
 }
 
-const std::vector<Language>& languages() {
-  static const std::vector<Language> all = [] {
-    std::vector<Language> read;
-    for (const std::string_view file : language_files()) {
-      read.push_back(parse_language(file, "the program's texts"));
-    }
-    return read;
-  }();
-  return all;
-}
-
-const std::vector<std::string_view>& language_codes() {
-  static const std::vector<std::string_view> codes = [] {
-    std::vector<std::string_view> listed;
-    for (const Language& language : languages()) listed.push_back(language.code);
-    return listed;
-  }();
-  return codes;
-}
-
 const Language& language_of(std::string_view code) {
-  const auto found = std::ranges::find(languages(), code.substr(0, 2), &Language::code);
-  return found == languages().end() ? languages().front() : *found;
+  struct Parsed {
+    std::once_flag once;
+    Language language;
+  };
+  static std::vector<Parsed> all(language_codes().size());
+  const auto found = std::ranges::find(language_codes(), code.substr(0, 2));
+  const std::size_t i = found == language_codes().end()
+                            ? 0
+                            : static_cast<std::size_t>(found - language_codes().begin());
+  std::call_once(all[i].once, [&] {
+    all[i].language = parse_language(language_files()[i], "the program's texts");
+  });
+  return all[i].language;
 }
 
 bool has_decimal_comma(std::string_view code) noexcept {

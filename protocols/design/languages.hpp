@@ -23,11 +23,10 @@ struct Language {
   Texts texts;
 };
 
-/// The built-in languages, English first. Parsed once; thread-safe.
-[[nodiscard]] const std::vector<Language>& languages();
-/// Their codes, in the same order.
+/// The codes of the built-in languages: the names of their files, in the same order.
 [[nodiscard]] const std::vector<std::string_view>& language_codes();
 
+/// Parsed when it is first asked for; thread-safe.
 /// \param code  "de", "de-AT"
 /// \return English if the program does not have the language
 [[nodiscard]] const Language& language_of(std::string_view code);

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <deque>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchtrial {
@@ -89,7 +90,8 @@ TEST_CASE("a participant who cannot come is asked for again, with the reason") {
 }
 
 TEST_CASE("the dialogue is in the study's language, and what is recorded is not") {
-  for (const design::Language& language : design::languages()) {
+  for (const std::string_view code : design::language_codes()) {
+    const design::Language& language = design::language_of(code);
     std::vector<std::string> seen;
     const app::ParticipantAnswers answers =
         answers_to({{"P07", "0"}, {"7", "0"}}, "", &seen, language.code);
