@@ -1,5 +1,6 @@
 #include "engine/order_map.hpp"
 
+#include "engine/kernels/strips.hpp"
 #include "engine/symmetric_extension.hpp"
 
 #include <algorithm>
@@ -38,17 +39,23 @@ class Composite {
 
   /// \param level  how many doublings bring the band to the result's resolution
   void take(const Plane<double>& band, int level) {
-    GradientRows gradient(band, gradient_);
-    for (int y = 0; y < band.height(); ++y) {
-      const std::span<const double> slopes = gradient.row(y);
-      const int end = std::min((y + 1) << level, result_.height());
-      for (int i = y << level; i < end; ++i) take_row(slopes, level, combine_, result_.row(i));
-    }
+    for_each_strip(band.height(), band.width(), [&](Rows strip) {
+      GradientRows gradient(band, gradient_);
+      for (int y = strip.first; y < strip.last; ++y) {
+        const std::span<const double> slopes = gradient.row(y);
+        const int end = std::min((y + 1) << level, result_.height());
+        for (int i = y << level; i < end; ++i) take_row(slopes, level, combine_, result_.row(i));
+      }
+    });
   }
 
   [[nodiscard]] Plane<double> finish() && {
     if (combine_ == Combine::l2) {
-      for (double& sample : result_.samples()) sample = std::sqrt(sample);
+      for_each_strip(result_.height(), result_.width(), [this](Rows strip) {
+        for (int y = strip.first; y < strip.last; ++y) {
+          for (double& sample : result_.row(y)) sample = std::sqrt(sample);
+        }
+      });
     }
     return std::move(result_);
   }
@@ -129,8 +136,12 @@ Plane<double> composite_gradient(const SubBands& bands) {
 Plane<double> order_map(const Plane<double>& csgv) {
   const double largest = std::ranges::max(csgv.samples());
   Plane<double> orders(csgv.height(), csgv.width());
-  std::ranges::transform(csgv.samples(), orders.samples().begin(),
-                         [largest](double value) { return order_at(value, largest); });
+  for_each_strip(csgv.height(), csgv.width(), [&](Rows strip) {
+    for (int y = strip.first; y < strip.last; ++y) {
+      std::ranges::transform(csgv.row(y), orders.row(y).begin(),
+                             [largest](double value) { return order_at(value, largest); });
+    }
+  });
   return orders;
 }
 

@@ -1,13 +1,17 @@
 #include "engine/order_map.hpp"
 
 #include "engine/example_images.hpp"
+#include "engine/kernels/strips.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/extraction_reference.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
+
+#include <tbb/task_arena.h>
 
 namespace touchtrial {
 namespace {
@@ -93,6 +97,22 @@ TEST_CASE("order_map gives orders from 0 to below 1 for every kind of image") {
     INFO(name);
     for (const double order : orders.samples()) REQUIRE((order >= 0.0 && order < 1.0));
   }
+}
+
+TEST_CASE(
+    "a megapixel of orders is made by several threads at once, to the same digits as by one") {
+  const engine::SubBands fine = engine::daub4_sub_bands(cloth_image({2021, 2007}));
+  const std::array<engine::SubBands, 2> levels{fine, engine::daub4_sub_bands(fine.ll)};
+  REQUIRE(static_cast<std::int64_t>(fine.ll.size()) >= engine::kThreadsFromPixels);
+  const auto combine = GENERATE(engine::Combine::sum, engine::Combine::l2, engine::Combine::max);
+  const auto orders = [&] {
+    return engine::order_map(engine::composite_gradient(levels, engine::Gradient::sobel, combine));
+  };
+  const Plane<double> all = orders();
+  Plane<double> alone;
+  tbb::task_arena one(1);
+  one.execute([&] { alone = orders(); });
+  CHECK(all == alone);
 }
 
 TEST_CASE("order_map agrees with its definition") {
