@@ -5,7 +5,9 @@
 #include "core/files.hpp"
 
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
+#include <string>
 #include <system_error>
 
 #include <unistd.h>
@@ -23,6 +25,21 @@ std::string this_build() {
   if (!program) return "";
   return std::to_string(program->bytes) + " " + std::to_string(program->modified_ns) + " " +
          std::to_string(program->changed_ns);
+}
+
+/// Removes the notes, and what was left of drafts, that nobody has written for kKeptNotes. Whose
+/// they are cannot be told without their keys.
+void remove_old_notes(const std::filesystem::path& folder) {
+  std::error_code error;
+  const auto oldest = std::filesystem::file_time_type::clock::now() - kKeptNotes;
+  for (std::filesystem::directory_iterator file(folder, error), end; !error && file != end;
+       file.increment(error)) {
+    std::error_code unknown;
+    const bool is_notes = file->path().filename().string().find(".notes") != std::string::npos;
+    if (!is_notes || !file->is_regular_file(unknown)) continue;
+    const auto written = file->last_write_time(unknown);
+    if (!unknown && written < oldest) std::filesystem::remove(file->path(), unknown);
+  }
 }
 
 }  // namespace
@@ -61,6 +78,7 @@ void PrivateNotes::keep(std::string_view text) const {
   file.close();
   if (file) std::filesystem::rename(draft, file_, error);
   if (!file || error) std::filesystem::remove(draft, error);
+  remove_old_notes(file_.parent_path());
 }
 
 }  // namespace touchtrial::design

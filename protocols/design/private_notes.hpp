@@ -3,12 +3,17 @@
 
 #include "core/cipher.hpp"
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace touchtrial::design {
+
+/// Notes that were not written for so long are removed when others are: their pictures or their
+/// study may be gone.
+inline constexpr std::chrono::days kKeptNotes{90};
 
 /// A file of notes on one subject, sealed under the study's master secret: who lacks the study's
 /// key learns neither whose notes they are nor what they say, and can forge none. Notes of another
@@ -23,6 +28,7 @@ class PrivateNotes {
 
   /// \return the text that was last kept, or nothing
   [[nodiscard]] std::optional<std::string> read() const;
+  /// Also removes notes of any study from the folder that are older than kKeptNotes.
   void keep(std::string_view text) const;
 
  private:

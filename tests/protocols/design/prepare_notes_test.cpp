@@ -1,9 +1,12 @@
 #include "protocols/design/prepare_notes.hpp"
 
+#include "core/files.hpp"
 #include "protocols/design/laboratory.hpp"
 #include "protocols/design/private_notes.hpp"
 #include "support/catch.hpp"
 
+#include <chrono>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -243,6 +246,34 @@ TEST_CASE("notes on one subject are not those on another") {
   two.keep("second");
   CHECK(one.read() == "again");
   CHECK(two.read() == "second");
+}
+
+TEST_CASE("notes that were not written for 90 days are removed when others are kept") {
+  const TempFolder folder;
+  const design::PrivateNotes one(folder.path(), SecretKey{1}, "one");
+  const design::PrivateNotes two(folder.path(), SecretKey{2}, "two");
+  one.keep("first");
+  const auto file = *std::filesystem::directory_iterator(folder.path());
+  const std::filesystem::path draft = file.path().string() + ".tmp17";
+  const std::filesystem::path other = folder.path() / "other";
+  std::filesystem::copy_file(file, draft);
+  std::filesystem::copy_file(file, other);
+  const auto let_age = [&](std::chrono::hours age) {
+    const auto written = std::filesystem::file_time_type::clock::now() - age;
+    for (const auto& path : {file.path(), draft, other}) {
+      std::filesystem::last_write_time(path, written);
+    }
+  };
+  let_age(design::kKeptNotes - 1h);
+  two.keep("second");
+  CHECK(one.read() == "first");
+  CHECK(is_there(draft));
+  let_age(design::kKeptNotes + 1h);
+  two.keep("third");
+  CHECK_FALSE(one.read());
+  CHECK_FALSE(is_there(draft));
+  CHECK(is_there(other));
+  CHECK(two.read() == "third");
 }
 
 TEST_CASE("notes come back from their text as they were, and other texts are no notes") {
