@@ -33,7 +33,8 @@ Plane<double> normed_texture(const GreyImage& image, const ExtractionOptions& op
 }
 
 std::vector<SubBands> sub_band_levels(const GreyImage& image, int levels) {
-  std::vector<SubBands> bands = {daub4_sub_bands(image)};
+  std::vector<SubBands> bands;  // a list in braces would be copied
+  bands.push_back(daub4_sub_bands(image));
   while (static_cast<int>(bands.size()) < levels) {
     bands.push_back(daub4_sub_bands(bands.back().ll));
   }

@@ -174,6 +174,7 @@ void SimulatedHand::feel_by(TipSense& sense) {
 
 void SimulatedHand::foresee() {
   auto way = std::make_shared<std::vector<FreeTick>>();
+  way->reserve(static_cast<std::size_t>(last_tick_) + 1);
   HeldDevice free = unforced();
   std::size_t stroke = 0;
   // A hand that has stopped is told of one more force: none.

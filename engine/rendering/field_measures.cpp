@@ -134,7 +134,10 @@ double explicit_factor(double gain, std::span<const double> rms, Equalise equali
 
 double typical_stiffness(std::span<const std::vector<float>> pools) {
   const double typical = percentile(pools, 0.99);
-  const double largest = percentile(pools, 1.0);
+  float largest = 0.0F;
+  for (const std::vector<float>& pool : pools) {
+    for (const float stiffness : pool) largest = std::max(largest, stiffness);
+  }
   return typical > kLeastShareOfMaximum * largest ? typical : largest;
 }
 
