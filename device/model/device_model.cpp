@@ -79,6 +79,8 @@ DeviceDynamics::DeviceDynamics(const DeviceModel& model, double tick_s)
   if (model.planted.position_noise_mm > 0.0) {
     noise_.emplace(model.planted.seed, "device model's position noise");
   }
+  is_plain_ = !has_motors_ && !has_friction_ && has_true_readings_ && joint_ == 0.0 &&
+              model.planted.gravity_n == 0.0;
   on_the_way_n_.resize(static_cast<std::size_t>(model.delay_ticks));
   readings_mm_.resize(static_cast<std::size_t>(model.velocity_readings));
   place({});

@@ -179,8 +179,9 @@ class DeviceDynamics {
   bool has_motors_;            ///< whether a command meets any stage at all
   bool has_friction_;
   bool has_true_readings_;
-  double tip_kg_ = 0.0;  ///< the structure's share of the mass
-  double joint_ = 0.0;   ///< N s/mm: the structure's spring and damper over half a tick; 0: rigid
+  bool is_plain_ = false;  ///< a mass with viscous damping: nothing but move_rigid in a tick
+  double tip_kg_ = 0.0;    ///< the structure's share of the mass
+  double joint_ = 0.0;     ///< N s/mm: the structure's spring and damper over half a tick; 0: rigid
   std::optional<RandomStream> noise_;
 
   std::vector<Vec3> on_the_way_n_;  ///< a ring of delay_ticks commands
@@ -202,6 +203,13 @@ class DeviceDynamics {
 // Every simulated tick moves two devices, so a rigid one's motion is compiled into the hand's.
 
 inline void DeviceDynamics::tick(Vec3 commanded_n, const Outside& outside) noexcept {
+  if (is_plain_) {
+    delivered_n_ = commanded_n;
+    move_rigid(commanded_n, outside);
+    read_mm_ = tip_mm_;
+    read_mm_s_ = tip_mm_s_;
+    return;
+  }
   delivered_n_ = has_motors_ ? through_motors(commanded_n) : commanded_n;
   Vec3 motor_n = delivered_n_;
   if (model_.planted.gravity_n > 0.0) motor_n.y -= model_.planted.gravity_n;

@@ -181,6 +181,15 @@ class SlewLimit {
     return sent_n_;
   }
 
+  /// The same where one step is enough; else does nothing.
+  /// \return whether it was
+  [[nodiscard]] bool try_reach(Vec3 force_n) noexcept {
+    const Vec3 change_n = force_n - sent_n_;
+    if (!(dot(change_n, change_n) <= step_n_ * step_n_)) return false;
+    sent_n_ = force_n;
+    return true;
+  }
+
   /// Goes to zero at once, for a fault.
   void drop() noexcept { sent_n_ = {}; }
   [[nodiscard]] Vec3 sent_n() const noexcept { return sent_n_; }

@@ -55,6 +55,7 @@ class ThermalBudget {
   /// Warms the motors by a force.
   /// \param ticks  how long the force was sent, >= 0
   void heat(double force_squared_n2, double ticks) noexcept {
+    if (share_per_tick_ == 0.0) return;  // no budget
     heat_ += std::min(1.0, share_per_tick_ * ticks) * (force_squared_n2 - heat_);
   }
 

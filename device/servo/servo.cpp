@@ -3,6 +3,7 @@
 #include "device/platform/realtime.hpp"
 #include "device/servo/duration_histogram.hpp"
 #include "device/servo/flight_recorder.hpp"
+#include "device/simulated/simulated_hand.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -103,10 +104,11 @@ class Pacing {
 
 /// One run of the loop.
 /// \tparam kIsWatched  whether there may be hooks
-template <bool kIsWatched>
+/// \tparam Device  HapticDevice, or a driver whose functions are to be compiled into the loop
+template <bool kIsWatched, typename Device>
 class ServoRun {
  public:
-  ServoRun(HapticDevice& device, ForceSource& force, SampleSink& sink, const ServoOptions& options,
+  ServoRun(Device& device, ForceSource& force, SampleSink& sink, const ServoOptions& options,
            const ServoHooks& hooks)
       : device_(device),
         force_(force),
@@ -149,10 +151,12 @@ class ServoRun {
   std::optional<ServoEnd> run_ticks(Pacing<Clock>& pacing) noexcept {
     for (std::int64_t tick = 0; tick < end_of_ticks(); ++tick) {
       const TickStart start = pacing.wait_for(tick);
-      report_.overruns += std::min(start.tick, end_of_ticks()) - tick;
-      tick = start.tick;
-      take_requests(tick);
-      if (tick >= end_of_ticks()) break;
+      if constexpr (!Pacing<Clock>::kIsVirtual) {
+        report_.overruns += std::min(start.tick, end_of_ticks()) - tick;
+        tick = start.tick;
+        take_requests(tick);
+        if (tick >= end_of_ticks()) break;
+      }
       const std::optional<ServoEnd> end = run_tick(start);
       if (kIsWatched && hooks_.heartbeat != nullptr) {
         hooks_.heartbeat->fetch_add(1, std::memory_order_release);
@@ -164,8 +168,8 @@ class ServoRun {
 
   /// A comfort stop lasts until the slew limit has let go as well.
   [[nodiscard]] std::int64_t end_of_ticks() const noexcept {
-    const bool lets_go = safety_.sent_n() != Vec3{};
-    return lets_go ? std::max(end_of_fade(), end_of_comfort_stop_) : end_of_fade();
+    const bool may_let_go = end_of_comfort_stop_ > end_of_fade();
+    return may_let_go && safety_.sent_n() != Vec3{} ? end_of_comfort_stop_ : end_of_fade();
   }
   [[nodiscard]] std::int64_t end_of_fade() const noexcept { return fade_from_ + fade_ticks_; }
 
@@ -209,8 +213,9 @@ class ServoRun {
     return fade_share_ * (1.0 - gone / static_cast<double>(fade_ticks_));
   }
 
+  /// All of a driver's tick and of the chain is compiled into this, if the driver is known here.
   /// \return why the loop must end, or nothing
-  std::optional<ServoEnd> run_tick(const TickStart& start) noexcept {
+  [[gnu::flatten]] std::optional<ServoEnd> run_tick(const TickStart& start) noexcept {
     DeviceSample sample;
     const DeviceStatus state = device_.read(sample);
     if (state == DeviceStatus::stopped) return ServoEnd::hand_stopped;
@@ -219,7 +224,8 @@ class ServoRun {
     const double fade = fade_at(start.tick);
     const Vec3 rendered_n = (fade * share()) * force_.force_n(sample);
     if (force_.is_done()) fade_out(start.tick, ServoEnd::hand_stopped);
-    const Vec3 support_n = fade * device_.support_force_n(sample);
+    const Vec3 carried_n = device_.support_force_n(sample);
+    const Vec3 support_n = carried_n == Vec3{} ? carried_n : fade * carried_n;
     most_support_n2_ = std::max(most_support_n2_, dot(support_n, support_n));
     SafeForce safe = safety_.check(rendered_n, sample, start.tick - last_tick_, support_n);
     last_tick_ = start.tick;
@@ -282,7 +288,7 @@ class ServoRun {
     }
   }
 
-  HapticDevice& device_;
+  Device& device_;
   ForceSource& force_;
   SampleSink& sink_;
   const ServoHooks& hooks_;
@@ -302,13 +308,13 @@ class ServoRun {
   ServoReport report_;
 };
 
-template <typename Clock>
-ServoReport run(HapticDevice& device, ForceSource& force, SampleSink& sink,
-                const ServoOptions& options, Clock& clock, const ServoHooks& hooks) {
+template <typename Clock, typename Device>
+ServoReport run(Device& device, ForceSource& force, SampleSink& sink, const ServoOptions& options,
+                Clock& clock, const ServoHooks& hooks) {
   check(options);
   // Nobody watches or controls a run in virtual time.
   constexpr bool kIsWatched = !Pacing<Clock>::kIsVirtual;
-  ServoRun<kIsWatched> servo(device, force, sink, options, hooks);
+  ServoRun<kIsWatched, Device> servo(device, force, sink, options, hooks);
   return servo.run(Pacing<Clock>(clock, options.rate_hz));
 }
 
@@ -322,6 +328,9 @@ ServoReport run_servo(HapticDevice& device, ForceSource& force, SampleSink& sink
 ServoReport run_servo_in_virtual_time(HapticDevice& device, ForceSource& force, SampleSink& sink,
                                       const ServoOptions& options) {
   VirtualClock clock;
+  if (auto* const hand = dynamic_cast<SimulatedHand*>(&device)) {
+    return run(*hand, force, sink, options, clock, {});
+  }
   return run(device, force, sink, options, clock, {});
 }
 

@@ -60,6 +60,14 @@ double ramp_distance(double u) noexcept {
 
 }  // namespace
 
+ExplorationPath::Ramps ExplorationPath::ramps_at(double gone_s, double left_s) noexcept {
+  const double begun = std::clamp(gone_s / kRampS, 0.0, 1.0);
+  const double left = std::clamp(left_s / kRampS, 0.0, 1.0);
+  // Speeding up covers ramp_distance(begun); slowing down covers the rest of half a ramp.
+  return {kRampS * (ramp_distance(begun) + 0.5 - ramp_distance(left)),
+          std::min(ramp_speed(begun), ramp_speed(left))};
+}
+
 ExplorationPath::Stroke ExplorationPath::stroke_between(Vec2 from_mm, Vec2 to_mm, double start_s,
                                                         double speed_mm_s) noexcept {
   const double length_mm = norm(to_mm - from_mm);
@@ -85,35 +93,11 @@ ExplorationPath::ExplorationPath(const PlaneGeometry& plane, const ExplorationOp
   }
 }
 
-PathPoint ExplorationPath::at(double time_s, std::size_t& stroke) const noexcept {
-  while (stroke + 1 < strokes_.size() && time_s >= strokes_[stroke].end_s()) ++stroke;
-  const Stroke& s = strokes_[stroke];
-  // Whole ramps need no division, which also would give 1.
-  const auto ramps = [](double time) {
-    return time >= kRampS ? 1.0 : std::max(time / kRampS, 0.0);
-  };
-  const double begun = ramps(time_s - s.start_s);
-  const double left = ramps(s.end_s() - time_s);
-  const double steady_s = std::clamp(time_s - s.start_s - kRampS, 0.0, s.steady_s - kRampS);
-  // Speeding up covers ramp_distance(begun); slowing down covers the rest of half a ramp.
-  const double ramps_s = kRampS * (ramp_distance(begun) + 0.5 - ramp_distance(left));
-  const double speed_mm_s = s.speed_mm_s * std::min(ramp_speed(begun), ramp_speed(left));
-  return {s.from_mm + (s.speed_mm_s * (steady_s + ramps_s)) * s.direction,
-          speed_mm_s * s.direction};
-}
-
 namespace {
 
 /// The plane and the time of a hand that is opened by name; nobody watches it for longer.
 constexpr PlaneGeometry kNamedPlane{0.2, 500, 500};
 constexpr double kNamedExploreS = 8.0 * 3600.0;
-
-/// \return the share of the push at a time after the start: from 0 to 1, level at both ends
-double push_share(double time_s) noexcept {
-  if (time_s >= SimulatedHand::kPushBuildUpS) return 1.0;
-  const double u = time_s / SimulatedHand::kPushBuildUpS;
-  return u * u * (3.0 - 2.0 * u);
-}
 
 std::vector<DeviceListing> list_simulated(const DeviceSettings&) {
   DeviceListing listing;
@@ -187,46 +171,8 @@ void SimulatedHand::foresee() {
   foreseen_ = std::move(way);
 }
 
-SimulatedHand::Intention SimulatedHand::intention_at(std::int64_t tick,
-                                                     std::size_t& stroke) const noexcept {
-  const double time_s = static_cast<double>(tick) * kServoTickS;
-  return {path_.at(time_s, stroke), options_.push_n * push_share(time_s)};
-}
-
 DeviceInfo SimulatedHand::info() const {
   return {"simulated", "", max_force_n_, true};
-}
-
-DeviceStatus SimulatedHand::read(DeviceSample& sample) noexcept {
-  sample = {held_.device.read_position_mm(), held_.device.read_velocity_mm_s(),
-            static_cast<std::uint64_t>(tick_) + 1};
-  return tick_ < last_tick_ ? DeviceStatus::ok : DeviceStatus::stopped;
-}
-
-DeviceStatus SimulatedHand::write(Vec3 force_n) noexcept {
-  const FreeTick* foreseen = nullptr;
-  if (foreseen_ != nullptr) foreseen = &(*foreseen_)[std::min(tick_, last_tick_)];
-  const Intention intention =
-      foreseen != nullptr ? foreseen->intention : intention_at(tick_, stroke_);
-  const Vec3 tip_mm = held_.device.true_position_mm();
-  held_.tick(force_n, intention.target, intention.push_n);
-  ++tick_;
-  if (sense_ != nullptr) {
-    const Vec3 before_mm_s = yielding_mm_s_;
-    Vec2 own_mm_s;
-    if (foreseen != nullptr) {
-      own_mm_s = foreseen->tip_mm_s;
-    } else {
-      static_cast<void>(unforced_->tick({}, intention.target, intention.push_n));
-      const Vec3 free_mm_s = unforced_->device.true_velocity_mm_s();
-      own_mm_s = {free_mm_s.x, free_mm_s.y};
-    }
-    yielding_mm_s_ = held_.device.true_velocity_mm_s() - Vec3{own_mm_s.x, own_mm_s.y, 0.0};
-    // mm/s in a tick of 1 ms are m/s^2.
-    static_assert(kServoTick == std::chrono::milliseconds(1));
-    sense_->feel(tip_mm, force_n, yielding_mm_s_ - before_mm_s);
-  }
-  return DeviceStatus::ok;
 }
 
 std::chrono::nanoseconds SimulatedHand::now() const noexcept {

@@ -7,8 +7,10 @@
 #include "core/vec.hpp"
 #include "device/haptic_device.hpp"
 #include "device/model/device_model.hpp"
+#include "device/servo/servo.hpp"
 #include "device/simulated/hand_on_tip.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -53,6 +55,13 @@ class ExplorationPath {
     Vec2 direction;  ///< of length 1
     [[nodiscard]] double end_s() const noexcept { return start_s + steady_s + kRampS; }
   };
+  /// What speeding up and slowing down make of a stroke.
+  struct Ramps {
+    double way_s;  ///< covered on ramps, in seconds of the stroke's speed
+    double speed;  ///< share of the stroke's speed
+  };
+  /// \param gone_s, left_s  since the stroke's beginning and until its end
+  [[nodiscard]] static Ramps ramps_at(double gone_s, double left_s) noexcept;
   [[nodiscard]] static Stroke stroke_between(Vec2 from_mm, Vec2 to_mm, double start_s,
                                              double speed_mm_s) noexcept;
 
@@ -70,7 +79,8 @@ class TipSense {
   /// One tick, on the thread of the servo. Must not block, allocate or throw.
   /// \param force_n  commanded for the tick
   /// \param acceleration_m_s2  of the tip, less what the hand does by itself
-  virtual void feel(Vec3 position_mm, Vec3 force_n, Vec3 acceleration_m_s2) noexcept = 0;
+  virtual void feel(const Vec3& position_mm, const Vec3& force_n,
+                    const Vec3& acceleration_m_s2) noexcept = 0;
 };
 
 /// The driver "simulated". Along the plane the arm pulls the hand towards the path. A push, which
@@ -125,6 +135,8 @@ class SimulatedHand final : public HapticDevice {
   };
   [[nodiscard]] Intention intention_at(std::int64_t tick, std::size_t& stroke) const noexcept;
   [[nodiscard]] HeldDevice unforced() const;
+  void tell(TipSense& sense, Vec3 tip_mm, Vec3 force_n, const Intention& intention,
+            const FreeTick* foreseen) noexcept;
 
   HandOptions options_;
   ExplorationPath path_;
@@ -139,5 +151,67 @@ class SimulatedHand final : public HapticDevice {
   std::int64_t tick_ = 0;
   std::int64_t last_tick_;
 };
+
+// Every simulated tick takes these steps, so they are compiled into the servo's loop.
+
+inline PathPoint ExplorationPath::at(double time_s, std::size_t& stroke) const noexcept {
+  while (stroke + 1 < strokes_.size() && time_s >= strokes_[stroke].end_s()) ++stroke;
+  const Stroke& s = strokes_[stroke];
+  const double gone_s = time_s - s.start_s;
+  const double left_s = s.end_s() - time_s;
+  const double steady_s = std::clamp(gone_s - kRampS, 0.0, s.steady_s - kRampS);
+  // Speeding up has covered half a ramp by then, and slowing down nothing.
+  const bool is_steady = gone_s >= kRampS && left_s >= kRampS;
+  const Ramps ramps = is_steady ? Ramps{0.5 * kRampS, 1.0} : ramps_at(gone_s, left_s);
+  const double speed_mm_s = s.speed_mm_s * ramps.speed;
+  return {s.from_mm + (s.speed_mm_s * (steady_s + ramps.way_s)) * s.direction,
+          speed_mm_s * s.direction};
+}
+
+inline SimulatedHand::Intention SimulatedHand::intention_at(std::int64_t tick,
+                                                            std::size_t& stroke) const noexcept {
+  const double time_s = static_cast<double>(tick) * kServoTickS;
+  double share = 1.0;  // of the push: from 0 to 1, level at both ends
+  if (time_s < kPushBuildUpS) {
+    const double u = time_s / kPushBuildUpS;
+    share = u * u * (3.0 - 2.0 * u);
+  }
+  return {path_.at(time_s, stroke), options_.push_n * share};
+}
+
+inline DeviceStatus SimulatedHand::read(DeviceSample& sample) noexcept {
+  sample = {held_.device.read_position_mm(), held_.device.read_velocity_mm_s(),
+            static_cast<std::uint64_t>(tick_) + 1};
+  return tick_ < last_tick_ ? DeviceStatus::ok : DeviceStatus::stopped;
+}
+
+inline DeviceStatus SimulatedHand::write(Vec3 force_n) noexcept {
+  const FreeTick* foreseen = nullptr;
+  if (foreseen_ != nullptr) foreseen = &(*foreseen_)[std::min(tick_, last_tick_)];
+  const Intention intention =
+      foreseen != nullptr ? foreseen->intention : intention_at(tick_, stroke_);
+  const Vec3 tip_mm = held_.device.true_position_mm();
+  held_.tick(force_n, intention.target, intention.push_n);
+  ++tick_;
+  if (sense_ != nullptr) tell(*sense_, tip_mm, force_n, intention, foreseen);
+  return DeviceStatus::ok;
+}
+
+inline void SimulatedHand::tell(TipSense& sense, Vec3 tip_mm, Vec3 force_n,
+                                const Intention& intention, const FreeTick* foreseen) noexcept {
+  Vec2 own_mm_s;
+  if (foreseen != nullptr) {
+    own_mm_s = foreseen->tip_mm_s;
+  } else {
+    static_cast<void>(unforced_->tick({}, intention.target, intention.push_n));
+    const Vec3 free_mm_s = unforced_->device.true_velocity_mm_s();
+    own_mm_s = {free_mm_s.x, free_mm_s.y};
+  }
+  const Vec3 before_mm_s = yielding_mm_s_;
+  yielding_mm_s_ = held_.device.true_velocity_mm_s() - Vec3{own_mm_s.x, own_mm_s.y, 0.0};
+  // mm/s in a tick of 1 ms are m/s^2.
+  static_assert(kServoTick == std::chrono::milliseconds(1));
+  sense.feel(tip_mm, force_n, yielding_mm_s_ - before_mm_s);
+}
 
 }  // namespace touchtrial::device

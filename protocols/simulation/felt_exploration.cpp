@@ -33,7 +33,8 @@ void HandSense::feel(const device::ServoSample& sample) noexcept {
   if (feels_forces_) sense_.feel(sample.position_mm, sample.force_n);
 }
 
-void HandSense::feel(Vec3 position_mm, Vec3 force_n, Vec3 acceleration_m_s2) noexcept {
+void HandSense::feel(const Vec3& position_mm, const Vec3& force_n,
+                     const Vec3& acceleration_m_s2) noexcept {
   sense_.feel(position_mm, force_n, acceleration_m_s2);
 }
 

@@ -32,7 +32,8 @@ class HandSense final : private device::TipSense {
   [[nodiscard]] auto mean_powers() const noexcept { return sense_.mean_powers(); }
 
  private:
-  void feel(Vec3 position_mm, Vec3 force_n, Vec3 acceleration_m_s2) noexcept override;
+  void feel(const Vec3& position_mm, const Vec3& force_n,
+            const Vec3& acceleration_m_s2) noexcept override;
 
   bool feels_forces_;
   engine::TextureSense sense_;

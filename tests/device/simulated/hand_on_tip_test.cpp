@@ -109,7 +109,8 @@ TEST_CASE("a hand with a grip lands, keeps its push, and follows its path") {
 TEST_CASE("a hand that foresees its way without forces, and its copies, move and feel the same") {
   class Sensed final : public device::TipSense {
    public:
-    void feel(Vec3 position_mm, Vec3 /*force_n*/, Vec3 acceleration_m_s2) noexcept override {
+    void feel(const Vec3& position_mm, const Vec3& /*force_n*/,
+              const Vec3& acceleration_m_s2) noexcept override {
       felt.push_back(position_mm);
       felt.push_back(acceleration_m_s2);
     }
@@ -143,7 +144,8 @@ TEST_CASE("a hand that foresees its way without forces, and its copies, move and
 TEST_CASE("a simulated hand yields by its tip's velocity less that without forces") {
   class Sensed final : public device::TipSense {
    public:
-    void feel(Vec3 /*position_mm*/, Vec3 /*force_n*/, Vec3 acceleration_m_s2) noexcept override {
+    void feel(const Vec3& /*position_mm*/, const Vec3& /*force_n*/,
+              const Vec3& acceleration_m_s2) noexcept override {
       velocity_mm_s = velocity_mm_s + acceleration_m_s2;  // of ticks of 1 ms
     }
     Vec3 velocity_mm_s;

@@ -192,7 +192,8 @@ double displacement_m_per_n(const simulation::SubjectModel& subject, double freq
                             double force_n) {
   class Tip final : public device::TipSense {
    public:
-    void feel(Vec3 position_mm, Vec3 /*force_n*/, Vec3 /*acceleration_m_s2*/) noexcept override {
+    void feel(const Vec3& position_mm, const Vec3& /*force_n*/,
+              const Vec3& /*acceleration_m_s2*/) noexcept override {
       x_mm.push_back(position_mm.x);
     }
     std::vector<double> x_mm;
