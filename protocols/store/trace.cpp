@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <span>
 #include <string>
@@ -51,27 +52,45 @@ constexpr std::array<Channel, 6> kChannels = {{
                    "; the database is damaged or of another version, restore it from a backup");
 }
 
-/// Whole steps of one channel. The limits keep all differences of differences within 32 bits.
-std::vector<std::int32_t> quantised(const Channel& channel, std::span<const TraceSample> samples) {
-  std::vector<std::int32_t> steps(samples.size());
+constexpr std::size_t kNumbers = kChannels.size();
+
+/// Two numbers side by side in a register.
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+using PairOfSteps = std::int32_t __attribute__((vector_size(2 * sizeof(std::int32_t))));
+
+/// Whole steps of all channels, one channel after the other. The limits keep all differences of
+/// differences within 32 bits.
+std::vector<std::int32_t> quantised(std::span<const TraceSample> samples) {
+  // A sample is its channels' numbers in their order.
+  static_assert(sizeof(TraceSample) == kNumbers * sizeof(double));
+  // Adding it and taking it off again rounds to whole numbers, halves to even ones.
+  constexpr double kRounding = 0x1.8p52;
+  const std::size_t count = samples.size();
+  std::vector<std::int32_t> steps(kNumbers * count);
   bool inside = true;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double value = (samples[i].*channel.vector).*channel.component;
-    const bool fits = std::abs(value) <= channel.limit;  // false for NaN
-    inside = inside && fits;
-    const double whole = std::nearbyint(fits ? value * channel.steps_per_unit : 0.0);
-    steps[i] = static_cast<std::int32_t>(whole);
+  for (std::size_t c = 0; c < kNumbers; c += 2) {
+    const Pair scale = {kChannels[c].steps_per_unit, kChannels[c + 1].steps_per_unit};
+    const Pair limit = {kChannels[c].limit, kChannels[c + 1].limit};
+    std::int32_t* const first = steps.data() + c * count;
+    auto fits = limit == limit;
+    for (std::size_t i = 0; i < count; ++i) {
+      Pair value;
+      std::memcpy(&value, reinterpret_cast<const double*>(&samples[i]) + c, sizeof value);
+      const auto is_inside = (value <= limit) & (value >= -limit);  // false for NaN
+      fits &= is_inside;
+      value = is_inside ? value * scale : Pair{};
+      const PairOfSteps whole =
+          __builtin_convertvector((value + kRounding) - kRounding, PairOfSteps);
+      first[i] = whole[0];
+      first[count + i] = whole[1];
+    }
+    inside = inside && fits[0] != 0 && fits[1] != 0;
   }
   if (!inside) {
     throw StoreError(
         "trace: a sample is not finite or beyond 10 m or 100 N; check the device's units");
   }
   return steps;
-}
-
-/// Replaces the numbers from index `first` on by their differences to the number before.
-void take_differences(std::vector<std::int32_t>& steps, std::size_t first) {
-  for (std::size_t i = steps.size(); i > first; --i) steps[i - 1] -= steps[i - 2];
 }
 
 /// Maps small numbers of either sign to small non-negative ones.
@@ -140,33 +159,55 @@ Compressor make_compressor() {
   return compressor;
 }
 
-void put_compressed(Bytes& bytes, ZSTD_CCtx* compressor, ByteView plane) {
-  const std::size_t size_at = bytes.size();
-  const std::size_t begin = size_at + sizeof(std::uint32_t);
-  bytes.resize(begin + ZSTD_compressBound(plane.size()));
-  const std::size_t size = ZSTD_compress2(compressor, bytes.data() + begin, bytes.size() - begin,
-                                          plane.data(), plane.size());
+/// What a trace's channels are packed in, one after the other.
+struct Packing {
+  explicit Packing(std::size_t count)
+      : codes(count), plane(count), frame(ZSTD_compressBound(count)) {}
+
+  Compressor compressor = make_compressor();
+  std::vector<std::uint32_t> codes;
+  Bytes plane;
+  Bytes frame;
+};
+
+void put_compressed(Bytes& bytes, Packing& packing) {
+  const std::size_t size =
+      ZSTD_compress2(packing.compressor.get(), packing.frame.data(), packing.frame.size(),
+                     packing.plane.data(), packing.plane.size());
   if (ZSTD_isError(size) != 0) refuse_to_compress(size);
-  bytes.resize(begin + size);
-  for (std::size_t i = 0; i < sizeof(std::uint32_t); ++i) {
-    bytes[size_at + i] = static_cast<std::uint8_t>(size >> (8U * i));
+  put(bytes, static_cast<std::uint32_t>(size));
+  bytes.insert(bytes.end(), packing.frame.begin(),
+               packing.frame.begin() + static_cast<std::ptrdiff_t>(size));
+}
+
+/// Zigzag codes of a channel's differences. The first number and the first slope stay as they are:
+/// neither is small.
+void take_differences(std::span<const std::int32_t> steps, int differences,
+                      std::span<std::uint32_t> codes) {
+  const std::size_t count = steps.size();
+  if (count > 0) codes[0] = zigzag(steps[0]);
+  if (count > 1) codes[1] = zigzag(steps[1] - steps[0]);
+  if (differences == 1) {
+    for (std::size_t i = 2; i < count; ++i) codes[i] = zigzag(steps[i] - steps[i - 1]);
+  } else {
+    for (std::size_t i = 2; i < count; ++i) {
+      codes[i] = zigzag((steps[i] - steps[i - 1]) - (steps[i - 1] - steps[i - 2]));
+    }
   }
 }
 
-/// Writes the lowest bytes of all numbers as one plane, then the next bytes, as many planes as the
-/// largest number has bytes. Each plane has its own statistics and so gets its own code table.
-void put_channel(Bytes& bytes, ZSTD_CCtx* compressor, const std::vector<std::int32_t>& steps) {
-  std::vector<std::uint32_t> codes(steps.size());
-  std::transform(steps.begin(), steps.end(), codes.begin(), zigzag);
+/// Writes the lowest bytes of all codes as one plane, then the next bytes, as many planes as the
+/// largest code has bytes. Each plane has its own statistics and so gets its own code table.
+void put_channel(Bytes& bytes, Packing& packing) {
+  const std::vector<std::uint32_t>& codes = packing.codes;
   std::uint32_t all_bits = 0;
   for (const std::uint32_t code : codes) all_bits |= code;
   const auto planes = static_cast<unsigned>((std::bit_width(all_bits) + 7) / 8);
   bytes.push_back(static_cast<std::uint8_t>(planes));
-  Bytes plane(codes.size());
   for (unsigned p = 0; p < planes; ++p) {
-    std::transform(codes.begin(), codes.end(), plane.begin(),
+    std::transform(codes.begin(), codes.end(), packing.plane.begin(),
                    [p](std::uint32_t code) { return static_cast<std::uint8_t>(code >> (8U * p)); });
-    put_compressed(bytes, compressor, plane);
+    put_compressed(bytes, packing);
   }
 }
 
@@ -241,13 +282,13 @@ Bytes encode_trace(const Trace& trace) {
   bytes.reserve(kHeaderSize + 8 * trace.samples.size() + 4096);
   put(bytes, std::bit_cast<std::uint64_t>(trace.rate_hz));
   put(bytes, static_cast<std::uint32_t>(trace.samples.size()));
-  const Compressor compressor = make_compressor();
-  for (const Channel& channel : kChannels) {
-    std::vector<std::int32_t> steps = quantised(channel, trace.samples);
-    // The first sample and the first slope stay as they are: neither is a small number.
-    for (int d = 1; d <= channel.differences; ++d)
-      take_differences(steps, static_cast<std::size_t>(d));
-    put_channel(bytes, compressor.get(), steps);
+  const std::size_t count = trace.samples.size();
+  const std::vector<std::int32_t> steps = quantised(trace.samples);
+  Packing packing(count);
+  for (std::size_t c = 0; c < kNumbers; ++c) {
+    take_differences(std::span(steps).subspan(c * count, count), kChannels[c].differences,
+                     packing.codes);
+    put_channel(bytes, packing);
   }
   return bytes;
 }
