@@ -13,14 +13,10 @@ namespace {
 constexpr std::size_t kNonceSize = crypto_aead_xchacha20poly1305_ietf_NPUBBYTES;
 constexpr std::size_t kTagSize = crypto_aead_xchacha20poly1305_ietf_ABYTES;
 
-Bytes padded(ByteView plaintext, std::size_t multiple) {
+/// The size to which a text is padded.
+std::size_t padded(std::size_t size, std::size_t multiple) {
   if (multiple == 0) throw std::invalid_argument("seal: padded_size must be at least 1");
-  // One mark byte, then zeros (ISO/IEC 7816-4): the padding can then be removed without doubt.
-  const std::size_t size = (plaintext.size() / multiple + 1) * multiple;
-  Bytes bytes(size, 0);
-  std::copy(plaintext.begin(), plaintext.end(), bytes.begin());
-  bytes[plaintext.size()] = 0x80;
-  return bytes;
+  return (size / multiple + 1) * multiple;
 }
 
 std::optional<Bytes> unpadded(Bytes bytes) {
@@ -47,15 +43,20 @@ std::array<std::uint8_t, kNonceSize> synthetic_nonce(const SecretKey& key, std::
 
 Bytes seal(const SecretKey& key, std::string_view context, ByteView plaintext,
            std::size_t padded_size) {
-  const Bytes text = padded(plaintext, padded_size);
+  const std::size_t size = padded(plaintext.size(), padded_size);
   const auto nonce = synthetic_nonce(derive_key(key, "nonce"), context, plaintext);
   const SecretKey cipher_key = derive_key(key, "cipher");
-  Bytes box(kNonceSize + text.size() + kTagSize);
+  Bytes box(kNonceSize + size + kTagSize);
   std::copy(nonce.begin(), nonce.end(), box.begin());
+  // The text is encrypted in its place. One mark byte, then zeros (ISO/IEC 7816-4): the padding can
+  // then be removed without doubt.
+  std::uint8_t* const text = box.data() + kNonceSize;
+  std::copy(plaintext.begin(), plaintext.end(), text);
+  text[plaintext.size()] = 0x80;
   const ByteView authenticated = bytes_of(context);
-  crypto_aead_xchacha20poly1305_ietf_encrypt(
-      box.data() + kNonceSize, nullptr, text.data(), text.size(), authenticated.data(),
-      authenticated.size(), nullptr, nonce.data(), cipher_key.data());
+  crypto_aead_xchacha20poly1305_ietf_encrypt(text, nullptr, text, size, authenticated.data(),
+                                             authenticated.size(), nullptr, nonce.data(),
+                                             cipher_key.data());
   return box;
 }
 
