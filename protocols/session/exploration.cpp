@@ -54,15 +54,6 @@ TraceBuilder::TraceBuilder(store::Trace& trace, double rate_hz, std::size_t most
   trace.samples.reserve(most_samples);
 }
 
-void TraceBuilder::add(const device::ServoSample& sample) noexcept {
-  const auto tick = static_cast<std::size_t>(std::max<std::int64_t>(sample.tick, 0));
-  if (tick >= room_ || tick < trace_.samples.size()) return;
-  const store::TraceSample kept{sample.position_mm, sample.force_n};
-  if (trace_.samples.size() < tick) hold_until(tick, kept);
-  if (!landing_tick_ && sample.position_mm.z <= kLandingHeightMm) landing_tick_ = sample.tick;
-  trace_.samples.push_back(kept);
-}
-
 /// Before the first sample there is none to hold, so the first one fills the gap.
 void TraceBuilder::hold_until(std::size_t tick, const store::TraceSample& first) noexcept {
   const store::TraceSample last = trace_.samples.empty() ? first : trace_.samples.back();

@@ -10,6 +10,7 @@
 #include "protocols/store/payload.hpp"
 #include "protocols/store/trace.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -62,7 +63,14 @@ class TraceBuilder {
 
   /// Adds a sample whose tick is larger than those before; ignores others, and those beyond the
   /// room.
-  void add(const device::ServoSample& sample) noexcept;
+  void add(const device::ServoSample& sample) noexcept {
+    const auto tick = static_cast<std::size_t>(std::max<std::int64_t>(sample.tick, 0));
+    if (tick >= room_ || tick < trace_.samples.size()) return;
+    const store::TraceSample kept{sample.position_mm, sample.force_n};
+    if (trace_.samples.size() < tick) hold_until(tick, kept);
+    if (!landing_tick_ && sample.position_mm.z <= kLandingHeightMm) landing_tick_ = sample.tick;
+    trace_.samples.push_back(kept);
+  }
 
   [[nodiscard]] std::int64_t held() const noexcept { return held_; }
   /// Held samples with a force out of the plane.

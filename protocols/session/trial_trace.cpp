@@ -57,7 +57,7 @@ store::HandWindows hand_windows(const store::Trace& trace, const design::Validit
     normal_n += sample.force_n.z;
     if (before != nullptr) {
       const Vec3 way = sample.position_mm - before->position_mm;
-      path_mm += std::hypot(way.x, way.y);
+      path_mm += std::sqrt(way.x * way.x + way.y * way.y);
     }
     before = &sample;
   }
