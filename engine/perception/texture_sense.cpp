@@ -66,6 +66,17 @@ Weights weights_of(const SenseOptions& options) {
   return weights;
 }
 
+/// Sums of what was felt, added in the order of the samples.
+struct FeltSums {
+  float x = 0.0F, y = 0.0F, z = 0.0F;
+
+  void add(float felt_x, float felt_y, float felt_z) noexcept {
+    x += felt_x;
+    y += felt_y;
+    z += felt_z;
+  }
+};
+
 /// What half a window adds to its window.
 struct HalfWindow {
   double path_mm = 0.0;
@@ -113,6 +124,7 @@ struct TextureSense::State {
   RealFft<float> fft;
   Samples hann = hann_window();
   Samples x{}, y{}, z{};
+  FeltSums sums, later_sums;  // of this window, and of the next one, which began in its middle
   int filled = 0;
   HalfWindow earlier, current;
   Vec3 last_mm;
@@ -125,6 +137,8 @@ void TextureSense::State::take(const Vec3& at_mm, const Vec3& felt, bool touches
   x[filled] = static_cast<float>(felt.x);
   y[filled] = static_cast<float>(felt.y);
   z[filled] = static_cast<float>(felt.z);
+  sums.add(x[filled], y[filled], z[filled]);
+  later_sums.add(x[filled], y[filled], z[filled]);
   const Vec2 step_mm{at_mm.x - last_mm.x, at_mm.y - last_mm.y};
   current.path_mm += std::sqrt(step_mm.x * step_mm.x + step_mm.y * step_mm.y);
   current.contacts += touches ? 1 : 0;
@@ -144,7 +158,9 @@ void TextureSense::State::end_half() noexcept {
       std::copy(samples->begin() + kHop, samples->end(), samples->begin());
     }
     filled = kHop;
+    sums = later_sums;
   }
+  later_sums = {};
   earlier = current;
   current = {};
 }
@@ -159,33 +175,30 @@ Spectrum TextureSense::State::spectrum_of(const Samples& samples, float mean) no
 }
 
 void TextureSense::State::add_window(double speed_mm_s, Vec3 middle_mm) noexcept {
-  // The sums of three axes, and the four below, wait for their own last addition alone: side by
-  // side they take the time of one.
-  float sum_x = 0.0F, sum_y = 0.0F, sum_z = 0.0F;
-  for (int i = 0; i < kWindow; ++i) {
-    sum_x += x[i];
-    sum_y += y[i];
-    sum_z += z[i];
-  }
-  const Spectrum fx = spectrum_of(x, sum_x / kWindow);
-  const Spectrum fy = spectrum_of(y, sum_y / kWindow);
-  const Spectrum fz = spectrum_of(z, sum_z / kWindow);
+  const Spectrum fx = spectrum_of(x, sums.x / kWindow);
+  const Spectrum fy = spectrum_of(y, sums.y / kWindow);
+  const Spectrum fz = spectrum_of(z, sums.z / kWindow);
   // One-sided, so that the powers of all bins sum to the variance; Hann's squares sum to 3/8.
   constexpr double kScale = 2.0 / (kWindow * (0.375 * kWindow));
   // Real part of a times the conjugate of b.
   const auto product = [](std::complex<float> a, std::complex<float> b) {
     return a.real() * b.real() + a.imag() * b.imag();
   };
+  // In two loops, because only the first one does several bins at a time.
+  std::array<float, kBins + 1> px, py, pz, pxy;
+  for (int k = 1; k <= kBins; ++k) {
+    px[k] = product(fx[k], fx[k]);
+    py[k] = product(fy[k], fy[k]);
+    pz[k] = product(fz[k], fz[k]);
+    pxy[k] = product(fx[k], fy[k]);
+    power.bins[k] += kScale * (px[k] + py[k] + pz[k]);
+  }
   SummedPower xx, yy, zz, xy;
   for (int k = 1; k <= kBins; ++k) {
-    const float px = product(fx[k], fx[k]);
-    const float py = product(fy[k], fy[k]);
-    const float pz = product(fz[k], fz[k]);
-    xx.add(k, weights[k] * (kScale * px));
-    yy.add(k, weights[k] * (kScale * py));
-    zz.add(k, weights[k] * (kScale * pz));
-    xy.add(k, weights[k] * (kScale * product(fx[k], fy[k])));
-    power.bins[k] += kScale * (px + py + pz);
+    xx.add(k, weights[k] * (kScale * px[k]));
+    yy.add(k, weights[k] * (kScale * py[k]));
+    zz.add(k, weights[k] * (kScale * pz[k]));
+    xy.add(k, weights[k] * (kScale * pxy[k]));
   }
   const double longest = speed_mm_s * kWindow / options.rate_hz / kLongestFeltMm;  // in bins
   for (int band = 0; band < kFeltBands; ++band) {
@@ -218,6 +231,8 @@ TextureSense& TextureSense::operator=(TextureSense&&) noexcept = default;
 void TextureSense::reset(const PlaneGeometry& plane) noexcept {
   state_->options.plane = plane;
   state_->filled = 0;
+  state_->sums = {};
+  state_->later_sums = {};
   state_->earlier = {};
   state_->current = {};
   state_->landed = false;
