@@ -67,15 +67,22 @@ device::SimulatedHand make_exploring_hand(const SubjectModel& subject, const Pla
 
 engine::FeltFeatures feel_exploration(const engine::RenderingModel& model,
                                       const PlaneGeometry& plane, const SubjectModel& subject,
-                                      const device::ServoOptions& options, RandomStream random,
-                                      const device::HandFactors& factors) {
-  device::SimulatedHand hand = make_exploring_hand(subject, plane, random, factors);
+                                      const device::ServoOptions& options,
+                                      device::SimulatedHand hand) {
   session::ModelForce force(model);
   HandSense sense(subject);
   sense.begin(hand, plane);
   SensingSink sink(sense);
   static_cast<void>(device::run_servo_in_virtual_time(hand, force, sink, options));
   return sense.features();
+}
+
+engine::FeltFeatures feel_exploration(const engine::RenderingModel& model,
+                                      const PlaneGeometry& plane, const SubjectModel& subject,
+                                      const device::ServoOptions& options, RandomStream random,
+                                      const device::HandFactors& factors) {
+  return feel_exploration(model, plane, subject, options,
+                          make_exploring_hand(subject, plane, random, factors));
 }
 
 }  // namespace touchtrial::simulation

@@ -67,4 +67,12 @@ class HandSense final : private device::TipSense {
                                                     RandomStream random,
                                                     const device::HandFactors& factors = {});
 
+/// The same with a hand that is at the beginning of its exploration. Copies of one that has
+/// foreseen its way explore several fields in less time.
+[[nodiscard]] engine::FeltFeatures feel_exploration(const engine::RenderingModel& model,
+                                                    const PlaneGeometry& plane,
+                                                    const SubjectModel& subject,
+                                                    const device::ServoOptions& options,
+                                                    device::SimulatedHand hand);
+
 }  // namespace touchtrial::simulation

@@ -41,16 +41,20 @@ FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel&
   const auto passes = static_cast<std::size_t>(subject.training_passes);
   knowledge.examples.resize(fields.all().size() * passes);
   const device::ServoOptions options = training_options(subject, max_force_n);
-  const auto feel_example = [&](std::size_t i) {
-    const std::size_t prototype = i / passes;
-    // The same strokes on every field, so that prototypes differ by texture and not by the places
-    // that happened to be stroked, and fields without a difference are learnt as equals.
-    const engine::FeltFeatures felt =
-        feel_exploration(*fields.all()[prototype].model, fields.plane(), subject, options,
-                         RandomStream(seed, "subject: training pass", i % passes));
-    knowledge.examples[i] = {static_cast<int>(prototype), {felt.begin(), felt.end()}};
+  // The same strokes on every field, so that prototypes differ by texture and not by the places
+  // that happened to be stroked, and fields without a difference are learnt as equals.
+  const auto feel_pass = [&](std::size_t pass) {
+    RandomStream random(seed, "subject: training pass", pass);
+    device::SimulatedHand hand = make_exploring_hand(subject, fields.plane(), random);
+    hand.foresee();
+    for (std::size_t prototype = 0; prototype < fields.all().size(); ++prototype) {
+      const engine::FeltFeatures felt =
+          feel_exploration(*fields.all()[prototype].model, fields.plane(), subject, options, hand);
+      knowledge.examples[prototype * passes + pass] = {static_cast<int>(prototype),
+                                                       {felt.begin(), felt.end()}};
+    }
   };
-  in_parallel(jobs, knowledge.examples.size(), feel_example);
+  in_parallel(jobs, passes, feel_pass);
   return knowledge;
 }
 
