@@ -155,7 +155,9 @@ void require_setting(const Database& database, const std::string& name, const st
 
 /// Acknowledged events must be on the disk: see docs/durability.md.
 void set_up_for_writing(const Database& database) {
-  database.connection().exec("PRAGMA synchronous = FULL; PRAGMA secure_delete = ON;");
+  // A whole session fits into the cache (KiB), so that no page is written before its commit.
+  database.connection().exec(
+      "PRAGMA synchronous = FULL; PRAGMA secure_delete = ON; PRAGMA cache_size = -16384;");
   require_setting(database, "journal_mode = WAL", "wal", "keep it in a folder on a local disk");
   const std::string remedy = "use a program whose SQLite has this setting";
   require_setting(database, "synchronous", "2", remedy);
