@@ -65,11 +65,12 @@ class TraceBuilder {
   /// room.
   void add(const device::ServoSample& sample) noexcept {
     const auto tick = static_cast<std::size_t>(std::max<std::int64_t>(sample.tick, 0));
-    if (tick >= room_ || tick < trace_.samples.size()) return;
+    if (tick >= room_ || tick < next_) return;
     const store::TraceSample kept{sample.position_mm, sample.force_n};
-    if (trace_.samples.size() < tick) hold_until(tick, kept);
+    if (next_ < tick) hold_until(tick, kept);
     if (!landing_tick_ && sample.position_mm.z <= kLandingHeightMm) landing_tick_ = sample.tick;
     trace_.samples.push_back(kept);
+    next_ = tick + 1;
   }
 
   [[nodiscard]] std::int64_t held() const noexcept { return held_; }
@@ -83,6 +84,7 @@ class TraceBuilder {
 
   store::Trace& trace_;
   std::size_t room_;
+  std::size_t next_ = 0;  ///< the tick of the next sample: how many there are
   std::int64_t held_ = 0;
   std::int64_t held_in_contact_ = 0;
   std::optional<std::int64_t> landing_tick_;

@@ -58,20 +58,33 @@ constexpr std::size_t kNumbers = kChannels.size();
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 using PairOfSteps = std::int32_t __attribute__((vector_size(2 * sizeof(std::int32_t))));
 
+/// Room for numbers that are all written before they are read.
+template <typename Number>
+class Room {
+ public:
+  explicit Room(std::size_t size)
+      : numbers_(std::make_unique_for_overwrite<Number[]>(size)), size_(size) {}
+  [[nodiscard]] std::span<Number> all() const noexcept { return {numbers_.get(), size_}; }
+
+ private:
+  std::unique_ptr<Number[]> numbers_;
+  std::size_t size_;
+};
+
 /// Whole steps of all channels, one channel after the other. The limits keep all differences of
 /// differences within 32 bits.
-std::vector<std::int32_t> quantised(std::span<const TraceSample> samples) {
+Room<std::int32_t> quantised(std::span<const TraceSample> samples) {
   // A sample is its channels' numbers in their order.
   static_assert(sizeof(TraceSample) == kNumbers * sizeof(double));
   // Adding it and taking it off again rounds to whole numbers, halves to even ones.
   constexpr double kRounding = 0x1.8p52;
   const std::size_t count = samples.size();
-  std::vector<std::int32_t> steps(kNumbers * count);
+  Room<std::int32_t> steps(kNumbers * count);
   bool inside = true;
   for (std::size_t c = 0; c < kNumbers; c += 2) {
     const Pair scale = {kChannels[c].steps_per_unit, kChannels[c + 1].steps_per_unit};
     const Pair limit = {kChannels[c].limit, kChannels[c + 1].limit};
-    std::int32_t* const first = steps.data() + c * count;
+    std::int32_t* const first = steps.all().data() + c * count;
     auto fits = limit == limit;
     for (std::size_t i = 0; i < count; ++i) {
       Pair value;
@@ -165,19 +178,19 @@ struct Packing {
       : codes(count), plane(count), frame(ZSTD_compressBound(count)) {}
 
   Compressor compressor = make_compressor();
-  std::vector<std::uint32_t> codes;
-  Bytes plane;
-  Bytes frame;
+  Room<std::uint32_t> codes;
+  Room<std::uint8_t> plane;
+  Room<std::uint8_t> frame;
 };
 
 void put_compressed(Bytes& bytes, Packing& packing) {
-  const std::size_t size =
-      ZSTD_compress2(packing.compressor.get(), packing.frame.data(), packing.frame.size(),
-                     packing.plane.data(), packing.plane.size());
+  const std::span frame = packing.frame.all();
+  const std::span plane = packing.plane.all();
+  const std::size_t size = ZSTD_compress2(packing.compressor.get(), frame.data(), frame.size(),
+                                          plane.data(), plane.size());
   if (ZSTD_isError(size) != 0) refuse_to_compress(size);
   put(bytes, static_cast<std::uint32_t>(size));
-  bytes.insert(bytes.end(), packing.frame.begin(),
-               packing.frame.begin() + static_cast<std::ptrdiff_t>(size));
+  bytes.insert(bytes.end(), frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(size));
 }
 
 /// Zigzag codes of a channel's differences. The first number and the first slope stay as they are:
@@ -199,13 +212,13 @@ void take_differences(std::span<const std::int32_t> steps, int differences,
 /// Writes the lowest bytes of all codes as one plane, then the next bytes, as many planes as the
 /// largest code has bytes. Each plane has its own statistics and so gets its own code table.
 void put_channel(Bytes& bytes, Packing& packing) {
-  const std::vector<std::uint32_t>& codes = packing.codes;
+  const std::span codes = packing.codes.all();
   std::uint32_t all_bits = 0;
   for (const std::uint32_t code : codes) all_bits |= code;
   const auto planes = static_cast<unsigned>((std::bit_width(all_bits) + 7) / 8);
   bytes.push_back(static_cast<std::uint8_t>(planes));
   for (unsigned p = 0; p < planes; ++p) {
-    std::transform(codes.begin(), codes.end(), packing.plane.begin(),
+    std::transform(codes.begin(), codes.end(), packing.plane.all().begin(),
                    [p](std::uint32_t code) { return static_cast<std::uint8_t>(code >> (8U * p)); });
     put_compressed(bytes, packing);
   }
@@ -283,11 +296,11 @@ Bytes encode_trace(const Trace& trace) {
   put(bytes, std::bit_cast<std::uint64_t>(trace.rate_hz));
   put(bytes, static_cast<std::uint32_t>(trace.samples.size()));
   const std::size_t count = trace.samples.size();
-  const std::vector<std::int32_t> steps = quantised(trace.samples);
+  const Room<std::int32_t> steps = quantised(trace.samples);
   Packing packing(count);
   for (std::size_t c = 0; c < kNumbers; ++c) {
-    take_differences(std::span(steps).subspan(c * count, count), kChannels[c].differences,
-                     packing.codes);
+    take_differences(steps.all().subspan(c * count, count), kChannels[c].differences,
+                     packing.codes.all());
     put_channel(bytes, packing);
   }
   return bytes;
