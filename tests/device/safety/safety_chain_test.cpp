@@ -1,5 +1,6 @@
 #include "device/safety/safety_chain.hpp"
 
+#include "core/random.hpp"
 #include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
@@ -259,6 +260,57 @@ TEST_CASE("unsound limits or an unsound tick let no force pass") {
     REQUIRE(safe.force_n == Vec3{});
     REQUIRE(safe.verdict == device::SafetyVerdict::limited);
   }
+}
+
+/// The chain's limits on a force that has passed the gate, link by link.
+class LinkByLink {
+ public:
+  explicit LinkByLink(const device::SafetyLimits& limits)
+      : thermal_(limits, 0.001),
+        ramp_(limits.ramp_up_s, 0.001),
+        slew_(limits.max_slew_n_per_s, 0.001) {
+    ramp_.start();
+  }
+
+  Vec3 next(Vec3 force_n, Vec3 support_n) {
+    thermal_.heat(dot(slew_.sent_n(), slew_.sent_n()), 1.0);
+    const double share = ramp_.next_share();
+    const Vec3 sum_n = share * (force_n + support_n);
+    return slew_.towards(device::within_norm(sum_n, thermal_.limit_n()));
+  }
+
+ private:
+  device::ThermalBudget thermal_;
+  device::RampUp ramp_;
+  device::SlewLimit slew_;
+};
+
+TEST_CASE("a chain sends what its links give one after the other, however the force jumps") {
+  device::SafetyLimits limits;
+  limits.continuous_force_n = GENERATE(0.0, 1.5);
+  limits.thermal_budget_s = 1.0;
+  const bool supported = GENERATE(false, true);
+  device::SafetyChain safety(limits);
+  LinkByLink links(limits);
+  Readings device;
+  RandomStream random(1, "forces that jump");
+  Vec3 force_n;
+  int passed = 0;
+  int limited = 0;
+  for (int tick = 0; tick < 20'000; ++tick) {
+    const double step_n = tick % 500 < 10 ? 2.0 : 0.05;
+    force_n = 0.999 * force_n + step_n * Vec3{random.normal(), random.normal(), random.normal()};
+    if (tick == 0) force_n = {};
+    const Vec3 support_n = supported && tick % 3 != 0 ? Vec3{0.0, 0.125, 0.0} : Vec3{};
+    const device::SafeForce safe = safety.check(force_n, device.next(), 1, support_n);
+    const Vec3 expected_n = links.next(force_n, support_n);
+    REQUIRE(norm(safe.force_n - expected_n) <= 1e-12);
+    const bool is_whole = safe.force_n == force_n + support_n;
+    REQUIRE((safe.verdict == device::SafetyVerdict::passed) == is_whole);
+    (is_whole ? passed : limited) += 1;
+  }
+  CHECK(passed > 1'000);
+  CHECK(limited > 1'000);
 }
 
 }  // namespace
