@@ -157,6 +157,15 @@ class DeviceDynamics {
 
   /// One tick: the command goes through the device, and all forces move it.
   void tick(Vec3 commanded_n, const Outside& outside) noexcept;
+  /// \return whether the device is a mass with viscous damping and nothing else
+  [[nodiscard]] bool is_plain() const noexcept { return is_plain_; }
+  /// `tick` of a plain device.
+  void tick_plain(Vec3 commanded_n, const Outside& outside) noexcept {
+    delivered_n_ = commanded_n;
+    move_rigid(commanded_n, outside);
+    read_mm_ = tip_mm_;
+    read_mm_s_ = tip_mm_s_;
+  }
 
  private:
   static constexpr double kMmPerM = 1000.0;
@@ -179,9 +188,9 @@ class DeviceDynamics {
   bool has_motors_;            ///< whether a command meets any stage at all
   bool has_friction_;
   bool has_true_readings_;
-  bool is_plain_ = false;  ///< a mass with viscous damping: nothing but move_rigid in a tick
-  double tip_kg_ = 0.0;    ///< the structure's share of the mass
-  double joint_ = 0.0;     ///< N s/mm: the structure's spring and damper over half a tick; 0: rigid
+  bool is_plain_ = false;
+  double tip_kg_ = 0.0;  ///< the structure's share of the mass
+  double joint_ = 0.0;   ///< N s/mm: the structure's spring and damper over half a tick; 0: rigid
   std::optional<RandomStream> noise_;
 
   std::vector<Vec3> on_the_way_n_;  ///< a ring of delay_ticks commands
@@ -203,13 +212,6 @@ class DeviceDynamics {
 // Every simulated tick moves two devices, so a rigid one's motion is compiled into the hand's.
 
 inline void DeviceDynamics::tick(Vec3 commanded_n, const Outside& outside) noexcept {
-  if (is_plain_) {
-    delivered_n_ = commanded_n;
-    move_rigid(commanded_n, outside);
-    read_mm_ = tip_mm_;
-    read_mm_s_ = tip_mm_s_;
-    return;
-  }
   delivered_n_ = has_motors_ ? through_motors(commanded_n) : commanded_n;
   Vec3 motor_n = delivered_n_;
   if (model_.planted.gravity_n > 0.0) motor_n.y -= model_.planted.gravity_n;

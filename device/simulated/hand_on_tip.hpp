@@ -69,7 +69,13 @@ class HandOnTip {
   /// \param push_n  towards the plane
   [[nodiscard]] DeviceDynamics::Outside hold(Vec3 tip_mm, Vec3 tip_mm_s, const PathPoint& intention,
                                              double push_n) noexcept {
-    if (is_grip_) return grip(tip_mm, tip_mm_s, intention, push_n);
+    return is_grip_ ? grip(tip_mm, tip_mm_s, intention, push_n)
+                    : hold_as_point(tip_mm, intention, push_n);
+  }
+  [[nodiscard]] bool is_point() const noexcept { return !is_grip_; }
+  /// `hold` and `follow` of a point mass.
+  [[nodiscard]] DeviceDynamics::Outside hold_as_point(Vec3 tip_mm, const PathPoint& intention,
+                                                      double push_n) const noexcept {
     const double damping = options_.arm_damping_n_s_per_mm;
     const Vec2 pull_n =
         options_.arm_stiffness_n_per_mm * (intention.position_mm - Vec2{tip_mm.x, tip_mm.y}) +
@@ -142,6 +148,13 @@ struct HeldDevice {
   /// \return what the hand did to the tip
   DeviceDynamics::Outside tick(Vec3 commanded_n, const PathPoint& intention,
                                double push_n) noexcept {
+    // The usual case, told apart once a tick so that it stays in registers.
+    if (device.is_plain() && hand.is_point()) {
+      const DeviceDynamics::Outside outside =
+          hand.hold_as_point(device.true_position_mm(), intention, push_n);
+      device.tick_plain(commanded_n, outside);
+      return outside;
+    }
     const DeviceDynamics::Outside outside =
         hand.hold(device.true_position_mm(), device.true_velocity_mm_s(), intention, push_n);
     device.tick(commanded_n, outside);
