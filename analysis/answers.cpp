@@ -82,11 +82,12 @@ QuestionSummary question_summary(const std::string& id, const design::Question* 
 
 }  // namespace
 
-std::vector<QuestionAnswer> open_answers(const store::StudyStore& store, const SessionKeys& keys) {
+std::vector<QuestionAnswer> open_answers(const StudyEvents& study, const SessionKeys& keys) {
   std::map<int, store::SessionRow> rows;
-  for (const store::SessionRow& row : store.sessions()) rows[row.session] = row;
+  for (const store::SessionRow& row : study.store().sessions()) rows[row.session] = row;
   std::vector<QuestionAnswer> all;
-  store.for_each(store::EventKind::questioned, [&](const store::Event& event) {
+  constexpr std::array kQuestioned = {store::EventKind::questioned};
+  study.for_each_of(kQuestioned, [&](const store::Event& event) {
     const auto own = keys.find(event.session);
     if (own == keys.end() || !own->second.participant) return;
     add_answers(rows.at(event.session), store::remark_from_json(event.body),

@@ -28,7 +28,7 @@ struct QuestionAnswer {
 /// The answers of all sessions that are not erased, by session and by when they were given.
 /// \throws VerificationError if an answer does not open
 /// \throws StoreError if an answer is not in the form that this program writes
-[[nodiscard]] std::vector<QuestionAnswer> open_answers(const store::StudyStore& store,
+[[nodiscard]] std::vector<QuestionAnswer> open_answers(const StudyEvents& study,
                                                        const SessionKeys& keys);
 
 /// Questions with their wording: the study's own, and those of the program where it knows them.

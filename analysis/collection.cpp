@@ -77,7 +77,8 @@ bool any_ran_unverified(const std::vector<SessionRecord>& sessions) {
   });
 }
 
-Collection load_collection(const store::StudyStore& store, const SessionKeys& keys) {
+Collection load_collection(const StudyEvents& study, const SessionKeys& keys) {
+  const store::StudyStore& store = study.store();
   const std::vector<store::SessionRow> rows = store.sessions();
   std::map<int, SessionRecord> records = empty_records(rows);
   Collection collection;
@@ -92,7 +93,7 @@ Collection load_collection(const store::StudyStore& store, const SessionKeys& ke
     if (event.kind != store::EventKind::trace_stored) return;
     if (const auto servo = servo_trial_of(event)) collection.servo_trials.push_back(*servo);
   };
-  store.for_each_of(kinds_in_sessions(), add);
+  study.for_each_of(kinds_in_sessions(), add);
   for (const store::Event& event : store.events(0)) add(event);  // later notes come last
   for (const store::TrialRow& trial : store.trials()) {
     const auto record = records.find(trial.session);

@@ -162,7 +162,6 @@ struct Collection {
 /// Reads how every session was collected, but neither schedules, answers nor traces.
 /// \param keys  of sessions; open what is sealed of practice and deviations; where there are none, those parts are missing
 /// \throws VerificationError, naming the event, if one does not open
-[[nodiscard]] Collection load_collection(const store::StudyStore& store,
-                                         const SessionKeys& keys = {});
+[[nodiscard]] Collection load_collection(const StudyEvents& study, const SessionKeys& keys = {});
 
 }  // namespace touchtrial::analysis

@@ -93,8 +93,9 @@ std::optional<Incident> incident_of(const store::Event& event, const store::Sess
   return incident;
 }
 
-std::vector<Incident> load_incidents(const store::StudyStore& store,
+std::vector<Incident> load_incidents(const StudyEvents& study,
                                      const std::map<int, store::PersonKeys>& keys) {
+  const store::StudyStore& store = study.store();
   std::map<int, store::SessionRow> rows;
   for (const store::SessionRow& row : store.sessions()) {
     if (!row.erased) rows[row.session] = row;
@@ -108,21 +109,21 @@ std::vector<Incident> load_incidents(const store::StudyStore& store,
         own == keys.end() ? event : readable_event(event, row->second, own->second), row->second);
     if (incident) incidents.push_back(*std::move(incident));
   };
-  store.for_each_of(kIncidents, add);
+  study.for_each_of(kIncidents, add);
   for (const store::Event& event : store.events(0)) add(event);
   std::ranges::stable_sort(incidents, {}, &Incident::session);
   return incidents;
 }
 
-std::vector<InstrumentMark> load_marks(const store::StudyStore& store,
+std::vector<InstrumentMark> load_marks(const StudyEvents& study,
                                        const std::map<int, store::PersonKeys>& keys) {
   constexpr std::array kMarked = {EventKind::marked};
   std::map<int, std::string> participants;
-  for (const store::SessionRow& row : store.sessions()) {
+  for (const store::SessionRow& row : study.store().sessions()) {
     participants[row.session] = row.participant;
   }
   std::vector<InstrumentMark> marks;
-  store.for_each_of(kMarked, [&](const store::Event& event) {
+  study.for_each_of(kMarked, [&](const store::Event& event) {
     const auto own = keys.find(event.session);
     if (own == keys.end() || !own->second.participant) return;
     const store::MarksBody body =

@@ -2,6 +2,7 @@
 /// deviations, and what was decided about them later.
 #pragma once
 
+#include "analysis/study_events.hpp"
 #include "protocols/store/person_texts.hpp"
 #include "protocols/store/study_store.hpp"
 
@@ -55,12 +56,12 @@ struct InstrumentMark {
 /// \param keys  of the sessions whose texts and times are opened
 /// \throws VerificationError, naming the event, if one does not open
 [[nodiscard]] std::vector<Incident> load_incidents(
-    const store::StudyStore& store, const std::map<int, store::PersonKeys>& keys = {});
+    const StudyEvents& study, const std::map<int, store::PersonKeys>& keys = {});
 
 /// The marks of all sessions whose key is given, by session and time: what instruments were told,
 /// and when, is sealed.
 /// \throws VerificationError, naming the event, if one does not open
-[[nodiscard]] std::vector<InstrumentMark> load_marks(const store::StudyStore& store,
+[[nodiscard]] std::vector<InstrumentMark> load_marks(const StudyEvents& study,
                                                      const std::map<int, store::PersonKeys>& keys);
 
 }  // namespace touchtrial::analysis

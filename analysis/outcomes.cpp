@@ -103,15 +103,6 @@ TrialOutcome outcome_of(const store::TrialRow& row, const SessionOutcome& sessio
   return trial;
 }
 
-/// Requires that chains are intact and that the derived tables follow from the events.
-void require_whole(const store::StudyStore& store) {
-  if (const auto fault = store.first_fault(store::TraceCheck::skip)) {
-    throw VerificationError(analysis::shown(*fault) +
-                            "; no outcomes are shown, see `touchtrial verify` and restore the "
-                            "database from a backup");
-  }
-}
-
 /// What each participant who counts said, over all of the participant's sessions.
 std::vector<Demographics> said_by_participants(const Outcomes& outcomes,
                                                const std::map<int, Demographics>& by_session) {
@@ -148,19 +139,19 @@ void add_dealt(const Outcomes& outcomes, Collection& collection) {
 }
 
 /// Answers, incidents and demographics of the sessions that are shown.
-void take_what_was_said(const store::StudyStore& store, const design::Study& study,
-                        const SessionKeys& all_keys, Outcomes& outcomes) {
+void take_what_was_said(const OpenedSessions& opened, const design::Study& study,
+                        Outcomes& outcomes) {
   SessionKeys keys;
   for (const SessionOutcome& one : outcomes.sessions) {
-    keys.emplace(one.row.session, all_keys.at(one.row.session));
+    keys.emplace(one.row.session, opened.keys().at(one.row.session));
   }
   const auto is_unseen = [&](const auto& one) { return !keys.contains(one.session); };
   outcomes.asked = own_questions(study);
-  outcomes.answers = open_answers(store, keys);
+  outcomes.answers = open_answers(opened.events(), keys);
   std::erase_if(outcomes.answers, is_unseen);
-  outcomes.incidents = load_incidents(store, keys);
+  outcomes.incidents = load_incidents(opened.events(), keys);
   std::erase_if(outcomes.incidents, is_unseen);
-  outcomes.marks = load_marks(store, keys);
+  outcomes.marks = load_marks(opened.events(), keys);
   const std::map<int, Demographics> said = demographics_of(outcomes.answers, study);
   outcomes.demographics = in_bands(said_by_participants(outcomes, said));
   for (SessionRecord& record : outcomes.collection.sessions) {
@@ -197,10 +188,11 @@ Outcomes opened(const store::StudyStore& store, const design::StudyKey& key, Sho
                 const std::string& participant) {
   const std::vector<store::SessionRow> rows = store.sessions();
   Outcomes outcomes = labelled(store, key.study);
-  require_whole(store);
-  const SessionKeys keys = person_keys(store, key);
-  require_sealed_ends(store, keys);
-  outcomes.collection = load_collection(store, keys);
+  OpenedSessions sessions_opened(store, key);
+  const SessionKeys& keys = sessions_opened.keys();
+  const StudyEvents& events = sessions_opened.events();
+  require_sealed_ends(events, keys);
+  outcomes.collection = load_collection(events, keys);
   outcomes.visual = outcomes.collection.visual;
   outcomes.looked = look_record(store, key);
   std::vector<store::SessionRow> shown;
@@ -218,10 +210,10 @@ Outcomes opened(const store::StudyStore& store, const design::StudyKey& key, Sho
     outcomes.sessions.push_back(sessions[row.session]);
   }
   add_dealt(outcomes, outcomes.collection);
-  take_what_was_said(store, key.study, keys, outcomes);
-  const auto schedules = open_schedules(store, key, keys);
+  take_what_was_said(sessions_opened, key.study, outcomes);
+  const auto schedules = open_schedules(events, key, keys);
   Measures measures;
-  for (const store::TrialRow& row : open_trials(store, keys, &measures)) {
+  for (const store::TrialRow& row : sessions_opened.take_trials(measures)) {
     const auto schedule = schedules.find(row.session);
     if (schedule == schedules.end()) continue;  // without an opening
     const auto session = sessions.find(row.session);

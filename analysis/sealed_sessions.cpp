@@ -1,17 +1,21 @@
 #include "analysis/sealed_sessions.hpp"
 
+#include "analysis/outcomes.hpp"
 #include "core/errors.hpp"
 #include "protocols/store/damage.hpp"
 #include "protocols/store/opened_parts.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/sealing.hpp"
 
+#include <algorithm>
 #include <exception>
+#include <iterator>
 #include <map>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 namespace touchtrial::analysis {
 namespace {
@@ -29,9 +33,9 @@ std::string place_of(const store::Event& event) {
 /// Calls `visit` with each event of a kind, opened, and its secret text, for all sessions that have
 /// a key.
 template <typename Visit>
-void for_each_secret(const store::StudyStore& store, const SessionKeys& keys, store::EventKind kind,
+void for_each_secret(const StudyEvents& events, const SessionKeys& keys, store::EventKind kind,
                      Visit visit) {
-  store.for_each(kind, [&](const store::Event& stored) {
+  events.for_each_of(std::span(&kind, 1), [&](const store::Event& stored) {
     const auto own = keys.find(stored.session);
     if (own == keys.end() || !own->second.participant) return;
     const auto [event, secret] = whole_event(stored, *own->second.participant);
@@ -43,38 +47,50 @@ void for_each_secret(const store::StudyStore& store, const SessionKeys& keys, st
   });
 }
 
-/// The events of a session, and what they come to.
-struct WaitingSession {
-  SecretKey own{};
-  int session = 0;
-  bool measured = false;  ///< whether measures are wanted
-  std::vector<store::Event> events;
+/// What the events of a session come to.
+struct OpenedTrials {
   store::DerivedRows rows;
   Measures measures;
   std::exception_ptr fault;
 
   /// Keeps an error instead of throwing it, so that the first session's is reported, whichever
   /// thread finds one first.
-  void open() noexcept {
+  /// \param measured  whether measures are wanted
+  void open(std::vector<store::Event> events, const SecretKey& own, bool measured) noexcept {
     try {
-      for (store::Event& event : events) add(event);
+      const store::EventOpener opener(own);
+      for (store::Event& event : events) add(event, opener, measured);
     } catch (const StoreError& error) {
       fault = std::make_exception_ptr(VerificationError(error.what()));
     } catch (...) {
       fault = std::current_exception();
     }
-    events.clear();
   }
 
-  void add(store::Event& event) {
-    const auto opened = store::opened_parts(event, own);
+  /// Adds the trials to those of the sessions before.
+  void move_to(std::vector<store::TrialRow>& trials, Measures* all) {
+    if (fault) std::rethrow_exception(fault);
+    for (const auto& [id, row] : rows.trials) trials.push_back(row);
+    if (all != nullptr) all->merge(measures);
+    rows = {};
+  }
+
+ private:
+  void add(store::Event& event, const store::EventOpener& opener, bool measured) {
+    const auto opened = opener(event);
     if (!opened) refuse_sealed(event);
     event.at = opened->at;
     event.sealed.clear();
-    store::fold(rows, event, opened->body);
-    if (!measured || event.kind != store::EventKind::trace_stored) return;
-    const int trial = store::trace_body_from_json(event.body).trial;
-    measures.insert_or_assign({session, trial}, store::measures_from_json(opened->secret));
+    if (event.kind != store::EventKind::trace_stored) {
+      return store::fold(rows, event, opened->body);
+    }
+    const auto body = store::body_of(event, [&](const std::string&) {
+      return store::from_parts<store::TraceBody>(opened->body);
+    });
+    store::fold(rows, event, body);
+    if (!measured) return;
+    measures.insert_or_assign({event.session, body.trial},
+                              store::measures_from_json(opened->secret));
   }
 };
 
@@ -103,10 +119,10 @@ void require_key_of(const store::StudyStore& store, const design::StudyKey& key)
 
 namespace {
 
-std::optional<SecretKey> unwrapped_key(const store::StudyStore& store, const BoxKeys& investigator,
+std::optional<SecretKey> unwrapped_key(const std::optional<Bytes>& wrapped,
+                                       const BoxKeys& investigator,
                                        const store::SessionRow& session) {
   if (session.erased) return std::nullopt;
-  const std::optional<Bytes> wrapped = store.wrapped_key(session.session);
   if (!wrapped) {
     throw VerificationError(
         fmt::format("session {}: the participant's key is missing although nobody withdrew; "
@@ -123,12 +139,12 @@ std::optional<SecretKey> unwrapped_key(const store::StudyStore& store, const Box
   return own;
 }
 
-store::PersonKeys unwrapped_keys(const store::StudyStore& store, const BoxKeys& investigator,
+store::PersonKeys unwrapped_keys(const store::WrappedKeys& wrapped, const BoxKeys& investigator,
                                  const store::SessionRow& session) {
-  store::PersonKeys own{.participant = unwrapped_key(store, investigator, session), .safety = {}};
-  const std::optional<Bytes> wrapped = store.wrapped_keys(session.session).safety;
-  if (!wrapped) return own;
-  own.safety = store::unwrap_safety_key(investigator, session.own_session, *wrapped);
+  store::PersonKeys own{.participant = unwrapped_key(wrapped.participant, investigator, session),
+                        .safety = {}};
+  if (!wrapped.safety) return own;
+  own.safety = store::unwrap_safety_key(investigator, session.own_session, *wrapped.safety);
   if (own.safety) return own;
   throw VerificationError(
       fmt::format("session {}: the safety key does not open with this study key; restore a backup "
@@ -141,19 +157,20 @@ store::PersonKeys unwrapped_keys(const store::StudyStore& store, const BoxKeys& 
 std::optional<SecretKey> participant_key(const store::StudyStore& store,
                                          const design::StudyKey& key,
                                          const store::SessionRow& session) {
-  return unwrapped_key(store, key.box(), session);
+  return unwrapped_key(store.wrapped_key(session.session), key.box(), session);
 }
 
 store::PersonKeys person_keys(const store::StudyStore& store, const design::StudyKey& key,
                               const store::SessionRow& session) {
-  return unwrapped_keys(store, key.box(), session);
+  return unwrapped_keys(store.wrapped_keys(session.session), key.box(), session);
 }
 
 SessionKeys person_keys(const store::StudyStore& store, const design::StudyKey& key) {
   const BoxKeys investigator = key.box();
   SessionKeys all;
   for (const store::SessionRow& session : store.sessions()) {
-    all.emplace(session.session, unwrapped_keys(store, investigator, session));
+    all.emplace(session.session,
+                unwrapped_keys(store.wrapped_keys(session.session), investigator, session));
   }
   return all;
 }
@@ -180,29 +197,73 @@ store::Event readable_event(const store::Event& event, const store::SessionRow& 
   return *std::move(opened);
 }
 
-std::vector<store::TrialRow> open_trials(const store::StudyStore& store, const SessionKeys& keys,
-                                         Measures* measures) {
-  std::vector<WaitingSession> sessions;
+std::vector<store::TrialRow> open_trials(const store::StudyStore& store, const SessionKeys& keys) {
+  std::vector<store::TrialRow> trials;
   for (const auto& [session, own] : keys) {
     if (!own.participant) continue;
-    WaitingSession& waiting = sessions.emplace_back();
-    waiting.own = *own.participant;
-    waiting.session = session;
-    waiting.measured = measures != nullptr;
-    waiting.events = store.events(session);
-  }
-  tbb::parallel_for(std::size_t{0}, sessions.size(), [&](std::size_t i) { sessions[i].open(); });
-  std::vector<store::TrialRow> trials;
-  for (WaitingSession& session : sessions) {
-    if (session.fault) std::rethrow_exception(session.fault);
-    for (const auto& [id, row] : session.rows.trials) trials.push_back(row);
-    if (measures != nullptr) measures->merge(session.measures);
+    OpenedTrials opened;
+    opened.open(store.events(session), *own.participant, /*measured=*/false);
+    opened.move_to(trials, nullptr);
   }
   return trials;
 }
 
-void require_sealed_ends(const store::StudyStore& store, const SessionKeys& keys) {
-  for_each_secret(store, keys, store::EventKind::closed,
+/// One session, read by one of several threads.
+struct OpenedSessions::Session {
+  store::SessionRow row;
+  store::WrappedKeys wrapped;
+  store::PersonKeys own;
+  std::vector<store::Event> kept;
+  OpenedTrials trials;
+  std::exception_ptr fault;  ///< of a key
+
+  void read(const BoxKeys& investigator, std::vector<store::Event> events) noexcept {
+    try {
+      own = unwrapped_keys(wrapped, investigator, row);
+      std::ranges::copy_if(events, std::back_inserter(kept), StudyEvents::is_kept);
+      if (own.participant) trials.open(std::move(events), *own.participant, /*measured=*/true);
+    } catch (...) {
+      fault = std::current_exception();
+    }
+  }
+};
+
+OpenedSessions::OpenedSessions(const store::StudyStore& store, const design::StudyKey& key)
+    : events_(store) {
+  const BoxKeys investigator = key.box();
+  for (store::SessionRow& row : store.sessions()) {
+    Session& session = sessions_[row.session];
+    session.wrapped = store.wrapped_keys(row.session);
+    session.row = std::move(row);
+  }
+  const auto read = [&](int number, std::vector<store::Event> events) {
+    const auto session = sessions_.find(number);
+    if (session != sessions_.end()) session->second.read(investigator, std::move(events));
+  };
+  if (const auto fault = store.first_fault(store::TraceCheck::skip, read)) {
+    throw VerificationError(shown(*fault) +
+                            "; no outcomes are shown, see `touchtrial verify` and restore the "
+                            "database from a backup");
+  }
+  EventsOfSessions kept;
+  for (auto& [number, session] : sessions_) {
+    if (session.fault) std::rethrow_exception(session.fault);
+    keys_.emplace(number, session.own);
+    kept.emplace(number, std::move(session.kept));
+  }
+  events_ = StudyEvents(store, std::move(kept));
+}
+
+OpenedSessions::~OpenedSessions() = default;
+
+std::vector<store::TrialRow> OpenedSessions::take_trials(Measures& measures) {
+  std::vector<store::TrialRow> trials;
+  for (auto& [number, session] : sessions_) session.trials.move_to(trials, &measures);
+  return trials;
+}
+
+void require_sealed_ends(const StudyEvents& events, const SessionKeys& keys) {
+  for_each_secret(events, keys, store::EventKind::closed,
                   [&](const store::Event& event, const std::string& text) {
                     const store::ChainEnd before{.length = event.sequence, .head = event.previous};
                     if (store::chain_end_from_json(text) == before) return;
@@ -225,11 +286,11 @@ store::Trace open_trace(const std::optional<store::SealedTrace>& sealed,
       trial.session, trial.trial));
 }
 
-std::map<int, design::Schedule> open_schedules(const store::StudyStore& store,
+std::map<int, design::Schedule> open_schedules(const StudyEvents& events,
                                                const design::StudyKey& key,
                                                const SessionKeys& keys) {
   std::map<int, design::Schedule> schedules;
-  for_each_secret(store, keys, store::EventKind::opened,
+  for_each_secret(events, keys, store::EventKind::opened,
                   [&](const store::Event& event, const std::string& text) {
                     schedules.insert_or_assign(event.session,
                                                design::schedule_from_json(text, key));
@@ -239,7 +300,7 @@ std::map<int, design::Schedule> open_schedules(const store::StudyStore& store,
     const std::vector<design::Presentation> block = block_from_json(text, key);
     all.insert(all.end(), block.begin(), block.end());
   };
-  for_each_secret(store, keys, store::EventKind::block_restarted, add_block);
+  for_each_secret(events, keys, store::EventKind::block_restarted, add_block);
   return schedules;
 }
 

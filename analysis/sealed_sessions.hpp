@@ -2,6 +2,7 @@
 /// schedules, answers and measures.
 #pragma once
 
+#include "analysis/study_events.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/person_texts.hpp"
 #include "protocols/store/study_store.hpp"
@@ -53,17 +54,40 @@ using SessionKeys = std::map<int, store::PersonKeys>;
 using Measures = std::map<std::pair<int, int>, store::TrialMeasures>;
 
 /// The trials of all sessions that are not erased, with answers and times, by session and trial.
-/// \param measures  unless it is null, gets those of all trials with a trace; for a repeated trial,
-///   the last presentation counts
 /// \throws VerificationError, naming the event, if one does not open or cannot follow those before
 [[nodiscard]] std::vector<store::TrialRow> open_trials(const store::StudyStore& store,
-                                                       const SessionKeys& keys,
-                                                       Measures* measures = nullptr);
+                                                       const SessionKeys& keys);
+
+/// A study with its key: every event is read once, checked and opened, several sessions at a time.
+class OpenedSessions {
+ public:
+  /// \throws VerificationError if chains or derived tables are not whole (traces are not checked),
+  ///   or as person_keys
+  OpenedSessions(const store::StudyStore& store, const design::StudyKey& key);
+  ~OpenedSessions();
+  OpenedSessions(const OpenedSessions&) = delete;
+  OpenedSessions& operator=(const OpenedSessions&) = delete;
+
+  [[nodiscard]] const SessionKeys& keys() const noexcept { return keys_; }
+  /// Those that are kept, as they are stored.
+  [[nodiscard]] const StudyEvents& events() const noexcept { return events_; }
+  /// As open_trials; once.
+  /// \param measures  gets those of all trials with a trace; for a repeated trial, the last
+  ///   presentation counts
+  [[nodiscard]] std::vector<store::TrialRow> take_trials(Measures& measures);
+
+ private:
+  struct Session;
+
+  std::map<int, Session> sessions_;
+  SessionKeys keys_;
+  StudyEvents events_;
+};
 
 /// Checks the chain of every session that has ended and is not erased against the end that was
 /// sealed with it. Somebody without the key can rebuild a chain, but cannot seal its end.
 /// \throws VerificationError, naming the session, if a sealed end belongs to another chain
-void require_sealed_ends(const store::StudyStore& store, const SessionKeys& keys);
+void require_sealed_ends(const StudyEvents& events, const SessionKeys& keys);
 
 /// Opens a trial's trace.
 /// \param sealed  StudyStore::sealed_trace of the trial
@@ -75,7 +99,7 @@ void require_sealed_ends(const store::StudyStore& store, const SessionKeys& keys
 /// their new order, follow the schedule with which the session began.
 /// \throws VerificationError, naming the session, if a schedule does not open or does not belong to
 ///   this key
-[[nodiscard]] std::map<int, design::Schedule> open_schedules(const store::StudyStore& store,
+[[nodiscard]] std::map<int, design::Schedule> open_schedules(const StudyEvents& events,
                                                              const design::StudyKey& key,
                                                              const SessionKeys& keys);
 

@@ -62,16 +62,22 @@ Bytes seal(const SecretKey& key, std::string_view context, ByteView plaintext,
 
 std::optional<Bytes> unseal(const SecretKey& key, std::string_view context, ByteView box,
                             std::size_t padded_size) {
+  return Unsealer(key)(context, box, padded_size);
+}
+
+Unsealer::Unsealer(const SecretKey& key) : cipher_key_(derive_key(key, "cipher")) {}
+
+std::optional<Bytes> Unsealer::operator()(std::string_view context, ByteView box,
+                                          std::size_t padded_size) const {
   if (padded_size == 0) throw std::invalid_argument("unseal: padded_size must be at least 1");
   if (box.size() < kNonceSize + kTagSize) return std::nullopt;
   Bytes text(box.size() - kNonceSize - kTagSize);
   if (text.size() % padded_size != 0) return std::nullopt;
   prepare_sodium();
   const ByteView authenticated = bytes_of(context);
-  const SecretKey cipher_key = derive_key(key, "cipher");
   const int failed = crypto_aead_xchacha20poly1305_ietf_decrypt(
       text.data(), nullptr, nullptr, box.data() + kNonceSize, box.size() - kNonceSize,
-      authenticated.data(), authenticated.size(), box.data(), cipher_key.data());
+      authenticated.data(), authenticated.size(), box.data(), cipher_key_.data());
   if (failed != 0) return std::nullopt;
   return unpadded(std::move(text));
 }

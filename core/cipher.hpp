@@ -28,6 +28,17 @@ using SecretKey = Digest;  ///< 32 secret bytes
 [[nodiscard]] std::optional<Bytes> unseal(const SecretKey& key, std::string_view context,
                                           ByteView box, std::size_t padded_size = 256);
 
+/// The same for many boxes of one key.
+class Unsealer {
+ public:
+  explicit Unsealer(const SecretKey& key);
+  [[nodiscard]] std::optional<Bytes> operator()(std::string_view context, ByteView box,
+                                                std::size_t padded_size) const;
+
+ private:
+  SecretKey cipher_key_;
+};
+
 /// Derives the key for one purpose from another key. The purposes are part of the file formats.
 [[nodiscard]] SecretKey derive_key(const SecretKey& key, std::string_view purpose);
 

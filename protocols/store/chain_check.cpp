@@ -5,10 +5,17 @@
 #include "protocols/store/stored_study.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <exception>
 #include <limits>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include <tbb/parallel_pipeline.h>
 
 namespace touchtrial::store {
 namespace {
@@ -55,10 +62,39 @@ class SignatureCheck {
   std::optional<Event> last_;
 };
 
+/// How many sessions are in memory at once, for as many threads as there are.
+constexpr std::size_t kSessionsAtOnce = 16;
+
+/// One session on its way through the check, by itself: what it comes to, or what is wrong with it.
+struct SessionOnItsWay {
+  int session = 0;
+  const SessionOnFile* on_file = nullptr;
+  std::vector<Event> events;
+  std::exception_ptr unreadable;  ///< after `events`
+  DerivedRows rows;
+  std::map<int, TraceClaim> claims;
+  std::exception_ptr fault;
+
+  void check(const StudyCommitment& commitment, const SessionReader& reader) noexcept {
+    try {
+      SessionCheck check(session, *on_file, commitment);
+      for (const Event& event : events) check.add(event, rows);
+      if (unreadable) std::rethrow_exception(unreadable);
+      check.finish(rows);
+      claims = check.claims();
+      if (reader) reader(session, std::move(events));
+    } catch (...) {
+      fault = std::current_exception();
+    }
+    events = {};
+  }
+};
+
 /// Walks through everything once, and throws EventFault at the first thing that does not hold.
 class Inspection {
  public:
-  explicit Inspection(const Database& database) : database_(database) {}
+  Inspection(const Database& database, const SessionReader& reader)
+      : database_(database), reader_(reader) {}
 
   void run(TraceCheck traces) {
     if (traces == TraceCheck::full) inspect_structure();
@@ -160,13 +196,28 @@ class Inspection {
     }
   }
 
+  /// One thread reads sessions, others check them, and what they come to is added in order: the
+  /// first fault by session is named, whichever thread finds one first.
   void inspect_sessions() {
-    for (const auto& [session, on_file] : file_.sessions()) {
-      if (on_file.opened.station > 0 && !is_collected_) {
-        throw EventFault(0, on_file.opened_at, "a session comes from a station that is not here");
+    using OnItsWay = std::shared_ptr<SessionOnItsWay>;
+    auto next = file_.sessions().begin();
+    const auto read = [&](tbb::flow_control& control) -> OnItsWay {
+      if (next == file_.sessions().end()) {
+        control.stop();
+        return nullptr;
       }
-      inspect_session(session, on_file);
-    }
+      return read_session(*next++);
+    };
+    const auto check = [&](const OnItsWay& one) {
+      if (!one->fault) one->check(*file_.commitment(), reader_);
+      return one;
+    };
+    const auto add = [&](const OnItsWay& one) { add_session(*one); };
+    const auto in_order = tbb::filter_mode::serial_in_order;
+    tbb::parallel_pipeline(kSessionsAtOnce, tbb::make_filter<void, OnItsWay>(in_order, read) &
+                                                tbb::make_filter<OnItsWay, OnItsWay>(
+                                                    tbb::filter_mode::parallel, check) &
+                                                tbb::make_filter<OnItsWay, void>(in_order, add));
     for (const std::int64_t session : sessions_with_events(database_)) {
       if (session < 0) continue;
       const bool known = session <= std::numeric_limits<int>::max() &&
@@ -175,12 +226,26 @@ class Inspection {
     }
   }
 
-  void inspect_session(int session, const SessionOnFile& on_file) {
-    SessionCheck check(session, on_file, *file_.commitment());
-    for_each_event(database_, session, [&](const Event& event) { check.add(event, expected_); });
-    check.finish(expected_);
-    for (const auto& [trial, claim] : check.claims()) {
-      claims_.emplace(TrialId(session, trial), claim);
+  [[nodiscard]] std::shared_ptr<SessionOnItsWay> read_session(
+      const std::pair<const int, SessionOnFile>& known) const {
+    auto one = std::make_shared<SessionOnItsWay>();
+    one->session = known.first;
+    one->on_file = &known.second;
+    if (known.second.opened.station > 0 && !is_collected_) {
+      one->fault = std::make_exception_ptr(
+          EventFault(0, known.second.opened_at, "a session comes from a station that is not here"));
+    } else {
+      one->events = read_events(database_, one->session, one->unreadable);
+    }
+    return one;
+  }
+
+  void add_session(SessionOnItsWay& one) {
+    if (one.fault) std::rethrow_exception(one.fault);
+    expected_.sessions.merge(one.rows.sessions);
+    expected_.trials.merge(one.rows.trials);
+    for (const auto& [trial, claim] : one.claims) {
+      claims_.emplace(TrialId(one.session, trial), claim);
     }
   }
 
@@ -270,6 +335,7 @@ class Inspection {
   }
 
   const Database& database_;
+  const SessionReader& reader_;
   FileChain file_;
   bool is_collected_ = false;
   DerivedRows expected_;
@@ -278,9 +344,10 @@ class Inspection {
 
 }  // namespace
 
-std::optional<ChainFault> find_first_fault(const Database& database, TraceCheck traces) {
+std::optional<ChainFault> find_first_fault(const Database& database, TraceCheck traces,
+                                           const SessionReader& reader) {
   try {
-    Inspection(database).run(traces);
+    Inspection(database, reader).run(traces);
     return std::nullopt;
   } catch (const EventFault& found) {
     const bool is_int = found.session() >= std::numeric_limits<int>::min() &&

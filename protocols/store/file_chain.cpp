@@ -8,36 +8,51 @@
 
 namespace touchtrial::store {
 
+namespace {
+
+/// The sessions that had ended by then.
+std::set<int> ended_in(std::span<const Event> chain) {
+  std::set<int> ended;
+  for (const Event& event : chain) {
+    if (event.kind == EventKind::session_closed) ended.insert(session_about(event));
+  }
+  return ended;
+}
+
+/// The participant's sessions that had been opened by then.
+std::set<int> sessions_in(std::span<const Event> chain, const std::string& participant) {
+  std::set<int> sessions;
+  for (const Event& event : chain) {
+    if (event.kind != EventKind::session_opened) continue;
+    const SessionOpenedBody body = body_of(event, session_opened_from_json);
+    if (body.participant == participant) sessions.insert(body.session);
+  }
+  return sessions;
+}
+
+}  // namespace
+
 StudyState state_of_chain(std::span<const Event> chain) {
   StudyState state;
-  std::set<int> ended;
-  std::multimap<std::string, int> sessions;  ///< by participant
-  for (const Event& event : chain) {
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    const Event& event = chain[i];
     if (event.kind == EventKind::study_closed) state.closed = true;
-    if (event.kind == EventKind::session_closed) ended.insert(session_about(event));
-    if (event.kind == EventKind::session_opened) {
-      const SessionOpenedBody body = body_of(event, session_opened_from_json);
-      sessions.emplace(body.participant, body.session);
-    }
     if (event.kind != EventKind::study_unblinded) continue;
+    const std::span<const Event> before = chain.first(i);
     const UnblindingBody body = body_of(event, unblinding_from_json);
+    std::optional<std::set<int>> named;
+    if (body.sessions) named.emplace(body.sessions->begin(), body.sessions->end());
     if (!body.participant.empty()) {
       state.looks.push_back({body.participant, body.reason, event.at});
-      if (body.sessions) {
-        state.looked_at.insert(body.sessions->begin(), body.sessions->end());
-      } else {
-        const auto [first, last] = sessions.equal_range(body.participant);
-        for (auto own = first; own != last; ++own) state.looked_at.insert(own->second);
-      }
+      state.looked_at.merge(named ? *named : sessions_in(before, body.participant));
       continue;
     }
     state.unblinded = !body.question_alone;
     state.unblinding_reason = body.reason;
-    state.interim = body.interim && state.unblinded ? std::optional(ended) : std::nullopt;
-    state.question = body.question_alone ? std::optional(ended) : std::nullopt;
-    if (state.interim && body.sessions) {
-      state.interim = std::set<int>(body.sessions->begin(), body.sessions->end());
-    }
+    state.interim.reset();
+    state.question.reset();
+    if (body.question_alone) state.question = ended_in(before);
+    if (body.interim && state.unblinded) state.interim = named ? *named : ended_in(before);
   }
   return state;
 }
@@ -232,8 +247,10 @@ SessionCheck::SessionCheck(int session, const SessionOnFile& on_file,
 void SessionCheck::add(const Event& event, DerivedRows& rows) {
   chain_.extend(event);
   if (event.sequence == 0) check_opening(event);
-  fold(rows, event);
-  if (event.kind == EventKind::trace_stored) note_trace(event);
+  if (event.kind != EventKind::trace_stored) return fold(rows, event);
+  const TraceBody body = body_of(event, trace_body_from_json);
+  fold(rows, event, body);
+  note_trace(event, body);
 }
 
 void SessionCheck::check_opening(const Event& event) const {
@@ -250,8 +267,7 @@ void SessionCheck::check_opening(const Event& event) const {
   }
 }
 
-void SessionCheck::note_trace(const Event& event) {
-  const TraceBody body = body_of(event, trace_body_from_json);
+void SessionCheck::note_trace(const Event& event, const TraceBody& body) {
   if (claims_.emplace(body.trial, TraceClaim{event.sequence, body.trace}).second) return;
   throw EventFault(session_, event.sequence,
                    "trace of trial " + std::to_string(body.trial) + " is stored twice");

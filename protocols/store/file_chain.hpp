@@ -171,7 +171,7 @@ class SessionCheck {
 
  private:
   void check_opening(const Event& event) const;
-  void note_trace(const Event& event);
+  void note_trace(const Event& event, const TraceBody& body);
 
   int session_;
   const SessionOnFile& on_file_;

@@ -263,17 +263,18 @@ void fold(DerivedRows& rows, const Event& event) {
   }
 }
 
+void fold(DerivedRows& rows, const Event& event, const TraceBody& body) {
+  open_row(rows, event);
+  measure_trial(rows, event, body);
+}
+
 void fold(DerivedRows& rows, const Event& event, const BodyParts& body) {
-  const auto in_parts = [&]<typename Body>(Body) {
-    return body_of(event, [&](const std::string&) { return from_parts<Body>(body); });
-  };
+  if (body.hidden.empty() && body.clear == event.body) return fold(rows, event);
   if (event.kind == EventKind::answered) {
     open_row(rows, event);
-    return answer_trial(rows, event, in_parts(AnswerBody{}));
-  }
-  if (event.kind == EventKind::trace_stored) {
-    open_row(rows, event);
-    return measure_trial(rows, event, in_parts(TraceBody{}));
+    return answer_trial(rows, event, body_of(event, [&](const std::string&) {
+                          return from_parts<AnswerBody>(body);
+                        }));
   }
   Event whole = event;
   whole.body = joined_body(body);

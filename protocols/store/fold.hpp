@@ -118,5 +118,7 @@ struct FoldScope {
 /// \throws EventFault if the event's body cannot be read, or the event cannot follow those before;
 ///   `rows` are then as they were
 void fold(DerivedRows& rows, const Event& event);
+/// The same for a trace-stored event whose body was read already.
+void fold(DerivedRows& rows, const Event& event, const TraceBody& body);
 
 }  // namespace touchtrial::store

@@ -19,17 +19,26 @@ struct OpenedParts {
   std::string secret;  ///< as OpenedEvent::secret
 };
 
-/// \param event  of a session, as it is stored
-/// \return nothing if the key is wrong, or anything of the event was altered
-[[nodiscard]] std::optional<OpenedParts> opened_parts(const Event& event,
-                                                      const SecretKey& participant_key);
+/// Opens the events of one session.
+class EventOpener {
+ public:
+  explicit EventOpener(const SecretKey& participant_key);
+
+  /// \param event  of the session, as it is stored
+  /// \return nothing if the key is wrong, or anything of the event was altered
+  [[nodiscard]] std::optional<OpenedParts> operator()(const Event& event) const;
+
+ private:
+  Unsealer participant_;
+  Unsealer safety_;
+};
 
 /// The body that the two parts come to.
 /// \throws StoreError, naming the key, if they are no such body
 template <typename Body>
 [[nodiscard]] Body from_parts(const BodyParts& parts);
 
-/// As fold, with an event that was opened.
+/// As fold, with an event that was opened; a trace-stored event's body is read with from_parts.
 /// \param event  with its time and nothing sealed; its body does not count
 /// \throws as fold
 void fold(DerivedRows& rows, const Event& event, const BodyParts& body);

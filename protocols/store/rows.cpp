@@ -187,6 +187,20 @@ void for_each_event(const Database& database, std::int64_t session, const EventV
   for_each_event(database, {.session = session}, visit);
 }
 
+std::vector<Event> read_events(const Database& database, int session, std::exception_ptr& fault) {
+  static const std::string sql =
+      "SELECT " + column_list(Table::events) + " FROM events WHERE session = ? ORDER BY sequence";
+  std::vector<Event> events;
+  try {
+    Query query = database.query(sql.c_str());
+    query.bind(session);
+    while (query.step()) events.push_back(event_of_row(query));
+  } catch (...) {
+    fault = std::current_exception();
+  }
+  return events;
+}
+
 std::optional<Event> read_event(const Database& database, int session, std::int64_t sequence) {
   // By its whole key: the ranges of for_each_event would walk through all events of the session.
   static const std::string sql =
@@ -198,9 +212,17 @@ std::optional<Event> read_event(const Database& database, int session, std::int6
 }
 
 std::vector<std::int64_t> sessions_with_events(const Database& database) {
-  Query query = database.query("SELECT DISTINCT session FROM events WHERE session <> 0 ORDER BY 1");
+  // From one session's first event to the next one's: DISTINCT would read every event.
   std::vector<std::int64_t> sessions;
-  while (query.step()) sessions.push_back(query.integer(0));
+  const auto add_from = [&](std::int64_t lowest) {
+    Query query = database.query("SELECT min(session) FROM events WHERE session >= ?");
+    query.bind(lowest);
+    if (!query.step() || query.is_null(0)) return false;
+    sessions.push_back(query.integer(0));
+    return sessions.back() < kHighest;
+  };
+  for (bool more = add_from(kLowest); more;) more = add_from(sessions.back() + 1);
+  std::erase(sessions, 0);
   return sessions;
 }
 

@@ -7,6 +7,7 @@
 #include "protocols/store/sealing.hpp"
 
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <span>
@@ -36,6 +37,10 @@ struct EventFilter {
 void for_each_event(const Database& database, const EventFilter& filter, const EventVisitor& visit);
 /// The same for all events of one chain.
 void for_each_event(const Database& database, std::int64_t session, const EventVisitor& visit);
+/// The events of one chain, in order, as far as they can be read.
+/// \param fault  gets what for_each_event would throw at the first that cannot
+[[nodiscard]] std::vector<Event> read_events(const Database& database, int session,
+                                             std::exception_ptr& fault);
 /// One event, if it exists.
 /// \throws the same
 [[nodiscard]] std::optional<Event> read_event(const Database& database, int session,

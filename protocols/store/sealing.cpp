@@ -34,8 +34,13 @@ std::string safety_key_context(int own_session) {
 }
 
 std::string event_context(const Event& event) {
-  return "event|" + std::to_string(event.own_session()) + "|" + std::to_string(event.sequence) +
-         "|" + std::string(name_of(event.kind)) + "|" + to_hex(event.previous) + "|" + event.body;
+  std::string context = "event|";
+  context.reserve(128 + event.body.size());
+  context.append(std::to_string(event.own_session())).append("|");
+  context.append(std::to_string(event.sequence)).append("|");
+  context.append(name_of(event.kind)).append("|");
+  context.append(to_hex(event.previous)).append("|");
+  return context.append(event.body);
 }
 
 std::string trace_context(int own_session, int trial) {
@@ -72,8 +77,8 @@ SecretKey key_of_kind(EventKind kind, const SecretKey& participant_key) {
 }
 
 /// \param key  that the event was sealed with
-std::optional<OpenedParts> parts_opened_with(const Event& event, const SecretKey& key) {
-  const std::optional<Bytes> plain = unseal(key, event_context(event), event.sealed, kSealedUnit);
+std::optional<OpenedParts> parts_opened_with(const Event& event, const Unsealer& key) {
+  const std::optional<Bytes> plain = key(event_context(event), event.sealed, kSealedUnit);
   if (!plain || plain->size() < kBeforeTexts) return std::nullopt;
   const ByteView bytes(*plain);
   const std::uint64_t length = number_in(bytes.subspan(kTimeSize, kLengthSize));
@@ -87,7 +92,7 @@ std::optional<OpenedParts> parts_opened_with(const Event& event, const SecretKey
 
 /// \param key  that the event was sealed with
 std::optional<OpenedEvent> opened_with(const Event& event, const SecretKey& key) {
-  std::optional<OpenedParts> parts = parts_opened_with(event, key);
+  std::optional<OpenedParts> parts = parts_opened_with(event, Unsealer(key));
   if (!parts) return std::nullopt;
   OpenedEvent opened{.event = event, .secret = std::move(parts->secret)};
   opened.event.at = parts->at;
@@ -172,8 +177,11 @@ std::optional<OpenedEvent> opened_event(const Event& event, const SecretKey& par
   return opened_with(event, key_of_kind(event.kind, participant_key));
 }
 
-std::optional<OpenedParts> opened_parts(const Event& event, const SecretKey& participant_key) {
-  return parts_opened_with(event, key_of_kind(event.kind, participant_key));
+EventOpener::EventOpener(const SecretKey& participant_key)
+    : participant_(participant_key), safety_(safety_key(participant_key)) {}
+
+std::optional<OpenedParts> EventOpener::operator()(const Event& event) const {
+  return parts_opened_with(event, is_safety_record(event.kind) ? safety_ : participant_);
 }
 
 std::optional<OpenedEvent> opened_safety_event(const Event& event, const SecretKey& safety_key) {

@@ -5,6 +5,7 @@
 #include "protocols/store/rows.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <set>
 #include <vector>
@@ -29,9 +30,21 @@ const StudyCommitment& StoredStudy::commitment() const {
 }
 
 StudyState StoredStudy::state() const {
-  std::vector<Event> chain;
-  for_each_event(database_, 0, [&](const Event& event) { chain.push_back(event); });
-  return state_of_chain(chain);
+  constexpr std::array kDecisions = {EventKind::study_closed, EventKind::study_unblinded};
+  const auto chain_of = [&](std::span<const EventKind> kinds) {
+    std::vector<Event> chain;
+    for_each_event(database_, {.session = 0, .kinds = kinds},
+                   [&](const Event& event) { chain.push_back(event); });
+    return chain;
+  };
+  const std::vector<Event> decisions = chain_of(kDecisions);
+  // Only a look before the end depends on who had come by then.
+  const bool is_final = std::ranges::all_of(decisions, [](const Event& event) {
+    if (event.kind == EventKind::study_closed) return true;
+    const UnblindingBody body = body_of(event, unblinding_from_json);
+    return !body.interim && body.participant.empty();
+  });
+  return state_of_chain(is_final ? decisions : chain_of({}));
 }
 
 int StoredStudy::stations() const {

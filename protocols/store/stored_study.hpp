@@ -178,7 +178,9 @@ class StoredSession final : public EventSink {
 /// every session's chain, what the file's chain says of the sessions, keys, traces, the derived
 /// tables, and the schema. Call it inside a transaction.
 /// \param traces  `skip` leaves structure and traces out
+/// \param reader  gets every session whose chain is intact; may be empty
 [[nodiscard]] std::optional<ChainFault> find_first_fault(const Database& database,
-                                                         TraceCheck traces);
+                                                         TraceCheck traces,
+                                                         const SessionReader& reader);
 
 }  // namespace touchtrial::store

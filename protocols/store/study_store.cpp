@@ -410,11 +410,12 @@ void StudyStore::accept_loss(const LossBody& loss, const std::map<int, std::stri
   });
 }
 
-std::optional<ChainFault> StudyStore::first_fault(TraceCheck traces) const {
+std::optional<ChainFault> StudyStore::first_fault(TraceCheck traces,
+                                                  const SessionReader& reader) const {
   return impl_->run([&] {
     // One transaction, so that everything is from one moment even while others write.
     SQLite::Transaction snapshot(impl_->database().connection());
-    return find_first_fault(impl_->database(), traces);
+    return find_first_fault(impl_->database(), traces, reader);
   });
 }
 

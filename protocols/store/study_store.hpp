@@ -25,6 +25,10 @@ namespace touchtrial::store {
 /// event, which vouches for the events before it, and of unblindings.
 enum class TraceCheck { full, skip };
 
+/// Takes the events of one session, in order. Called for several sessions at once, on several
+/// threads, and in any order of sessions; must not throw or use the database.
+using SessionReader = std::function<void(int session, std::vector<Event> events)>;
+
 /// Whether a text may name a participant: 1 to 32 of 0-9, A-Z, a-z, "+", "-", "_".
 [[nodiscard]] bool is_participant_id(const std::string& id);
 
@@ -220,7 +224,10 @@ class StudyStore {
   /// and lengths, stored traces against their events, and the derived tables against the events. It
   /// cannot find events that were cut off the end of the file's chain, or of an open session.
   /// \return the first fault, or nothing
-  [[nodiscard]] std::optional<ChainFault> first_fault(TraceCheck traces = TraceCheck::full) const;
+  /// \param reader  gets the events of every session whose chain is intact, so that who needs them
+  ///   as well reads them with the check; what it was given counts only if no fault is found
+  [[nodiscard]] std::optional<ChainFault> first_fault(TraceCheck traces = TraceCheck::full,
+                                                      const SessionReader& reader = {}) const;
 
  private:
   struct Impl;

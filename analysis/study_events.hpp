@@ -1,0 +1,40 @@
+/// \file The events of a study's sessions by kind, from its database or kept in memory.
+#pragma once
+
+#include "protocols/store/study_store.hpp"
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// Events by session, each session's in order.
+using EventsOfSessions = std::map<int, std::vector<store::Event>>;
+
+/// Most events tell of presentations, answers and traces, and a report reads those once, with the
+/// check of their chains (OpenedSessions). All others that a session has are few, and can be kept.
+class StudyEvents {
+ public:
+  /// Reads the database each time.
+  StudyEvents(const store::StudyStore& store) : store_(&store) {}  // NOLINT: stands for its events
+  /// \param kept  all events that is_kept names
+  StudyEvents(const store::StudyStore& store, EventsOfSessions kept)
+      : store_(&store), kept_(std::move(kept)) {}
+
+  /// A trace-stored event is kept only if it tells of a servo.
+  [[nodiscard]] static bool is_kept(const store::Event& event);
+
+  [[nodiscard]] const store::StudyStore& store() const noexcept { return *store_; }
+  /// Calls `visit` for the events of these kinds, by session and sequence.
+  void for_each_of(std::span<const store::EventKind> kinds,
+                   const std::function<void(const store::Event&)>& visit) const;
+
+ private:
+  const store::StudyStore* store_;
+  std::optional<EventsOfSessions> kept_;
+};
+
+}  // namespace touchtrial::analysis
