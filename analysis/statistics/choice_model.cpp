@@ -166,7 +166,8 @@ void find_biases(const Weights& weights, ChoiceModel& model) {
   for (std::size_t i = 0; i < model.group.size(); ++i) model.bias[i] /= sum[model.group[i]];
 }
 
-void judge_fit(const ConfusionMatrix& confusion, ChoiceModel& model) {
+/// How far the table is from the model, and in how many ways it could be.
+void find_distance(const ConfusionMatrix& confusion, ChoiceModel& model) {
   int pairs = 0;
   for (int i = 0; i < confusion.classes(); ++i) {
     for (int j = 0; j < confusion.classes(); ++j) {
@@ -178,21 +179,23 @@ void judge_fit(const ConfusionMatrix& confusion, ChoiceModel& model) {
   }
   model.g_squared = std::max(0.0, model.g_squared);  // rounding may leave it just below 0
   model.degrees_of_freedom = pairs - (confusion.classes() - model.groups);
+}
+
+void judge_fit(ChoiceModel& model) {
   if (model.degrees_of_freedom == 0) return;
   const boost::math::chi_squared_distribution<> chi_squared(model.degrees_of_freedom);
   model.p = boost::math::cdf(boost::math::complement(chi_squared, model.g_squared));
 }
 
-ChoiceModel fitted(const ConfusionMatrix& confusion, const Effort& effort) {
-  ChoiceModel model;
+/// Groups, expected counts and their distance; nothing else is wanted of a drawn table.
+/// \param model  outlives the weights
+Weights fit(const ConfusionMatrix& confusion, const Effort& effort, ChoiceModel& model) {
   find_groups(confusion, model);
-  const Weights weights(confusion, model, effort);
+  Weights weights(confusion, model, effort);
   model.converged = weights.converged();
   expect_counts(confusion, weights, model);
-  find_similarities(model);
-  find_biases(weights, model);
-  judge_fit(confusion, model);
-  return model;
+  find_distance(confusion, model);
+  return weights;
 }
 
 /// As many answers to every class as there were, with the model's probabilities.
@@ -217,7 +220,12 @@ ConfusionMatrix drawn_answers(const ChoiceModel& model, RandomStream& random) {
 
 std::optional<ChoiceModel> choice_model(const ConfusionMatrix& confusion) {
   if (!every_class_occurs(confusion)) return std::nullopt;
-  return fitted(confusion, {});
+  ChoiceModel model;
+  const Weights weights = fit(confusion, {}, model);
+  find_similarities(model);
+  find_biases(weights, model);
+  judge_fit(model);
+  return model;
 }
 
 std::optional<double> choice_model_p(const ChoiceModel& model, int draws, std::uint64_t index) {
@@ -228,7 +236,8 @@ std::optional<double> choice_model_p(const ChoiceModel& model, int draws, std::u
   RandomStream random(0, "choice model", index);
   int as_bad = 0;
   for (int draw = 0; draw < draws; ++draw) {
-    const ChoiceModel one = fitted(drawn_answers(model, random), kOfDraws);
+    ChoiceModel one;
+    static_cast<void>(fit(drawn_answers(model, random), kOfDraws, one));
     if (one.g_squared >= model.g_squared - kTie) ++as_bad;
   }
   return p_of_draws(as_bad, draws);
