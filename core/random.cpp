@@ -32,21 +32,6 @@ RandomStream::RandomStream(const Digest& secret, std::string_view purpose, std::
     : engine_(engine_of(keyed_hash(
           secret, FieldHasher().add(purpose).add(static_cast<std::int64_t>(index)).finish()))) {}
 
-std::uint64_t RandomStream::below(std::uint64_t bound) {
-  // The lowest 2^64 mod bound draws are rejected, so that every number is equally likely. They are
-  // less than bound, so that hardly any draw needs this division.
-  std::uint64_t draw = bits();
-  if (draw < bound) {
-    const std::uint64_t excess = (0 - bound) % bound;
-    while (draw < excess) draw = bits();
-  }
-  return draw % bound;
-}
-
-double RandomStream::uniform() {
-  return static_cast<double>(bits() >> 11U) * 0x1.0p-53;
-}
-
 double RandomStream::normal() {
   boost::random::normal_distribution<double> standard;
   return standard(engine_);

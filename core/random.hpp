@@ -28,10 +28,19 @@ class RandomStream {
 
   /// A whole number in [0, bound), each equally likely (by rejection).
   /// \param bound  >= 1
-  [[nodiscard]] std::uint64_t below(std::uint64_t bound);
+  [[nodiscard]] std::uint64_t below(std::uint64_t bound) {
+    // The lowest 2^64 mod bound draws are rejected, so that every number is equally likely. They
+    // are less than bound, so that hardly any draw needs this division.
+    std::uint64_t draw = bits();
+    if (draw < bound) {
+      const std::uint64_t excess = (0 - bound) % bound;
+      while (draw < excess) draw = bits();
+    }
+    return draw % bound;
+  }
 
   /// A number in [0, 1) with 53 random bits.
-  [[nodiscard]] double uniform();
+  [[nodiscard]] double uniform() { return static_cast<double>(bits() >> 11U) * 0x1.0p-53; }
   /// A number in [low, high).
   [[nodiscard]] double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
