@@ -75,86 +75,55 @@ std::string array_of(store::ColumnType type) {
 
 /// "INSERT INTO trials(...) SELECT * FROM unnest(...)": one parameter for each column, with all
 /// rows.
-std::string insertion_sql(store::Table table) {
+/// \param first  number of the first parameter
+std::string insertion_sql(store::Table table, std::size_t first) {
   const store::TableDefinition& definition = store::table_definition(table);
   std::string parameters;
-  int number = 0;
   for (const store::TableColumn& column : definition.columns) {
     parameters +=
-        (number == 0 ? "$" : ", $") + std::to_string(number + 1) + "::" + array_of(column.type);
-    ++number;
+        (parameters.empty() ? "$" : ", $") + std::to_string(first++) + "::" + array_of(column.type);
   }
   return "INSERT INTO " + std::string(definition.name) + "(" + store::column_list(table) +
          ") SELECT * FROM unnest(" + parameters + ")";
 }
 
-/// Sends rows of a table, a batch at a time.
+/// Rows of a table, which are added to insertions a batch at a time.
 class RowBatch {
  public:
-  RowBatch(ServerWork& work, store::Table table)
-      : work_(work), table_(table), columns_(store::table_definition(table).columns.size()) {}
+  RowBatch(Insertions& insertions, store::Table table)
+      : insertions_(insertions),
+        table_(table),
+        columns_(store::table_definition(table).columns.size()) {}
 
   /// The values of a row, in the order of the table's columns.
   template <typename... Values>
   void add(const Values&... values) {
     std::size_t column = 0;
     (columns_[column++].add(values), ...);
-    send_if_full();
+    finish_if_full();
   }
   void add(const store::Cells& cells) {
     for (std::size_t i = 0; i < columns_.size(); ++i) columns_[i].add(cells.at(i));
-    send_if_full();
+    finish_if_full();
   }
 
-  void send() {
+  void finish() {
     if (columns_.front().size() == 0) return;
     std::vector<std::string> texts;
     for (ServerArray& column : columns_) texts.push_back(std::exchange(column, {}).text());
-    work_.exec_params0(insertion_sql(table_), pqxx::prepare::make_dynamic_params(texts));
+    insertions_.add(table_, std::move(texts));
   }
 
  private:
-  void send_if_full() {
+  void finish_if_full() {
     std::size_t size = 0;
     for (const ServerArray& column : columns_) size += column.size();
-    if (size > kBatch) send();
+    if (size > kBatch) finish();
   }
 
-  ServerWork& work_;
+  Insertions& insertions_;
   store::Table table_;
   std::vector<ServerArray> columns_;
-};
-
-/// Sends traces, a batch at a time, each in a binary parameter of its own: as text they would be
-/// twice as long, and the server would copy one that holds them all once for each.
-class TraceBatch {
- public:
-  TraceBatch(ServerWork& work, int session) : work_(work), session_(session) {}
-
-  void add(int trial, const Bytes& box) {
-    constexpr std::size_t kMostParameters = 1000;
-    if (bytes_ + box.size() > kBatch || boxes_.size() == kMostParameters) send();
-    boxes_.push_back(binary(box));
-    bytes_ += box.size();
-    rows_ += (rows_.empty() ? "(" : ", (") + std::to_string(session_) + ", " +
-             std::to_string(trial) + ", $" + std::to_string(boxes_.size()) + "::bytea)";
-  }
-
-  void send() {
-    if (boxes_.empty()) return;
-    work_.exec_params0("INSERT INTO traces(session, trial, box) VALUES " + rows_,
-                       pqxx::prepare::make_dynamic_params(boxes_));
-    boxes_.clear();
-    rows_.clear();
-    bytes_ = 0;
-  }
-
- private:
-  ServerWork& work_;
-  int session_;
-  std::string rows_;  ///< of the statement
-  std::vector<pqxx::binarystring> boxes_;
-  std::size_t bytes_ = 0;
 };
 
 /// \param row  sequence, kind, at_ns, body, sealed, previous, hash, signature, own_session
@@ -176,88 +145,133 @@ store::Event event_of(const pqxx::row& row, int session) {
           .signature = bytes_of(row[7])};
 }
 
-void refuse_large_events(ServerWork& work, int session) {
-  const pqxx::result found = work.exec_params(
-      "SELECT sequence FROM events WHERE session = $1 AND octet_length(kind) + "
-      "octet_length(body) + octet_length(sealed) + octet_length(previous) + octet_length(hash) + "
-      "octet_length(signature) > $2 ORDER BY sequence LIMIT 1",
-      session, kLargestEvent);
-  if (found.empty()) return;
-  throw store::EventFault(session, found[0][0].as<std::int64_t>(), "the event is absurdly large");
-}
-
 }  // namespace
 
-void insert_events(ServerWork& work, int session, std::span<const store::Event> events) {
-  RowBatch batch(work, store::Table::events);
+void Insertions::add(store::Table table, std::vector<std::string> columns) {
+  statements_.push_back(insertion_sql(table, texts_.size() + 1));
+  for (std::string& column : columns) {
+    bytes_ += column.size();
+    texts_.push_back(std::move(column));
+  }
+  if (bytes_ > kBatch) send();
+}
+
+void Insertions::add_trace(int session, int trial, const Bytes& box) {
+  constexpr std::size_t kMostTraces = 1000;
+  if (bytes_ + box.size() > kBatch || boxes_.size() == kMostTraces) send();
+  boxes_.push_back(binary(box));
+  traces_.emplace_back(session, trial);
+  bytes_ += box.size();
+}
+
+void Insertions::send() {
+  // Each trace is a binary parameter of its own: as text they would be twice as long, and the
+  // server would copy one that holds them all once for each.
+  std::string rows;
+  std::size_t parameter = texts_.size();
+  for (const auto& [session, trial] : traces_) {
+    rows += (rows.empty() ? "(" : ", (") + std::to_string(session) + ", " + std::to_string(trial) +
+            ", $" + std::to_string(++parameter) + "::bytea)";
+  }
+  if (!rows.empty())
+    statements_.push_back("INSERT INTO traces(session, trial, box) VALUES " + rows);
+  if (statements_.empty()) return;
+  std::string sql;
+  int part = 0;
+  for (const std::string& statement : statements_) {
+    sql +=
+        (part == 0 ? "WITH part_" : ", part_") + std::to_string(part) + " AS (" + statement + ")";
+    ++part;
+  }
+  // The parts are carried out whether or not anything reads them.
+  work_.exec_params0(sql + " SELECT WHERE FALSE", pqxx::prepare::make_dynamic_params(texts_),
+                     pqxx::prepare::make_dynamic_params(boxes_));
+  statements_.clear();
+  texts_.clear();
+  traces_.clear();
+  boxes_.clear();
+  bytes_ = 0;
+}
+
+void insert_events(Insertions& insertions, int session, std::span<const store::Event> events) {
+  RowBatch batch(insertions, store::Table::events);
   for (const store::Event& event : events) {
     batch.add(session, event.sequence, store::name_of(event.kind), event.at.count(), event.body,
               event.sealed, event.previous, event.hash, event.signature, event.own_session());
   }
-  batch.send();
+  batch.finish();
 }
 
-std::map<std::int64_t, SentTrace> insert_traces(ServerWork& work, int session, StationFile& station,
-                                                int own_session) {
+std::map<std::int64_t, SentTrace> insert_traces(Insertions& insertions, int session,
+                                                StationFile& station, int own_session) {
   std::map<std::int64_t, SentTrace> sent;
-  TraceBatch batch(work, session);
   station.for_each_trace(own_session, [&](int trial, const Bytes& box) {
     sent[trial] = {.digest = blake2b(box), .sha256 = sha256(box)};
-    batch.add(trial, box);
+    insertions.add_trace(session, trial, box);
   });
-  batch.send();
   return sent;
 }
 
-void insert_keys(ServerWork& work, int session, const store::WrappedKeys& keys) {
-  if (keys.participant) {
-    work.exec_params0("INSERT INTO participant_keys(session, wrapped) VALUES($1, $2)", session,
-                      binary(*keys.participant));
-  }
-  if (keys.safety) {
-    work.exec_params0("INSERT INTO safety_keys(session, wrapped) VALUES($1, $2)", session,
-                      binary(*keys.safety));
-  }
+void insert_keys(Insertions& insertions, int session, const store::WrappedKeys& keys) {
+  const auto add = [&](store::Table table, const std::optional<Bytes>& wrapped) {
+    if (!wrapped) return;
+    RowBatch batch(insertions, table);
+    batch.add(session, *wrapped);
+    batch.finish();
+  };
+  add(store::Table::participant_keys, keys.participant);
+  add(store::Table::safety_keys, keys.safety);
 }
 
-void insert_session(ServerWork& work, const store::SessionRow& row) {
-  RowBatch batch(work, store::Table::sessions);
+void insert_session(Insertions& insertions, const store::SessionRow& row) {
+  RowBatch batch(insertions, store::Table::sessions);
   batch.add(store::session_cells(row, store::OwnNumber::always));
-  batch.send();
+  batch.finish();
 }
 
-void insert_trials(ServerWork& work, int session, const store::DerivedRows& rows) {
-  RowBatch trials(work, store::Table::trials);
+void insert_trials(Insertions& insertions, int session, const store::DerivedRows& rows) {
+  RowBatch trials(insertions, store::Table::trials);
   for (const auto& [id, own] : rows.trials) {
     store::TrialRow row = own;
     row.session = session;
     trials.add(store::trial_cells(row));
   }
-  trials.send();
+  trials.finish();
 }
 
 std::vector<store::Event> read_events(ServerWork& work, int session, std::int64_t first) {
-  refuse_large_events(work, session);
+  // What is absurdly large is told, not sent.
   const pqxx::result rows = work.exec_params(
-      "SELECT sequence, kind, at_ns, body, sealed, previous, hash, signature, own_session FROM "
-      "events "
-      "WHERE session = $1 AND sequence >= $2 ORDER BY sequence",
-      session, first);
+      "WITH measured AS (SELECT *, octet_length(kind) + octet_length(body) + octet_length(sealed) "
+      "+ "
+      "octet_length(previous) + octet_length(hash) + octet_length(signature) > $3 AS is_large FROM "
+      "events WHERE session = $1 AND sequence >= $2) SELECT sequence, kind, at_ns, body, sealed, "
+      "previous, hash, signature, own_session, FALSE FROM measured WHERE NOT is_large UNION ALL "
+      "SELECT sequence, '', 0, '', '', '', '', '', 0, TRUE FROM measured WHERE is_large "
+      "ORDER BY sequence",
+      session, first, kLargestEvent);
   std::vector<store::Event> events;
   events.reserve(rows.size());
+  for (const pqxx::row& row : rows) {
+    if (row[9].as<bool>()) {
+      throw store::EventFault(session, row[0].as<std::int64_t>(), "the event is absurdly large");
+    }
+  }
   for (const pqxx::row& row : rows) events.push_back(event_of(row, session));
   return events;
 }
 
 store::WrappedKeys read_keys(ServerWork& work, int session) {
-  const auto read = [&](const std::string& table) -> std::optional<Bytes> {
-    const pqxx::result rows = work.exec_params(
-        "SELECT wrapped FROM " + table + " WHERE session = $1 AND octet_length(wrapped) < 4096",
-        session);
-    if (rows.empty()) return std::nullopt;
-    return bytes_of(rows[0][0]);
+  const pqxx::result rows = work.exec_params(
+      "SELECT (SELECT wrapped FROM participant_keys WHERE session = $1 AND octet_length(wrapped) < "
+      "4096), (SELECT wrapped FROM safety_keys WHERE session = $1 AND octet_length(wrapped) < "
+      "4096)",
+      session);
+  const auto read = [&](int column) -> std::optional<Bytes> {
+    if (rows[0][column].is_null()) return std::nullopt;
+    return bytes_of(rows[0][column]);
   };
-  return {.participant = read("participant_keys"), .safety = read("safety_keys")};
+  return {.participant = read(0), .safety = read(1)};
 }
 
 std::optional<Bytes> read_trace(ServerWork& work, int session, int trial) {

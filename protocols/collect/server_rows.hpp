@@ -5,34 +5,58 @@
 #include "protocols/collect/server_connection.hpp"
 #include "protocols/collect/stations.hpp"
 #include "protocols/store/fold.hpp"
+#include "protocols/store/tables.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace touchtrial::collect {
 
+/// Rows of several tables on their way to the server: as few statements as possible, because each
+/// waits for an answer. COPY would be no faster, and a station's role may not use it: PostgreSQL
+/// has none for tables with row-level security.
+class Insertions {
+ public:
+  explicit Insertions(ServerWork& work) : work_(work) {}
+
+  /// \param columns  of the table, each an array in PostgreSQL's text form
+  void add(store::Table table, std::vector<std::string> columns);
+  void add_trace(int session, int trial, const Bytes& box);
+  /// Call it after the last row. Rows that come to some megabytes are sent before.
+  void send();
+
+ private:
+  ServerWork& work_;
+  std::vector<std::string> statements_;
+  std::vector<std::string> texts_;           ///< parameters of the statements
+  std::vector<std::pair<int, int>> traces_;  ///< session and trial
+  std::vector<pqxx::binarystring> boxes_;
+  std::size_t bytes_ = 0;
+};
+
 /// \param session  the number on the server; -1, -2, ... for a station's file chain
-void insert_events(ServerWork& work, int session, std::span<const store::Event> events);
+void insert_events(Insertions& insertions, int session, std::span<const store::Event> events);
 /// A trace as it was sent.
 struct SentTrace {
   Digest digest{};  ///< as its event names it
   Digest sha256{};  ///< as a server can compute it
 };
-/// Inserts all traces of a session, a few megabytes at a time.
-/// \return what was sent, by trial
-std::map<std::int64_t, SentTrace> insert_traces(ServerWork& work, int session, StationFile& station,
-                                                int own_session);
+/// All traces of a session.
+/// \return them by trial
+std::map<std::int64_t, SentTrace> insert_traces(Insertions& insertions, int session,
+                                                StationFile& station, int own_session);
 /// Those of the two that there are.
-void insert_keys(ServerWork& work, int session, const store::WrappedKeys& keys);
+void insert_keys(Insertions& insertions, int session, const store::WrappedKeys& keys);
 /// \param row  row.session is the number on the server
-void insert_session(ServerWork& work, const store::SessionRow& row);
-/// Inserts rows of trials.
+void insert_session(Insertions& insertions, const store::SessionRow& row);
 /// \param rows  by own numbers
-void insert_trials(ServerWork& work, int session, const store::DerivedRows& rows);
+void insert_trials(Insertions& insertions, int session, const store::DerivedRows& rows);
 
 /// Events as the station wrote them: with the session's own number, 0 for a file chain.
 /// \param first  the least sequence

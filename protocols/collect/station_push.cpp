@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <thread>
@@ -200,10 +201,19 @@ class StationPush {
           keys_destroyed += update_session(work, station, session, now) ? 1 : 0;
         }
       }
-      for (const int session : segment.sessions) push_session(work, station, session, segment.end);
+      Insertions insertions(work);
+      std::vector<SentSession> sent;
+      for (const int session : segment.sessions) {
+        sent.push_back(insert_whole(work, insertions, station, session, segment.end));
+      }
       const std::span<const store::Event> chain = chain_to(segment.end);
-      insert_events(work, chain_number(station),
+      insert_events(insertions, chain_number(station),
                     chain.subspan(static_cast<std::size_t>(segment.first)));
+      insertions.send();
+      for (const SentSession& one : sent) {
+        check_session_arrival(work, *server_, one.session, one.own_session, one.course, commitment_,
+                              one.traces, options_.investigator);
+      }
       check_chain_arrival(work, *server_, station, chain, segment.first);
       report_.station = station;
       return keys_destroyed;
@@ -227,7 +237,9 @@ class StationPush {
         if (lost.safety == there.safety) lost.safety.reset();
         if (lost.participant) destroy_key(work, session, /*of_safety=*/false);
         if (lost.safety) destroy_key(work, session, /*of_safety=*/true);
-        insert_keys(work, session, lost);
+        Insertions insertions(work);
+        insert_keys(insertions, session, lost);
+        insertions.send();
         count += lost.participant || lost.safety ? 1 : 0;
       }
       return count;
@@ -242,22 +254,29 @@ class StationPush {
                             chain_.front());
   }
 
-  void push_session(ServerWork& work, int station, int session, std::int64_t end) {
+  struct SentSession {
+    int session;  ///< on the server
+    int own_session;
+    store::SessionOnFile course;
+    std::map<std::int64_t, SentTrace> traces;
+  };
+
+  [[nodiscard]] SentSession insert_whole(ServerWork& work, Insertions& insertions, int station,
+                                         int session, std::int64_t end) {
     const std::vector<store::Event> events = station_.events(session);
     const store::DerivedRows rows = folded(events);
     store::SessionRow row = checked_row(work, rows, station, session, end);
     row.session = server_session(*server_, station, session);
-    insert_session(work, row);
-    insert_events(work, row.session, events);
+    insert_session(insertions, row);
+    insert_events(insertions, row.session, events);
     const store::SessionOnFile course = course_until(courses_.at(session), end);
     store::WrappedKeys keys = station_.wrapped_keys(session);
     if (course.erased_at) keys.participant.reset();
     if (course.safety_erased_at) keys.safety.reset();
-    insert_keys(work, row.session, keys);
-    insert_trials(work, row.session, rows);
-    const auto sent = insert_traces(work, row.session, station_, session);
-    check_session_arrival(work, *server_, row.session, session, course, commitment_, sent,
-                          options_.investigator);
+    insert_keys(insertions, row.session, keys);
+    insert_trials(insertions, row.session, rows);
+    return {row.session, session, course,
+            insert_traces(insertions, row.session, station_, session)};
   }
 
   /// The session's row as the chain up to `end` has it.
