@@ -149,8 +149,7 @@ std::vector<std::string> people_notes(const Collection& collection) {
 }
 
 std::optional<ServoTrial> servo_trial_of(const store::Event& trace_stored) {
-  // Most traces come from simulated sessions; a body that names no servo need not be parsed.
-  if (trace_stored.body.find("\"servo\"") == std::string::npos) return std::nullopt;
+  if (!StudyEvents::names_servo(trace_stored)) return std::nullopt;
   const store::TraceBody body = store::trace_body_from_json(trace_stored.body);
   if (!body.servo) return std::nullopt;
   return ServoTrial{trace_stored.session, body.trial, *body.servo, body.overruns};

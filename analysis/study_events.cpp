@@ -1,29 +1,45 @@
 #include "analysis/study_events.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 
 namespace touchtrial::analysis {
 
-bool StudyEvents::is_kept(const store::Event& event) {
-  switch (event.kind) {
+namespace {
+
+/// Whether a report has no use for the kind but to open trials.
+bool tells_of_trials(store::EventKind kind) {
+  switch (kind) {
     case store::EventKind::presented:
     case store::EventKind::first_contact:
     case store::EventKind::answered:
     case store::EventKind::timed_out:
     case store::EventKind::explored_again:
     case store::EventKind::ticked:
-      return false;
-    case store::EventKind::trace_stored:
-      return event.body.find("\"servo\"") != std::string::npos;
-    default:
       return true;
+    default:
+      return false;
   }
+}
+
+}  // namespace
+
+bool StudyEvents::is_kept(const store::Event& event) {
+  if (event.kind == store::EventKind::trace_stored) return names_servo(event);
+  return !tells_of_trials(event.kind);
+}
+
+bool StudyEvents::names_servo(const store::Event& trace_stored) {
+  return trace_stored.body.find("\"servo\"") != std::string::npos;
 }
 
 void StudyEvents::for_each_of(std::span<const store::EventKind> kinds,
                               const std::function<void(const store::Event&)>& visit) const {
   if (!kept_) return store_->for_each_of(kinds, visit);
+  if (std::ranges::any_of(kinds, tells_of_trials)) {
+    throw std::logic_error("events of trials are not kept; StudyEvents::is_kept has to name them");
+  }
   for (const auto& [session, events] : *kept_) {
     for (const store::Event& event : events) {
       if (std::ranges::find(kinds, event.kind) != kinds.end()) visit(event);

@@ -26,9 +26,13 @@ class StudyEvents {
 
   /// A trace-stored event is kept only if it tells of a servo.
   [[nodiscard]] static bool is_kept(const store::Event& event);
+  /// Most traces come from simulated sessions; a body that names no servo need not be parsed.
+  [[nodiscard]] static bool names_servo(const store::Event& trace_stored);
 
   [[nodiscard]] const store::StudyStore& store() const noexcept { return *store_; }
-  /// Calls `visit` for the events of these kinds, by session and sequence.
+  /// Calls `visit` for the events of these kinds, by session and sequence. Of traces, kept events
+  /// are those that tell of a servo.
+  /// \throws std::logic_error for a kind that is not kept
   void for_each_of(std::span<const store::EventKind> kinds,
                    const std::function<void(const store::Event&)>& visit) const;
 

@@ -13,6 +13,9 @@
 namespace touchtrial::engine {
 namespace {
 
+/// Pixels of a picture for each sample of its bands and of their CSGV.
+constexpr int kPixels = 4;
+
 /// Combines one row of a band's slopes with a row of the result; each slope covers 2^level samples.
 void take_row(std::span<const double> slopes, int level, Combine combine, std::span<double> to) {
   for (std::size_t x = 0; x < to.size(); ++x) {
@@ -39,7 +42,7 @@ class Composite {
 
   /// \param level  how many doublings bring the band to the result's resolution
   void take(const Plane<double>& band, int level) {
-    for_each_strip(band.height(), band.width(), [&](Rows strip) {
+    for_each_strip(band.height(), kPixels * band.width(), [&](Rows strip) {
       GradientRows gradient(band, gradient_);
       for (int y = strip.first; y < strip.last; ++y) {
         const std::span<const double> slopes = gradient.row(y);
@@ -51,7 +54,7 @@ class Composite {
 
   [[nodiscard]] Plane<double> finish() && {
     if (combine_ == Combine::l2) {
-      for_each_strip(result_.height(), result_.width(), [this](Rows strip) {
+      for_each_strip(result_.height(), kPixels * result_.width(), [this](Rows strip) {
         for (int y = strip.first; y < strip.last; ++y) {
           for (double& sample : result_.row(y)) sample = std::sqrt(sample);
         }
@@ -136,7 +139,7 @@ Plane<double> composite_gradient(const SubBands& bands) {
 Plane<double> order_map(const Plane<double>& csgv) {
   const double largest = std::ranges::max(csgv.samples());
   Plane<double> orders(csgv.height(), csgv.width());
-  for_each_strip(csgv.height(), csgv.width(), [&](Rows strip) {
+  for_each_strip(csgv.height(), kPixels * csgv.width(), [&](Rows strip) {
     for (int y = strip.first; y < strip.last; ++y) {
       std::ranges::transform(csgv.row(y), orders.row(y).begin(),
                              [largest](double value) { return order_at(value, largest); });

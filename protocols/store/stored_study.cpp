@@ -42,7 +42,7 @@ StudyState StoredStudy::state() const {
   const bool is_final = std::ranges::all_of(decisions, [](const Event& event) {
     if (event.kind == EventKind::study_closed) return true;
     const UnblindingBody body = body_of(event, unblinding_from_json);
-    return !body.interim && body.participant.empty();
+    return !body.interim && !body.question_alone && body.participant.empty();
   });
   return state_of_chain(is_final ? decisions : chain_of({}));
 }

@@ -54,6 +54,15 @@ constexpr std::array<Channel, 6> kChannels = {{
 
 constexpr std::size_t kNumbers = kChannels.size();
 
+/// Whether a sample whose numbers are 0, 1, 2, .. has them in the channels' order.
+constexpr bool is_in_order() {
+  const TraceSample sample{{0.0, 1.0, 2.0}, {3.0, 4.0, 5.0}};
+  for (std::size_t c = 0; c < kNumbers; ++c) {
+    if (sample.*kChannels[c].vector.*kChannels[c].component != static_cast<double>(c)) return false;
+  }
+  return true;
+}
+
 /// Two numbers side by side in a register.
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 using PairOfSteps = std::int32_t __attribute__((vector_size(2 * sizeof(std::int32_t))));
@@ -76,6 +85,7 @@ class Room {
 Room<std::int32_t> quantised(std::span<const TraceSample> samples) {
   // A sample is its channels' numbers in their order.
   static_assert(sizeof(TraceSample) == kNumbers * sizeof(double));
+  static_assert(is_in_order());
   // Adding it and taking it off again rounds to whole numbers, halves to even ones.
   constexpr double kRounding = 0x1.8p52;
   const std::size_t count = samples.size();
@@ -88,7 +98,8 @@ Room<std::int32_t> quantised(std::span<const TraceSample> samples) {
     auto fits = limit == limit;
     for (std::size_t i = 0; i < count; ++i) {
       Pair value;
-      std::memcpy(&value, reinterpret_cast<const double*>(&samples[i]) + c, sizeof value);
+      std::memcpy(&value, reinterpret_cast<const char*>(&samples[i]) + c * sizeof(double),
+                  sizeof value);
       const auto is_inside = (value <= limit) & (value >= -limit);  // false for NaN
       fits &= is_inside;
       value = is_inside ? value * scale : Pair{};
