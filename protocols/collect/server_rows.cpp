@@ -147,24 +147,34 @@ store::Event event_of(const pqxx::row& row, int session) {
 
 }  // namespace
 
+void InsertStatement::send(ServerWork& work) const {
+  work.exec_params0(sql, pqxx::prepare::make_dynamic_params(texts),
+                    pqxx::prepare::make_dynamic_params(boxes));
+}
+
 void Insertions::add(store::Table table, std::vector<std::string> columns) {
-  statements_.push_back(insertion_sql(table, texts_.size() + 1));
+  parts_.push_back(insertion_sql(table, texts_.size() + 1));
   for (std::string& column : columns) {
     bytes_ += column.size();
     texts_.push_back(std::move(column));
   }
-  if (bytes_ > kBatch) send();
+  if (bytes_ > kBatch) finish_statement();
 }
 
 void Insertions::add_trace(int session, int trial, const Bytes& box) {
   constexpr std::size_t kMostTraces = 1000;
-  if (bytes_ + box.size() > kBatch || boxes_.size() == kMostTraces) send();
+  if (bytes_ + box.size() > kBatch || boxes_.size() == kMostTraces) finish_statement();
   boxes_.push_back(binary(box));
   traces_.emplace_back(session, trial);
   bytes_ += box.size();
 }
 
-void Insertions::send() {
+std::vector<InsertStatement> Insertions::take() {
+  finish_statement();
+  return std::exchange(finished_, {});
+}
+
+void Insertions::finish_statement() {
   // Each trace is a binary parameter of its own: as text they would be twice as long, and the
   // server would copy one that holds them all once for each.
   std::string rows;
@@ -173,23 +183,20 @@ void Insertions::send() {
     rows += (rows.empty() ? "(" : ", (") + std::to_string(session) + ", " + std::to_string(trial) +
             ", $" + std::to_string(++parameter) + "::bytea)";
   }
-  if (!rows.empty())
-    statements_.push_back("INSERT INTO traces(session, trial, box) VALUES " + rows);
-  if (statements_.empty()) return;
+  if (!rows.empty()) parts_.push_back("INSERT INTO traces(session, trial, box) VALUES " + rows);
+  if (parts_.empty()) return;
   std::string sql;
-  int part = 0;
-  for (const std::string& statement : statements_) {
-    sql +=
-        (part == 0 ? "WITH part_" : ", part_") + std::to_string(part) + " AS (" + statement + ")";
-    ++part;
+  int number = 0;
+  for (const std::string& part : parts_) {
+    sql += (number == 0 ? "WITH part_" : ", part_") + std::to_string(number) + " AS (" + part + ")";
+    ++number;
   }
   // The parts are carried out whether or not anything reads them.
-  work_.exec_params0(sql + " SELECT WHERE FALSE", pqxx::prepare::make_dynamic_params(texts_),
-                     pqxx::prepare::make_dynamic_params(boxes_));
-  statements_.clear();
-  texts_.clear();
+  finished_.push_back({.sql = sql + " SELECT WHERE FALSE",
+                       .texts = std::exchange(texts_, {}),
+                       .boxes = std::exchange(boxes_, {})});
+  parts_.clear();
   traces_.clear();
-  boxes_.clear();
   bytes_ = 0;
 }
 

@@ -18,23 +18,32 @@
 
 namespace touchtrial::collect {
 
-/// Rows of several tables on their way to the server: as few statements as possible, because each
-/// waits for an answer. COPY would be no faster, and a station's role may not use it: PostgreSQL
-/// has none for tables with row-level security.
+/// A statement that adds rows, with its parameters.
+struct InsertStatement {
+  std::string sql;
+  std::vector<std::string> texts;           ///< first parameters: columns as arrays in text form
+  std::vector<pqxx::binarystring> boxes{};  ///< the others: traces
+
+  void send(ServerWork& work) const;
+};
+
+/// Collects rows of several tables into as few statements as possible, because each waits for an
+/// answer. COPY would be no faster, and a station's role may not use it: PostgreSQL has none for
+/// tables with row-level security. Needs no server; a statement gets some megabytes.
 class Insertions {
  public:
-  explicit Insertions(ServerWork& work) : work_(work) {}
-
   /// \param columns  of the table, each an array in PostgreSQL's text form
   void add(store::Table table, std::vector<std::string> columns);
   void add_trace(int session, int trial, const Bytes& box);
-  /// Call it after the last row. Rows that come to some megabytes are sent before.
-  void send();
+  /// What has been added since the last call, to be sent in this order.
+  [[nodiscard]] std::vector<InsertStatement> take();
 
  private:
-  ServerWork& work_;
-  std::vector<std::string> statements_;
-  std::vector<std::string> texts_;           ///< parameters of the statements
+  void finish_statement();
+
+  std::vector<InsertStatement> finished_;
+  std::vector<std::string> parts_;           ///< statements that become one
+  std::vector<std::string> texts_;           ///< parameters of the parts
   std::vector<std::pair<int, int>> traces_;  ///< session and trial
   std::vector<pqxx::binarystring> boxes_;
   std::size_t bytes_ = 0;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <future>
 #include <map>
 #include <memory>
 #include <span>
@@ -101,12 +102,7 @@ class StationPush {
     if (const auto sent = std::exchange(sent_, std::nullopt); sent && sent->end <= stored) {
       note_pushed(*sent);
     }
-    for (const ChainSegment& segment : segments(stored)) {
-      sent_ = segment;
-      push(segment);
-      note_pushed(segment);
-      sent_.reset();
-    }
+    push(segments(stored));
     restore_keys();
     if (report_.keys_destroyed > 0) report_.keys_wiped = server_->wipe_deleted_keys();
   }
@@ -124,7 +120,8 @@ class StationPush {
       server_->look([&](ServerWork& work) {
         for (const int session : segment.sessions) {
           const store::DerivedRows rows = folded(station_.events(session));
-          static_cast<void>(checked_row(work, rows, report_.station, session, segment.end));
+          refuse_if_there_or_taken(work, *server_,
+                                   row_on_server(rows, report_.station, session, segment.end));
         }
       });
     }
@@ -186,7 +183,40 @@ class StationPush {
         [&](int session) { return station_.wrapped_keys(session).participant.has_value(); });
   }
 
-  void push(const ChainSegment& segment) {
+  struct SentSession {
+    store::SessionRow row;  ///< with the number on the server
+    store::SessionOnFile course;
+    std::map<std::int64_t, SentTrace> traces;
+  };
+
+  /// All that a transaction sends.
+  struct Shipment {
+    std::vector<SentSession> sessions;
+    std::vector<InsertStatement> statements;
+  };
+
+  /// While the server works on a segment, another thread reads and packs the next one.
+  void push(const std::vector<ChainSegment>& segments) {
+    std::future<Shipment> next;  // waits for its thread before it goes
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      sent_ = segments[i];
+      push(segments[i], [&](int station) {
+        Shipment shipment = next.valid() ? next.get() : packed(segments[i], station);
+        if (i + 1 < segments.size()) {
+          next = std::async(std::launch::async, [this, &segment = segments[i + 1], station] {
+            return packed(segment, station);
+          });
+        }
+        return shipment;
+      });
+      note_pushed(segments[i]);
+      sent_.reset();
+    }
+  }
+
+  /// \param shipment_of  called once with the station's number on the server
+  template <typename ShipmentOf>
+  void push(const ChainSegment& segment, ShipmentOf shipment_of) {
     report_.keys_destroyed += server_->change([&](ServerWork& work) {
       int keys_destroyed = 0;
       lock_station(work, identity());
@@ -201,23 +231,49 @@ class StationPush {
           keys_destroyed += update_session(work, station, session, now) ? 1 : 0;
         }
       }
-      Insertions insertions(work);
-      std::vector<SentSession> sent;
-      for (const int session : segment.sessions) {
-        sent.push_back(insert_whole(work, insertions, station, session, segment.end));
+      const Shipment shipment = shipment_of(station);
+      for (const SentSession& sent : shipment.sessions) {
+        refuse_if_there_or_taken(work, *server_, sent.row);
       }
-      const std::span<const store::Event> chain = chain_to(segment.end);
-      insert_events(insertions, chain_number(station),
-                    chain.subspan(static_cast<std::size_t>(segment.first)));
-      insertions.send();
-      for (const SentSession& one : sent) {
-        check_session_arrival(work, *server_, one.session, one.own_session, one.course, commitment_,
-                              one.traces, options_.investigator);
+      for (const InsertStatement& statement : shipment.statements) statement.send(work);
+      for (const SentSession& sent : shipment.sessions) {
+        check_session_arrival(work, *server_, sent.row.session, sent.row.own_session, sent.course,
+                              commitment_, sent.traces, options_.investigator);
       }
-      check_chain_arrival(work, *server_, station, chain, segment.first);
+      check_chain_arrival(work, *server_, station, chain_to(segment.end), segment.first);
       report_.station = station;
       return keys_destroyed;
     });
+  }
+
+  /// Reads a segment's sessions from the station's file. Asks no server.
+  [[nodiscard]] Shipment packed(const ChainSegment& segment, int station) const {
+    Shipment shipment;
+    Insertions insertions;
+    for (const int session : segment.sessions) {
+      shipment.sessions.push_back(packed_session(insertions, station, session, segment.end));
+    }
+    insert_events(insertions, chain_number(station),
+                  chain_to(segment.end).subspan(static_cast<std::size_t>(segment.first)));
+    shipment.statements = insertions.take();
+    return shipment;
+  }
+
+  [[nodiscard]] SentSession packed_session(Insertions& insertions, int station, int session,
+                                           std::int64_t end) const {
+    const std::vector<store::Event> events = station_.events(session);
+    const store::DerivedRows rows = folded(events);
+    store::SessionRow row = row_on_server(rows, station, session, end);
+    row.session = server_session(*server_, station, session);
+    insert_session(insertions, row);
+    insert_events(insertions, row.session, events);
+    const store::SessionOnFile course = course_until(courses_.at(session), end);
+    store::WrappedKeys keys = station_.wrapped_keys(session);
+    if (course.erased_at) keys.participant.reset();
+    if (course.safety_erased_at) keys.safety.reset();
+    insert_keys(insertions, row.session, keys);
+    insert_trials(insertions, row.session, rows);
+    return {row, course, insert_traces(insertions, row.session, station_, session)};
   }
 
   // The owner's role can delete any key. The session's own station brings it back.
@@ -237,9 +293,9 @@ class StationPush {
         if (lost.safety == there.safety) lost.safety.reset();
         if (lost.participant) destroy_key(work, session, /*of_safety=*/false);
         if (lost.safety) destroy_key(work, session, /*of_safety=*/true);
-        Insertions insertions(work);
+        Insertions insertions;
         insert_keys(insertions, session, lost);
-        insertions.send();
+        for (const InsertStatement& statement : insertions.take()) statement.send(work);
         count += lost.participant || lost.safety ? 1 : 0;
       }
       return count;
@@ -254,35 +310,10 @@ class StationPush {
                             chain_.front());
   }
 
-  struct SentSession {
-    int session;  ///< on the server
-    int own_session;
-    store::SessionOnFile course;
-    std::map<std::int64_t, SentTrace> traces;
-  };
-
-  [[nodiscard]] SentSession insert_whole(ServerWork& work, Insertions& insertions, int station,
-                                         int session, std::int64_t end) {
-    const std::vector<store::Event> events = station_.events(session);
-    const store::DerivedRows rows = folded(events);
-    store::SessionRow row = checked_row(work, rows, station, session, end);
-    row.session = server_session(*server_, station, session);
-    insert_session(insertions, row);
-    insert_events(insertions, row.session, events);
-    const store::SessionOnFile course = course_until(courses_.at(session), end);
-    store::WrappedKeys keys = station_.wrapped_keys(session);
-    if (course.erased_at) keys.participant.reset();
-    if (course.safety_erased_at) keys.safety.reset();
-    insert_keys(insertions, row.session, keys);
-    insert_trials(insertions, row.session, rows);
-    return {row.session, session, course,
-            insert_traces(insertions, row.session, station_, session)};
-  }
-
-  /// The session's row as the chain up to `end` has it.
-  /// \throws StoreError if something on the server stands in its way
-  [[nodiscard]] store::SessionRow checked_row(ServerWork& work, const store::DerivedRows& rows,
-                                              int station, int session, std::int64_t end) const {
+  /// The session's row as the chain up to `end` has it, without its number on the server.
+  /// \throws StoreError if the session has no events
+  [[nodiscard]] store::SessionRow row_on_server(const store::DerivedRows& rows, int station,
+                                                int session, std::int64_t end) const {
     const auto found = rows.sessions.find(session);
     if (found == rows.sessions.end()) {
       throw StoreError(station_.name() + ": session " + std::to_string(session) +
@@ -296,7 +327,6 @@ class StationPush {
     row.replaced_by = course.replaced_by;
     row.own_session = session;
     row.station = station;
-    refuse_if_there_or_taken(work, *server_, row);
     return row;
   }
 

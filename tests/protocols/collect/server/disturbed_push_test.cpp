@@ -4,8 +4,11 @@
 #include "protocols/collect/server/server_fixture.hpp"
 #include "support/catch.hpp"
 
+#include <atomic>
+#include <functional>
 #include <future>
 #include <latch>
+#include <semaphore>
 #include <thread>
 
 #include <sys/socket.h>
@@ -24,6 +27,50 @@ struct MortalServer {
   PostgresServer server{PostgresServer::Writes::safe};
   ServerFixture there{server};
 };
+
+/// Kills a server and starts it again, for whatever thread asks. All on one thread, because the
+/// server ends with the thread that started it.
+class Restarter {
+ public:
+  explicit Restarter(PostgresServer& server) : server_(server), thread_([this] { serve(); }) {}
+  ~Restarter() {
+    over_ = true;
+    asked_.release();
+    thread_.join();
+    server_.start();  // outlives the thread
+  }
+  Restarter(const Restarter&) = delete;
+  Restarter& operator=(const Restarter&) = delete;
+
+  void restart() {
+    asked_.release();
+    done_.acquire();
+  }
+
+ private:
+  void serve() {
+    for (asked_.acquire(); !over_; asked_.acquire()) {
+      server_.kill();
+      server_.start();
+      done_.release();
+    }
+    server_.kill();
+  }
+
+  PostgresServer& server_;
+  std::binary_semaphore asked_{0};
+  std::binary_semaphore done_{0};
+  std::atomic<bool> over_ = false;
+  std::thread thread_;
+};
+
+/// Calls `work` once a push has pushed one session.
+PushOptions after_one(const std::function<void()>& work, PushOptions options) {
+  options.progress = [work](int pushed, int) {
+    if (pushed == 1) work();
+  };
+  return options;
+}
 
 PushOptions without_waiting() {
   return {.wait = [](std::chrono::milliseconds) {}};
@@ -91,16 +138,16 @@ TEST_CASE("a server that is killed in mid-push and comes back gets everything on
   StoredFixture study(3);
   OpenStation station(*study.store);
   int kills = 0;
-  station.before_trace = [&](int session, int trial) {
-    if (session == 2 && trial == 2 && kills++ == 0) {
-      mortal.server.kill();
-      mortal.server.start();
-    }
-  };
-  const PushReport report = mortal.there.push(station, without_waiting());
+  {
+    Restarter restarter(mortal.server);
+    station.before_trace = [&](int session, int trial) {
+      if (session == 2 && trial == 2 && kills++ == 0) restarter.restart();
+    };
+    const PushReport report = mortal.there.push(station, without_waiting());
+    CHECK(report.reconnections == 1);
+    CHECK(report.pushed.size() == 3);
+  }
   CHECK(kills == 2);  // and once more in the second attempt
-  CHECK(report.reconnections == 1);
-  CHECK(report.pushed.size() == 3);
   CHECK(mortal.there.counts() == undisturbed(*study.store));
 }
 
@@ -108,13 +155,11 @@ TEST_CASE("pushing to a server that stays away ends after bounded attempts; what
   MortalServer mortal;
   StoredFixture study(3);
   OpenStation station(*study.store);
-  station.before = [&](int session) {
-    if (session == 2) mortal.server.kill();
-  };
   std::vector<std::int64_t> waits;
   PushReport report;
-  const PushOptions options{
-      .wait = [&](std::chrono::milliseconds time) { waits.push_back(time.count()); }};
+  const PushOptions options =
+      after_one([&] { mortal.server.kill(); },
+                {.wait = [&](std::chrono::milliseconds time) { waits.push_back(time.count()); }});
   const std::string line =
       refusal_of([&] { push_station(station, mortal.there.address(), options, report); });
   CHECK(waits == std::vector<std::int64_t>{100, 200, 400, 800, 1600, 3200, 5000, 5000, 5000, 5000});
@@ -134,14 +179,11 @@ TEST_CASE("a server that is shut down in good order is waited for as well") {
   MortalServer mortal;
   StoredFixture study(2);
   OpenStation station(*study.store);
-  bool stopped = false;
-  station.before = [&](int session) {
-    if (session == 2 && !std::exchange(stopped, true)) mortal.server.stop();
-  };
   int waits = 0;
-  const PushReport report = mortal.there.push(station, {.wait = [&](std::chrono::milliseconds) {
-                                                if (++waits == 3) mortal.server.start();
-                                              }});
+  const PushReport report = mortal.there.push(
+      station, after_one([&] { mortal.server.stop(); }, {.wait = [&](std::chrono::milliseconds) {
+                           if (++waits == 3) mortal.server.start();
+                         }}));
   CHECK(waits == 3);
   CHECK(report.reconnections == 3);
   CHECK(mortal.there.counts() == undisturbed(*study.store));
@@ -154,17 +196,19 @@ TEST_CASE("wherever the server dies, pushing goes on to the same end") {
   RandomStream random(20260105, "kills of the server");
   OpenStation station(*study.store);
   int kills = 0;
-  station.before_trace = [&](int, int) {
-    if (kills == 5 || random.below(4) != 0) return;
-    ++kills;
-    mortal.server.kill();
-    mortal.server.start();
-  };
-  const PushReport report = mortal.there.push(station, without_waiting());
+  {
+    Restarter restarter(mortal.server);
+    station.before_trace = [&](int, int) {
+      if (kills == 5 || random.below(4) != 0) return;
+      ++kills;
+      restarter.restart();
+    };
+    const PushReport report = mortal.there.push(station, without_waiting());
+    CHECK(report.reconnections >= 1);
+    CHECK(report.reconnections <= kills);  // some are noticed together
+    CHECK(report.pushed.size() == 6);
+  }
   CHECK(kills >= 3);
-  CHECK(report.reconnections >= 1);
-  CHECK(report.reconnections <= kills);  // some are noticed together
-  CHECK(report.pushed.size() == 6);
   CHECK(mortal.there.counts() == expected);
 }
 
@@ -252,16 +296,15 @@ TEST_CASE("a reconnection that is refused for want of room, or dies in its hands
   StoredFixture study(2);
   OpenStation station(*study.store);
   int waits = 0;
-  bool cut = false;
   // Connections are cut, and for two attempts none is taken.
-  station.before = [&](int session) {
-    if (session != 2 || std::exchange(cut, true)) return;
+  const auto cut = [&] {
     there.ask("ALTER ROLE narrow NOSUPERUSER CONNECTION LIMIT 0");
     there.ask("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE usename = 'narrow'");
   };
-  const PushOptions options{.wait = [&](std::chrono::milliseconds) {
-    if (++waits == 3) there.ask("ALTER ROLE narrow SUPERUSER CONNECTION LIMIT -1");
-  }};
+  const PushOptions options =
+      after_one(cut, {.wait = [&](std::chrono::milliseconds) {
+                  if (++waits == 3) there.ask("ALTER ROLE narrow SUPERUSER CONNECTION LIMIT -1");
+                }});
   PushReport report;
   push_station(station, there.address("narrow"), options, report);
   CHECK(waits == 3);

@@ -24,7 +24,6 @@ class OpenStation final : public collect::StationFile {
   const std::string& name() const override { return name_; }
   std::vector<store::Event> file_chain() override { return store_.events(0); }
   std::vector<store::Event> events(int own_session) override {
-    if (before) before(own_session);
     std::vector<store::Event> events = store_.events(own_session);
     if (alter) alter(events);
     return events;
@@ -48,7 +47,6 @@ class OpenStation final : public collect::StationFile {
     }
   }
 
-  std::function<void(int)> before;
   std::function<void(int, int)> before_trace;
   std::function<void(std::vector<store::Event>&)> alter;
   std::function<void(int, Bytes&)> alter_trace;
