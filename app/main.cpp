@@ -15,6 +15,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -137,7 +138,10 @@ int parse_and_run(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return program.exit(help);
+    std::ostringstream text;
+    const int code = program.exit(help, text, text);
+    print(text.str());
+    return code;
   } catch (const CLI::ParseError& error) {
     const std::string misspelt = misspelt_option(program);
     return complain(kBadInput, (misspelt.empty() ? error.what() : misspelt) + "; see " +

@@ -89,8 +89,14 @@ void run_only(const Arguments& arguments, const Scope& scope) {
 /// Names what has become slower than the committed results.
 /// \throws Error if there is such a goal
 void check(const std::vector<GoalResult>& goals) {
-  const std::vector<std::string> slower =
-      slower_than_committed(goals, text_of(ByteView(read_file(kDocs / "results.json"))));
+  const std::string committed = text_of(ByteView(read_file(kDocs / "results.json")));
+  const std::vector<std::string> slower = slower_than_committed(goals, committed);
+  const std::string there = processor_of(committed);
+  const std::string here = this_machine().processor;
+  if (there != here) {
+    app::print("note: the committed results are of another processor (" + there + ", this is " +
+               here + "), on which ratios may differ by more than a tenth\n");
+  }
   for (const std::string& line : slower) app::print("slower: " + line + "\n");
   if (!slower.empty()) {
     throw Error(

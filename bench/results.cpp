@@ -82,6 +82,14 @@ std::string results_json(const Machine& machine, const Results& measured) {
   return results.dump(1) + "\n";
 }
 
+std::string processor_of(std::string_view json) {
+  try {
+    return Json::parse(json).at("processor").get<std::string>();
+  } catch (const Json::exception& error) {
+    throw Error(std::string("the committed results are not the benchmark's JSON: ") + error.what());
+  }
+}
+
 Machine this_machine() {
   return {
       fmt::format("{}, {}", jitter::this_processor(), instruction_set_of(simd_targets().front())),

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchtrial::bench {
@@ -33,6 +34,11 @@ struct Results {
 /// "error", "met", ..}], "rows": [{"work", "who", "input", "size_px", "radius", "us", "error",
 /// ..}]}. Numbers that were not taken are null.
 [[nodiscard]] std::string results_json(const Machine& machine, const Results& measured);
+
+/// On which processor results were taken.
+/// \param json  of results_json()
+/// \throws Error if it is not such JSON
+[[nodiscard]] std::string processor_of(std::string_view json);
 
 /// Replaces everything between the lines <!-- NAME --> and <!-- end of NAME --> of a Markdown page.
 /// \throws Error if the page lacks one of these lines, or has them in the wrong order

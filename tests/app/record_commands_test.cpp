@@ -251,12 +251,17 @@ TEST_CASE("an output that nobody reads ends a command without a word, as the she
   INFO(closed.errors);
   CHECK(closed.errors.find("touchtrial") == std::string::npos);
   CHECK(closed.errors.ends_with("141\n"));  // 128 + SIGPIPE
-  const ProgramResult full = run_program("/bin/sh", study.path(),
-                                         {"-c", "\"$0\" verify \"$1\" > /dev/full; echo $? >&2",
-                                          TOUCHTRIAL_PROGRAM, study.in("study.db")});
-  INFO(full.errors);
-  CHECK(full.errors.find("standard output: cannot be written (No space left") != std::string::npos);
-  CHECK(full.errors.ends_with("\n1\n"));
+  for (const std::string command : {"verify", "--version", "--help"}) {
+    const ProgramResult full = run_program(
+        "/bin/sh", study.path(),
+        {"-c",
+         "\"$0\" " + command + (command == "verify" ? " \"$1\"" : "") + " > /dev/full; echo $? >&2",
+         TOUCHTRIAL_PROGRAM, study.in("study.db")});
+    INFO(full.errors);
+    CHECK(full.errors.find("standard output: cannot be written (No space left") !=
+          std::string::npos);
+    CHECK(full.errors.ends_with("\n1\n"));
+  }
 }
 
 }  // namespace
