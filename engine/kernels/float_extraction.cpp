@@ -60,50 +60,56 @@ std::array<Plane<float>*, 4> sub_bands_of(Extraction<float>& result) {
 }
 
 void keep_csgv(const HalfGradient& gradient, Plane<float>& csgv) {
-  for (int y = 0; y < csgv.height(); ++y) {
-    const float* const from = gradient.row(y / 2);
-    const auto to = csgv.row(y);
-    for (std::size_t x = 0; x < to.size(); ++x) to[x] = from[x / 2];
-  }
+  if (csgv.empty()) return;
+  for_each_tile(csgv.height(), csgv.width(), [&](Columns tile) {
+    for (int y = 0; y < csgv.height(); ++y) {
+      const float* const from = gradient.row(y / 2, tile);
+      float* const to = csgv.row(y).data() + tile.first;
+      for (int x = 0; x < tile.count(); ++x) to[x] = from[x / 2];
+    }
+  });
 }
 
-/// The orders of rows of the image, one after the other. Two rows share their orders, and so do two
-/// pixels of a row.
+/// The orders of rows of a tile of the image, one after the other. Two rows share their orders, and
+/// so do two pixels of a row.
 class OrderRows {
  public:
-  explicit OrderRows(const HalfGradient& gradient)
+  OrderRows(const HalfGradient& gradient, Columns tile)
       : gradient_(gradient),
-        row_(1, 2 * static_cast<std::size_t>(gradient.width()), kVectorBytes / sizeof(float)) {}
+        tile_(tile),
+        row_(1, static_cast<std::size_t>(tile.count()) + 1, kVectorBytes / sizeof(float)) {}
 
   const float* row(int y) {
     if (y / 2 != made_) {
       made_ = y / 2;
-      order_row(gradient_.row(made_), gradient_.width(), gradient_.largest(), row_.row(0));
+      order_row(gradient_.row(made_, tile_), (tile_.count() + 1) / 2, gradient_.largest(),
+                row_.row(0));
     }
     return row_.row(0);
   }
 
  private:
   const HalfGradient& gradient_;
+  Columns tile_;
   AlignedRows<float> row_;
   int made_ = -1;
 };
 
-/// Filters the rows of one strip of the image.
+/// Filters the rows of one tile of a strip of the image.
 /// \param order_of  called with y for the strip's rows, one after the other; returns the order for
 ///   gl_row()
 template <typename OrderOf>
-void filter_rows(const GreyImage& image, int radius, Rows strip, Extraction<float>& result,
-                 OrderOf order_of) {
-  ExtendedRows rows(image, radius, strip.first);
+void filter_rows(const GreyImage& image, int radius, Rows strip, Columns tile,
+                 Extraction<float>& result, OrderOf order_of) {
+  ExtendedRows rows(image, radius, strip.first, tile);
   for (int y = strip.first; y < strip.last; ++y) {
     const auto order = order_of(y);
     rows.next_row();
-    float* const texture = result.texture.row(y).data();
-    fetch_ahead(result.texture, y + 1, image.width());
+    float* const texture = result.texture.row(y).data() + tile.first;
+    fetch_ahead(result.texture, y + 1, tile);
     gl_row(rows, radius, order, texture);
     if (!result.picture.empty()) {  // while the row is in the cache
-      picture_row(texture, image.width(), result.picture.row(y).data());
+      picture_row(texture, tile.count(), result.picture.row(y).data() + tile.first);
     }
   }
 }
@@ -111,11 +117,15 @@ void filter_rows(const GreyImage& image, int radius, Rows strip, Extraction<floa
 void second_pass(const GreyImage& image, int radius, const HalfGradient& gradient,
                  Extraction<float>& result) {
   for_each_strip(image.height(), image.width(), [&](Rows strip) {
-    OrderRows orders(gradient);
-    filter_rows(image, radius, strip, result, [&](int y) {
-      const float* const order = orders.row(y);
-      if (!result.order.empty()) std::copy_n(order, image.width(), result.order.row(y).data());
-      return order;
+    for_each_tile(image.height(), image.width(), [&](Columns tile) {
+      OrderRows orders(gradient, tile);
+      filter_rows(image, radius, strip, tile, result, [&](int y) {
+        const float* const order = orders.row(y);
+        if (!result.order.empty()) {
+          std::copy_n(order, tile.count(), result.order.row(y).data() + tile.first);
+        }
+        return order;
+      });
     });
   });
 }
@@ -152,7 +162,9 @@ void extract_fixed(const GreyImage& image, int radius, double order, const Wante
             static_cast<float>(order));
   shape_planes(image, wanted, result);
   for_each_strip(image.height(), image.width(), [&](Rows strip) {
-    filter_rows(image, radius, strip, result, [=](int) { return order; });
+    for_each_tile(image.height(), image.width(), [&](Columns tile) {
+      filter_rows(image, radius, strip, tile, result, [=](int) { return order; });
+    });
   });
 }
 

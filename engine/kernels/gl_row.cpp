@@ -236,11 +236,12 @@ HWY_EXPORT(row_of_one_order);
 
 }  // namespace
 
-ExtendedRows::ExtendedRows(const GreyImage& image, int reach, int first)
+ExtendedRows::ExtendedRows(const GreyImage& image, int reach, int first, Columns tile)
     : image_(image),
+      tile_(tile),
       reach_(reach),
       y_(first - 1),
-      rows_(2 * static_cast<std::size_t>(reach) + 1, static_cast<std::size_t>(image.width()),
+      rows_(2 * static_cast<std::size_t>(reach) + 1, static_cast<std::size_t>(tile.count()),
             static_cast<std::size_t>(reach)) {
   // The current row is the one before the first: what lies at -reach is not needed.
   for (int offset = 1 - reach; offset <= reach; ++offset) load(offset);
@@ -255,11 +256,14 @@ void ExtendedRows::next_row() {
 void ExtendedRows::load(int offset) {
   const int y = y_ + offset;
   const int width = image_.width();
-  fetch_ahead(image_, y + 1, width);
-  std::int16_t* const to = rows_.row(slot(offset));
+  const Columns inside = {std::max(tile_.first - reach_, 0), std::min(tile_.last + reach_, width)};
+  fetch_ahead(image_, y + 1, inside);
+  std::int16_t* const to = rows_.row(slot(offset)) - tile_.first;  // column 0
   HWY_DYNAMIC_DISPATCH(widened)
-  (image_.row(symmetric_index(y, image_.height())).data(), width, to);
-  mirror_ends(to, width, reach_);
+  (image_.row(symmetric_index(y, image_.height())).data() + inside.first, inside.count(),
+   to + inside.first);
+  for (int x = tile_.first - reach_; x < inside.first; ++x) to[x] = to[symmetric_index(x, width)];
+  for (int x = inside.last; x < tile_.last + reach_; ++x) to[x] = to[symmetric_index(x, width)];
 }
 
 void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture) {

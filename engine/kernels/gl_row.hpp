@@ -9,32 +9,37 @@
 
 #include "core/plane.hpp"
 #include "engine/kernels/aligned_rows.hpp"
+#include "engine/kernels/strips.hpp"
 
 #include <cstddef>
 #include <cstdint>
 
 namespace touchtrial::engine {
 
-/// Rows y - reach .. y + reach of an image for one y at a time, as 16-bit integers, with `reach`
-/// mirrored samples at both ends. Converts every row once, and needs memory for (2 * reach + 1)
-/// rows, whatever the height. Keeps a reference to the image. Not thread-safe.
+/// Rows y - reach .. y + reach of a tile of an image for one y at a time, as 16-bit integers, with
+/// `reach` samples more at both ends, mirrored where the image ends. Converts every row once, and
+/// needs memory for (2 * reach + 1) rows, whatever the height. Keeps a reference to the image. Not
+/// thread-safe.
 class ExtendedRows {
  public:
   /// \param image  not empty
   /// \param reach  >= 1; may exceed the image
   /// \param first  the first row of the series
-  ExtendedRows(const GreyImage& image, int reach, int first = 0);
+  ExtendedRows(const GreyImage& image, int reach, int first = 0)
+      : ExtendedRows(image, reach, first, {0, image.width()}) {}
+  /// \param tile  columns of the image, at least one
+  ExtendedRows(const GreyImage& image, int reach, int first, Columns tile);
 
   /// Moves to the next row, which must exist. The first call moves to the first row.
   void next_row();
 
-  /// The sample in column 0 of the row that lies `offset` below the current one. Columns -reach ..
+  /// The tile's first sample of the row that lies `offset` below the current one. Samples -reach ..
   /// width - 1 + reach may be read, and a vector more. Valid until next_row().
   /// \param offset  -reach .. reach
   [[nodiscard]] const std::int16_t* row(int offset) const noexcept {
     return rows_.row(slot(offset));
   }
-  [[nodiscard]] int width() const noexcept { return image_.width(); }
+  [[nodiscard]] int width() const noexcept { return tile_.count(); }
 
  private:
   /// Puts a row of the image into the place for an offset.
@@ -49,6 +54,7 @@ class ExtendedRows {
   }
 
   const GreyImage& image_;
+  Columns tile_;
   int reach_;
   int y_;
   int current_ = 0;  // slot of row y_

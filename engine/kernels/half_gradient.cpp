@@ -140,11 +140,20 @@ HWY_INLINE void store_first(Real block, int count, float* to) {
 
 /// Takes a new row of the sub-bands into `state`, in registers from the filter to the gradient.
 /// \param rows  as for filter_along_x()
+/// \param inside  samples whose neighbours are among the `count`; an end is counted as its own
+///   neighbour beyond
 /// \param csgv  of the row before: receives `count` samples and no more
-/// \return the largest of the samples
-float row_of_csgv(const FilteredRows& rows, int count, const SobelRows state, float* csgv) {
+/// \return the largest of the samples inside
+float row_of_csgv(const FilteredRows& rows, int count, Columns inside, const SobelRows state,
+                  float* csgv) {
   const WideIntegers d;
   const Reals reals;
+  const auto largest_inside = [&](int i, Real roots, Real largest) HWY_ATTR {
+    const auto at = hn::Iota(d, i);
+    const auto counts =
+        hn::And(hn::Gt(at, hn::Set(d, inside.first - 1)), hn::Lt(at, hn::Set(d, inside.last)));
+    return hn::Max(largest, hn::IfThenElseZero(hn::RebindMask(reals, counts), roots));
+  };
   std::array<WideInteger, 4> left;
   std::array<WideInteger, 4> block;
   std::array<Real, 4> squares = {hn::Zero(reals), hn::Zero(reals), hn::Zero(reals),
@@ -158,7 +167,7 @@ float row_of_csgv(const FilteredRows& rows, int count, const SobelRows state, fl
   for (; i + kHalfBlock < count; i += kHalfBlock) {
     const auto roots = sum_of_roots(squares);
     hn::StoreU(roots, reals, csgv + std::max(i - kHalfBlock, 0));
-    largest = hn::Max(largest, roots);
+    largest = i == kHalfBlock ? largest_inside(0, roots, largest) : hn::Max(largest, roots);
     for_each_band(rows, i + kHalfBlock, [&](std::size_t band, WideInteger next) HWY_ATTR {
       squares[band] =
           squared_gradient(left[band], block[band], one_right(block[band], next), state, band, i);
@@ -169,7 +178,7 @@ float row_of_csgv(const FilteredRows& rows, int count, const SobelRows state, fl
   if (i > 0) {
     const auto roots = sum_of_roots(squares);
     hn::StoreU(roots, reals, csgv + i - kHalfBlock);
-    largest = hn::Max(largest, roots);
+    largest = largest_inside(i - kHalfBlock, roots, largest);
   }
   // The row's last sample is its own right neighbour.
   const int rest = count - i;
@@ -178,10 +187,9 @@ float row_of_csgv(const FilteredRows& rows, int count, const SobelRows state, fl
     const auto right = hn::IfThenElse(is_last, block[band], one_right(block[band], block[band]));
     squares[band] = squared_gradient(left[band], block[band], right, state, band, i);
   }
-  const auto ends =
-      hn::IfThenElseZero(hn::FirstN(reals, static_cast<std::size_t>(rest)), sum_of_roots(squares));
+  const auto ends = sum_of_roots(squares);
   store_first(ends, rest, csgv + i);
-  return hn::GetLane(hn::MaxOfLanes(reals, hn::Max(largest, ends)));
+  return hn::GetLane(hn::MaxOfLanes(reals, largest_inside(i, ends, largest)));
 }
 
 /// Each lane twice, in the same order.
@@ -251,8 +259,8 @@ class SobelState {
   }
 
   /// \param csgv  of the row that was last
-  float add(const FilteredRows& rows, int count, float* csgv) {
-    const float largest = HWY_DYNAMIC_DISPATCH(row_of_csgv)(rows, count, rows_, csgv);
+  float add(const FilteredRows& rows, int count, Columns inside, float* csgv) {
+    const float largest = HWY_DYNAMIC_DISPATCH(row_of_csgv)(rows, count, inside, rows_, csgv);
     std::swap(rows_.last_slope, rows_.old_slope);
     std::swap(rows_.last_smoothed, rows_.old_smoothed);
     return largest;
@@ -269,21 +277,28 @@ HalfGradient::HalfGradient(const GreyImage& image, Plane<float>& room)
     : room_(room), height_((image.height() + 1) / 2), width_((image.width() + 1) / 2) {
   std::mutex mutex;
   for_each_strip(height_, 4 * width_, [&](Rows rows) {
-    const float largest = compute(image, rows);
-    const std::lock_guard lock(mutex);
-    largest_ = std::max(largest_, largest);
+    for_each_tile(image.height(), image.width(), [&](Columns tile) {
+      const float largest = compute(image, rows, tile);
+      const std::lock_guard lock(mutex);
+      largest_ = std::max(largest_, largest);
+    });
   });
 }
 
-float HalfGradient::compute(const GreyImage& image, Rows rows) {
-  ColumnFilter filter(image, {0, width_});
-  SobelState state(width_);
+float HalfGradient::compute(const GreyImage& image, Rows rows, Columns tile) {
+  const Columns wanted = {tile.first / 2, (tile.last + 1) / 2};
+  const Columns all = {std::max(wanted.first - 1, 0), std::min(wanted.last + 1, width_)};
+  const int before = wanted.first - all.first;
+  const Columns inside = {before, before + wanted.count()};
+  ColumnFilter filter(image, all);
+  SobelState state(all.count());
   float largest = 0.0F;
   for (int y = rows.first - 1; y <= rows.last; ++y) {
     // The first two rows have no gradient yet: what is written is written again.
     const int of = std::max(y - 1, rows.first);
-    fetch_ahead(room_, 2 * (of + 1), width_);
-    const float of_row = state.add(filter.row(symmetric_index(y, height_)), width_, place(of));
+    fetch_ahead(room_, 2 * (of + 1), tile);
+    const float of_row = state.add(filter.row(symmetric_index(y, height_)), all.count(), inside,
+                                   place(of, tile) - before);
     if (y > rows.first) largest = std::max(largest, of_row);
   }
   return largest;

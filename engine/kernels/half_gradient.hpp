@@ -18,20 +18,24 @@ namespace touchtrial::engine {
 class HalfGradient {
  public:
   /// \param image  not empty
-  /// \param room  a plane of the image's shape, which is overwritten. Two rows of it belong to each
-  ///   row of CSGV, and nothing else is kept there: who has read row(y) may write rows 2 y and
-  ///   2 y + 1. Must outlive this.
+  /// \param room  a plane of the image's shape, which is overwritten. Two rows of a tile of it
+  ///   (for_each_tile) belong to each row of CSGV there, and nothing else is kept
+  ///   there: who has read row(y, tile) may write rows 2 y and 2 y + 1 of the tile. Must outlive
+  ///   this.
   HalfGradient(const GreyImage& image, Plane<float>& room);
 
-  [[nodiscard]] const float* row(int y) const noexcept { return place(y); }
+  /// CSGV of a tile of the image, rounded up to whole pairs of columns.
+  [[nodiscard]] const float* row(int y, Columns tile) const noexcept { return place(y, tile); }
   [[nodiscard]] int height() const noexcept { return height_; }
   [[nodiscard]] int width() const noexcept { return width_; }
   [[nodiscard]] float largest() const noexcept { return largest_; }
 
  private:
-  [[nodiscard]] float* place(int y) const noexcept { return room_.row(2 * y).data(); }
+  [[nodiscard]] float* place(int y, Columns tile) const noexcept {
+    return room_.row(2 * y).data() + tile.first;
+  }
   /// \return the largest CSGV of these rows
-  float compute(const GreyImage& image, Rows rows);
+  float compute(const GreyImage& image, Rows rows, Columns tile);
 
   Plane<float>& room_;
   int height_;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/plane.hpp"
+#include "engine/kernels/strips.hpp"
 
 #include <cstddef>
 
@@ -11,15 +12,14 @@
 
 namespace touchtrial::engine {
 
-/// Asks for samples 0 .. count - 1 of row y, if there is one, of a plane that is too large for the
-/// second-level cache by far. Changes nothing.
+/// Asks for columns of row y, if there is such a row, of a plane that is large. Changes
+/// nothing.
 template <typename Sample>
-void fetch_ahead(const Plane<Sample>& plane, int y, int count) noexcept {
-  constexpr std::size_t kFarFromSamples = std::size_t{1} << 21;
+void fetch_ahead(const Plane<Sample>& plane, int y, Columns columns) noexcept {
   constexpr int kPerLine = 64 / sizeof(Sample);
-  if (plane.size() < kFarFromSamples || y < 0 || y >= plane.height()) return;
+  if (plane.size() < kLargeFromPixels || y < 0 || y >= plane.height()) return;
   const Sample* const row = plane.row(y).data();
-  for (int x = 0; x < count; x += kPerLine) hwy::Prefetch(row + x);
+  for (int x = columns.first; x < columns.last; x += kPerLine) hwy::Prefetch(row + x);
 }
 
 }  // namespace touchtrial::engine

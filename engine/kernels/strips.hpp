@@ -1,4 +1,5 @@
-/// \file Strips of a picture's rows, for kernels that use all cores on one large picture.
+/// \file Strips of a picture's rows, for kernels that use all cores on one large picture, and tiles of
+/// its columns, whose rows stay in the first-level cache.
 #pragma once
 
 #include "core/parallel.hpp"
@@ -13,6 +14,13 @@ namespace touchtrial::engine {
 struct Rows {
   int first;
   int last;
+};
+
+/// A range of columns, first .. last - 1.
+struct Columns {
+  int first;
+  int last;
+  [[nodiscard]] int count() const noexcept { return last - first; }
 };
 
 /// From this size on a picture is worth several threads: a megapixel takes half a millisecond.
@@ -34,6 +42,22 @@ void for_each_strip(int height, int width, Work work) {
     const int first = static_cast<int>(i) * rows;
     work(Rows{first, std::min(first + rows, height)});
   });
+}
+
+/// From this size on a plane is too large for the second-level cache by far: rows are asked for
+/// before they are needed (fetch_ahead), and tiles of rows are worked on.
+inline constexpr std::int64_t kLargeFromPixels = std::int64_t{1} << 21;
+
+/// Calls work(columns) for tiles of some 512 columns that together are all, from left to right, or
+/// for all at once if the picture is not large. What a kernel keeps of a tile's rows stays in the
+/// first-level cache. Tiles begin at even columns.
+template <typename Work>
+void for_each_tile(int height, int width, Work work) {
+  constexpr int kColumns = 512;
+  const int columns = std::int64_t{height} * width < kLargeFromPixels ? width : kColumns;
+  for (int first = 0; first < width; first += columns) {
+    work(Columns{first, std::min(first + columns, width)});
+  }
 }
 
 }  // namespace touchtrial::engine

@@ -105,7 +105,7 @@ const FilteredRows& ColumnFilter::row(int y) {
   for (int m = 0; m < 4; ++m) {
     rows[m] = image_.row(symmetric_index(2 * y + m, image_.height())).data() + first_x_;
   }
-  for (int m = 4; m < 6; ++m) fetch_ahead(image_, 2 * y + m, image_.width());
+  for (int m = 4; m < 6; ++m) fetch_ahead(image_, 2 * y + m, {first_x_, first_x_ + available_});
   HWY_DYNAMIC_DISPATCH(along_y)(rows, available_, rows_);
   for (std::size_t part = 0; part < 4; ++part) extend(samples_.row(part));
   return rows_;

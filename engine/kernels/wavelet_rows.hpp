@@ -11,6 +11,7 @@
 
 #include "core/plane.hpp"
 #include "engine/kernels/aligned_rows.hpp"
+#include "engine/kernels/strips.hpp"
 
 #include <array>
 #include <cstdint>
@@ -32,13 +33,6 @@ struct FilteredRows {
   std::int16_t* low_root = nullptr;
   std::int16_t* high_whole = nullptr;
   std::int16_t* high_root = nullptr;
-};
-
-/// A range of columns, first .. last - 1.
-struct Columns {
-  int first;
-  int last;
-  [[nodiscard]] int count() const noexcept { return last - first; }
 };
 
 /// An image filtered along y, one row of the sub-bands at a time. Holds one filtered row and a

@@ -226,6 +226,34 @@ TEST_CASE("a megapixel is extracted by several threads at once, to the same digi
   });
 }
 
+/// The texture of one order, by extract_fixed().
+Plane<float> texture_of(const GreyImage& image, int radius, double order) {
+  engine::ExtractionOptions options;
+  options.method = engine::Method::fixed;
+  options.radius = radius;
+  options.order = order;
+  return engine::extract_texture<float>(image, options).texture;
+}
+
+TEST_CASE("an image that is processed in tiles has the planes of double, at every tile's ends") {
+  for (const Size size : {Size{3, 700'003}, Size{1447, 1450}}) {
+    const GreyImage image = noise_image(size);
+    REQUIRE(static_cast<std::int64_t>(image.size()) >= engine::kLargeFromPixels);
+    engine::WantedPlanes wanted;
+    wanted.picture = wanted.order = wanted.csgv = true;
+    const auto truth = engine::extract_texture<double>(image, adaptive_options(2), wanted);
+    on_every_simd_target([&] {
+      const auto result = engine::extract_texture<float>(image, adaptive_options(2), wanted);
+      CHECK(largest_difference(result.texture, truth.texture) < kAnyTolerance);
+      CHECK(largest_difference(result.order, truth.order) < 1e-6);
+      CHECK(largest_relative_difference(result.csgv, truth.csgv) < 5e-7);
+      CHECK(result.picture == engine::texture_picture(result.texture));
+      CHECK(largest_difference(texture_of(image, 63, 0.55),
+                               engine::gl_texture<double>(image, 63, 0.55)) < kAnyTolerance);
+    });
+  }
+}
+
 TEST_CASE("an image that is processed in several strips has the CSGV of double") {
   const GreyImage image = noise_image({5, 2100});
   engine::WantedPlanes wanted;
@@ -272,15 +300,6 @@ Plane<double> mixed_orders(const GreyImage& image) {
   constexpr double kOrders[] = {0.0, 1e-300, 0.3, 0.666, 0.999, 1.0 - 1e-7};
   for (std::size_t i = 0; i < orders.size(); ++i) orders.samples()[i] = kOrders[i % 6];
   return orders;
-}
-
-/// The texture of one order, by extract_fixed().
-Plane<float> texture_of(const GreyImage& image, int radius, double order) {
-  engine::ExtractionOptions options;
-  options.method = engine::Method::fixed;
-  options.radius = radius;
-  options.order = order;
-  return engine::extract_texture<float>(image, options).texture;
 }
 
 void check_against_double(const GreyImage& image, int radius) {
