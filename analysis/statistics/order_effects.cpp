@@ -4,7 +4,6 @@
 #include "core/random.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -12,41 +11,46 @@ namespace touchtrial::analysis {
 namespace {
 
 constexpr int kNoClass = -1;
+constexpr int kNotWrong = -2;  ///< no class, and no missing one
 
 /// What a trial carries with it to another place.
 struct Carried {
   int presented = kNoClass;
   int answered = kNoClass;
-
-  [[nodiscard]] bool right() const { return answered != kNoClass && answered == presented; }
-  [[nodiscard]] bool wrong() const { return answered != kNoClass && answered != presented; }
+  int wrong = kNotWrong;  ///< the answer, if it is wrong
+  int right = 0;          ///< 1 if the answer is right
 };
 
 Carried carried(const FeltTrial& trial) {
   if (trial.presented.value_or(0) < 0 || trial.answered.value_or(0) < 0) {
     throw std::invalid_argument("order effects need classes from 0");
   }
-  return {trial.presented.value_or(kNoClass), trial.answered.value_or(kNoClass)};
+  Carried carried{.presented = trial.presented.value_or(kNoClass),
+                  .answered = trial.answered.value_or(kNoClass)};
+  if (carried.answered == kNoClass) return carried;
+  carried.right = carried.answered == carried.presented ? 1 : 0;
+  if (carried.right == 0) carried.wrong = carried.answered;
+  return carried;
 }
 
 /// A place in a block. Places of trials that stay have a trial too.
 struct Place {
-  std::size_t trial = 0;  ///< index of the trial that was felt there
   double leverage = 0.0;  ///< of the place, in the mean slope over participants
-  bool moves = false;
-  bool follows = false;
+  bool follows = false;   ///< and moves
 };
 
 struct Block {
   std::vector<std::size_t> moving;  ///< places whose trials move, ascending
+  std::vector<Carried> trials;      ///< that were felt there
+
+  /// Whether no trial between two moving ones stays.
+  [[nodiscard]] bool is_run() const { return moving.back() - moving.front() + 1 == moving.size(); }
 };
 
 /// What is tested.
 struct Observed {
   double slope = 0.0;
-  int class_wrong = 0;
   int class_same = 0;
-  int answer_wrong = 0;
   int answer_same = 0;
 };
 
@@ -57,41 +61,51 @@ class Places {
     for (const std::vector<FeltBlock>& own : participants) add(own);
     const auto learners = static_cast<double>(slopes_.size());
     for (Place& place : places_) place.leverage /= std::max(1.0, learners);
-    now_.resize(places_.size());
-    std::iota(now_.begin(), now_.end(), std::size_t{0});
   }
 
   [[nodiscard]] const std::vector<double>& slopes() const { return slopes_; }
   [[nodiscard]] std::span<const Block> blocks() const { return blocks_; }
   [[nodiscard]] bool any_moves() const {
-    return std::ranges::any_of(places_, [](const Place& place) { return place.moves; });
-  }
-  [[nodiscard]] int presented_at(std::size_t place) const { return trials_[place].presented; }
-
-  /// Puts the trials that were felt at `from` at the places `to`.
-  void put(std::span<const std::size_t> to, std::span<const std::size_t> from) {
-    for (std::size_t i = 0; i < to.size(); ++i) now_[to[i]] = from[i];
+    return std::ranges::any_of(blocks_, [](const Block& block) { return !block.moving.empty(); });
   }
 
+  /// The trials of a block that is a run, to be moved where they are.
+  [[nodiscard]] std::span<Carried> run(const Block& block) {
+    return std::span(now_).subspan(block.moving.front(), block.moving.size());
+  }
+
+  /// Puts trials at the places `to`.
+  void put(std::span<const std::size_t> to, std::span<const Carried> trials) {
+    for (std::size_t i = 0; i < to.size(); ++i) now_[to[i]] = trials[i];
+  }
+
+  /// Of the trials as they are now. Without branches, because no processor foresees answers.
   [[nodiscard]] Observed observed() const {
-    Observed seen;
+    double slope = 0.0;
+    int class_same = 0;
+    int answer_same = 0;
+    Carried before;
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const Place& place = places_[i];
-      if (!place.moves) continue;
-      const Carried& here = trials_[now_[i]];
-      if (here.right()) seen.slope += place.leverage;
-      if (!place.follows || !here.wrong()) continue;
-      const Carried& before = trials_[now_[i - 1]];
-      if (before.presented != kNoClass) {
-        ++seen.class_wrong;
-        seen.class_same += here.answered == before.presented ? 1 : 0;
-      }
-      if (before.answered != kNoClass) {
-        ++seen.answer_wrong;
-        seen.answer_same += here.answered == before.answered ? 1 : 0;
-      }
+      const Carried here = now_[i];
+      const int follows = place.follows ? 1 : 0;
+      slope += place.leverage * here.right;
+      class_same += follows & (here.wrong == before.presented ? 1 : 0);
+      answer_same += follows & (here.wrong == before.answered ? 1 : 0);
+      before = here;
     }
-    return seen;
+    return {slope, class_same, answer_same};
+  }
+
+  /// Wrong answers just after a trial that has this.
+  /// \param what  presented or answered
+  [[nodiscard]] int wrong_after(int Carried::*what) const {
+    int wrong = 0;
+    for (std::size_t i = 1; i < places_.size(); ++i) {
+      if (!places_[i].follows || now_[i].wrong == kNotWrong) continue;
+      wrong += now_[i - 1].*what == kNoClass ? 0 : 1;
+    }
+    return wrong;
   }
 
  private:
@@ -103,7 +117,7 @@ class Places {
     double slope = 0.0;
     for (std::size_t i = first; i < places_.size(); ++i) {
       places_[i].leverage /= squares;
-      if (places_[i].moves && trials_[i].right()) slope += places_[i].leverage;
+      slope += places_[i].leverage * now_[i].right;
     }
     slopes_.push_back(without_noise(slope));
   }
@@ -113,13 +127,15 @@ class Places {
     Block& added = blocks_.emplace_back();
     double sum = 0.0;
     for (const FeltTrial& trial : block) {
+      const bool first = &trial == &block.front();
+      now_.push_back(carried(trial));
       if (trial.moves) {
         added.moving.push_back(places_.size());
+        added.trials.push_back(now_.back());
         sum += trial.place;
       }
-      const bool first = &trial == &block.front();
-      places_.push_back({places_.size(), trial.place, trial.moves, trial.follows && !first});
-      trials_.push_back(carried(trial));
+      places_.push_back({.leverage = trial.moves ? trial.place : 0.0,
+                         .follows = trial.moves && trial.follows && !first});
     }
     double squares = 0.0;
     for (const std::size_t i : added.moving) {
@@ -130,10 +146,9 @@ class Places {
   }
 
   std::vector<Place> places_;
-  std::vector<Carried> trials_;
   std::vector<Block> blocks_;
-  std::vector<std::size_t> now_;  ///< for each place, the trial that is there
-  std::vector<double> slopes_;    ///< of the participants who have one
+  std::vector<Carried> now_;    ///< for each place, the trial that is there
+  std::vector<double> slopes_;  ///< of the participants who have one
 };
 
 /// Deals the trials of each class over the places that an order gives the class. Keeps its memory
@@ -142,16 +157,16 @@ class DealByClass {
  public:
   /// \param trials  on return, the trial of each place
   /// \return false if the order does not have as many places of each class
-  [[nodiscard]] bool deal(const Places& places, std::span<const int> order,
-                          std::vector<std::size_t>& trials, RandomStream& random) {
+  [[nodiscard]] bool deal(std::span<const int> order, std::vector<Carried>& trials,
+                          RandomStream& random) {
     shuffle(std::span(trials), random);
     for (auto& [dealt, of_class] : classes_) {
       dealt = 0;
       of_class.clear();
     }
-    for (const std::size_t trial : trials) {
-      if (places.presented_at(trial) < 0) return false;
-      const auto presented = static_cast<std::size_t>(places.presented_at(trial));
+    for (const Carried& trial : trials) {
+      if (trial.presented < 0) return false;
+      const auto presented = static_cast<std::size_t>(trial.presented);
       if (presented >= classes_.size()) classes_.resize(presented + 1);
       classes_[presented].trials.push_back(trial);
     }
@@ -169,29 +184,35 @@ class DealByClass {
  private:
   struct OfClass {
     std::size_t dealt = 0;
-    std::vector<std::size_t> trials;  ///< as they were shuffled
+    std::vector<Carried> trials;  ///< as they were shuffled
   };
   std::vector<OfClass> classes_;
-  std::vector<std::size_t> dealt_;
+  std::vector<Carried> dealt_;
 };
 
 void draw_orders(Places& places, const RedrawnClasses& redraw, int number, RandomStream& random,
                  DealByClass& by_class) {
-  std::vector<std::size_t> trials;
+  std::vector<Carried> trials;
   for (std::size_t b = 0; b < places.blocks().size(); ++b) {
-    const std::vector<std::size_t>& moving = places.blocks()[b].moving;
-    if (moving.empty()) continue;
-    trials = moving;
+    const Block& block = places.blocks()[b];
+    if (block.moving.empty()) continue;
+    if (!redraw && block.is_run()) {
+      const std::span<Carried> run = places.run(block);
+      std::ranges::copy(block.trials, run.begin());
+      shuffle(run, random);
+      continue;
+    }
+    trials = block.trials;
     if (redraw) {
       const std::vector<int> order = redraw(b, number);
-      if (order.size() != moving.size()) {
+      if (order.size() != trials.size()) {
         throw std::invalid_argument("a redrawn block must keep its length");
       }
-      if (!by_class.deal(places, order, trials, random)) trials = moving;
+      if (!by_class.deal(order, trials, random)) trials = block.trials;
     } else {
       shuffle(std::span(trials), random);
     }
-    places.put(moving, trials);
+    places.put(block.moving, trials);
   }
 }
 
@@ -221,6 +242,8 @@ std::optional<OrderEffects> order_effects(std::span<const std::vector<FeltBlock>
   Places places(participants);
   if (!places.any_moves()) return std::nullopt;
   const Observed seen = places.observed();
+  const int class_wrong = places.wrong_after(&Carried::presented);
+  const int answer_wrong = places.wrong_after(&Carried::answered);
   std::vector<double> slopes;
   std::vector<double> classes;
   std::vector<double> answers;
@@ -236,8 +259,8 @@ std::optional<OrderEffects> order_effects(std::span<const std::vector<FeltBlock>
   OrderEffects effects;
   effects.slope = participant_mean(places.slopes(), {-1.0, 1.0});
   if (effects.slope.mean) effects.slope_p = p_among(seen.slope, slopes);
-  effects.class_before = dependence(seen.class_wrong, seen.class_same, classes);
-  effects.answer_before = dependence(seen.answer_wrong, seen.answer_same, answers);
+  effects.class_before = dependence(class_wrong, seen.class_same, classes);
+  effects.answer_before = dependence(answer_wrong, seen.answer_same, answers);
   effects.draws = draws;
   return effects;
 }
