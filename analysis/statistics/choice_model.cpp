@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <stdexcept>
 
 #include <boost/math/distributions/chi_squared.hpp>
@@ -198,23 +202,74 @@ Weights fit(const ConfusionMatrix& confusion, const Effort& effort, ChoiceModel&
   return weights;
 }
 
-/// As many answers to every class as there were, with the model's probabilities.
-ConfusionMatrix drawn_answers(const ChoiceModel& model, RandomStream& random) {
-  const int classes = model.expected.height();
-  ConfusionMatrix drawn(classes);
-  for (int i = 0; i < classes; ++i) {
-    const auto expected = model.expected.row(i);
-    double all = 0.0;
-    for (const double one : expected) all += one;
-    for (auto left_out = std::lround(all); left_out > 0; --left_out) {
-      double left = random.uniform() * all;
-      int answer = 0;
-      while (answer + 1 < classes && left >= expected[answer]) left -= expected[answer++];
-      drawn.add({i, answer});
+/// Draws tables with as many answers to every class as there were, and the model's probabilities.
+class DrawnTables {
+ public:
+  explicit DrawnTables(const ChoiceModel& model)
+      : least_(model.expected.height(), model.expected.width() - 1) {
+    for (int i = 0; i < least_.height(); ++i) {
+      const auto expected = model.expected.row(i);
+      const double all = std::accumulate(expected.begin(), expected.end(), 0.0);
+      trials_.push_back(std::lround(all));
+      for (int answer = 0; answer < least_.width(); ++answer) {
+        least_.at(i, answer) = least_above(answer, expected, all);
+      }
     }
   }
-  return drawn;
-}
+
+  [[nodiscard]] ConfusionMatrix draw(RandomStream& random) const {
+    ConfusionMatrix drawn(least_.height());
+    std::vector<std::int64_t> later;  // answers than each
+    for (int i = 0; i < least_.height(); ++i) {
+      const auto least = least_.row(i);
+      later.assign(least.size(), 0);
+      const std::int64_t trials = trials_[static_cast<std::size_t>(i)];
+      for (std::int64_t trial = 0; trial < trials; ++trial) {
+        const double uniform = random.uniform();
+        for (std::size_t k = 0; k < least.size(); ++k) later[k] += uniform >= least[k] ? 1 : 0;
+      }
+      std::int64_t left = trials;
+      for (std::size_t k = 0; k < least.size(); ++k) {
+        drawn.add({i, static_cast<int>(k)}, static_cast<int>(left - later[k]));
+        left = later[k];
+      }
+      drawn.add({i, least_.width()}, static_cast<int>(left));
+    }
+    return drawn;
+  }
+
+ private:
+  /// The answer that a uniform number gives; never decreases with the number.
+  static int answer_of(double uniform, std::span<const double> expected, double all) {
+    double left = uniform * all;
+    int answer = 0;
+    while (answer + 1 < std::ssize(expected) && left >= expected[answer])
+      left -= expected[answer++];
+    return answer;
+  }
+
+  /// The least uniform number with a later answer; 1 if there is none. By bisection.
+  static double least_above(int answer, std::span<const double> expected, double all) {
+    constexpr std::int64_t kUniforms = std::int64_t{1} << 53U;  // those of RandomStream, in order
+    const auto uniform = [](std::int64_t number) {
+      return static_cast<double>(number) / static_cast<double>(kUniforms);
+    };
+    std::int64_t low = 0;
+    std::int64_t high = kUniforms;
+    while (low < high) {
+      const std::int64_t middle = std::midpoint(low, high);
+      if (answer_of(uniform(middle), expected, all) > answer) {
+        high = middle;
+      } else {
+        low = middle + 1;
+      }
+    }
+    return uniform(high);
+  }
+
+  Plane<double> least_;               ///< of each class and each answer but the last
+  std::vector<std::int64_t> trials_;  ///< of each class
+};
 
 }  // namespace
 
@@ -233,11 +288,12 @@ std::optional<double> choice_model_p(const ChoiceModel& model, int draws, std::u
   if (model.degrees_of_freedom == 0) return std::nullopt;
   constexpr Effort kOfDraws{.most_sweeps = 500, .least_change = 1e-7};
   constexpr double kTie = 1e-9;
+  const DrawnTables tables(model);
   RandomStream random(0, "choice model", index);
   int as_bad = 0;
   for (int draw = 0; draw < draws; ++draw) {
     ChoiceModel one;
-    static_cast<void>(fit(drawn_answers(model, random), kOfDraws, one));
+    static_cast<void>(fit(tables.draw(random), kOfDraws, one));
     if (one.g_squared >= model.g_squared - kTie) ++as_bad;
   }
   return p_of_draws(as_bad, draws);

@@ -94,15 +94,15 @@ ConfusionMatrix::ConfusionMatrix(int classes, std::span<const Choice> choices)
   for (const Choice& choice : choices) add(choice);
 }
 
-void ConfusionMatrix::add(const Choice& choice) {
+void ConfusionMatrix::add(const Choice& choice, int times) {
   const auto known = [this](int index) { return index >= 0 && index < classes(); };
   if (!known(choice.presented) || (choice.answered && !known(*choice.answered))) {
     throw std::invalid_argument("a confusion matrix has no such class");
   }
   if (choice.answered) {
-    ++counts_.at(choice.presented, *choice.answered);
+    counts_.at(choice.presented, *choice.answered) += times;
   } else {
-    ++no_response_[choice.presented];
+    no_response_[choice.presented] += times;
   }
 }
 

@@ -24,8 +24,9 @@ class ConfusionMatrix {
   /// \throws std::invalid_argument if there is no class, or a choice's class is out of range
   explicit ConfusionMatrix(int classes, std::span<const Choice> choices = {});
 
+  /// \param times  how many trials are alike
   /// \throws std::invalid_argument if a class is out of range
-  void add(const Choice& choice);
+  void add(const Choice& choice, int times = 1);
 
   [[nodiscard]] int classes() const noexcept { return counts_.height(); }
   [[nodiscard]] int count(int presented, int answered) const noexcept {

@@ -29,12 +29,17 @@ std::vector<Answers> with_response(std::span<const std::vector<Choice>> by_parti
   return all;
 }
 
+/// \param all  with classes in range
 ConfusionMatrix pooled(int classes, std::span<const Answers> all) {
-  ConfusionMatrix confusion(classes);
+  Plane<int> counts(classes, classes);
   for (const Answers& mine : all) {
     for (std::size_t i = 0; i < mine.presented.size(); ++i) {
-      confusion.add({mine.presented[i], mine.answered[i]});
+      ++counts.at(mine.presented[i], mine.answered[i]);
     }
+  }
+  ConfusionMatrix confusion(classes);
+  for (int i = 0; i < classes; ++i) {
+    for (int j = 0; j < classes; ++j) confusion.add({i, j}, counts.at(i, j));
   }
   return confusion;
 }
@@ -72,8 +77,12 @@ InformationTransfer information_transfer(int classes,
                                          std::span<const std::vector<Choice>> by_participant,
                                          std::uint64_t index, int permutations) {
   if (permutations < 1) throw std::invalid_argument("a null mean needs at least one permutation");
-  std::vector<Answers> all = with_response(by_participant);
-  const ConfusionMatrix confusion = pooled(classes, all);
+  ConfusionMatrix confusion(classes);
+  for (const std::vector<Choice>& choices : by_participant) {
+    for (const Choice& choice : choices) {
+      if (choice.answered) confusion.add(choice);
+    }
+  }
   InformationTransfer transfer;
   transfer.raw = raw_information_transfer(confusion);
   if (!transfer.raw) return transfer;
@@ -81,7 +90,8 @@ InformationTransfer information_transfer(int classes,
   const double freedom = static_cast<double>(classes - 1) * (classes - 1);
   transfer.corrected = *transfer.raw - freedom / (2.0 * confusion.answered() * std::numbers::ln2);
   RandomStream random(0, "information transfer null", index);
-  transfer.null_mean = mean_of_random_deals(classes, std::move(all), random, permutations);
+  transfer.null_mean =
+      mean_of_random_deals(classes, with_response(by_participant), random, permutations);
   return transfer;
 }
 

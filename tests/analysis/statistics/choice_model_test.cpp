@@ -229,6 +229,29 @@ TEST_CASE(
   CHECK_FALSE(p == analysis::choice_model_p(five, 399, 1).value());
 }
 
+TEST_CASE("the p by drawn tables is that of tables drawn answer by answer") {
+  constexpr int kDraws = 399;
+  const analysis::ChoiceModel five = *analysis::choice_model(confusion_of_counts(kFive));
+  RandomStream random(0, "choice model", 3);
+  int as_bad = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    analysis::ConfusionMatrix drawn(5);
+    for (int i = 0; i < 5; ++i) {
+      const double all = row_sum(five.expected, i);
+      for (int left_out = 0; left_out < 25; ++left_out) {
+        double left = random.uniform() * all;
+        int answer = 0;
+        while (answer < 4 && left >= five.expected.at(i, answer)) {
+          left -= five.expected.at(i, answer++);
+        }
+        drawn.add({i, answer});
+      }
+    }
+    if (analysis::choice_model(drawn).value().g_squared >= five.g_squared - 1e-9) ++as_bad;
+  }
+  CHECK(analysis::choice_model_p(five, kDraws, 3) == (as_bad + 1.0) / (kDraws + 1.0));
+}
+
 TEST_CASE("without degrees of freedom nothing is drawn") {
   const analysis::ChoiceModel model =
       *analysis::choice_model(confusion_of_counts({{8, 2}, {4, 6}}));

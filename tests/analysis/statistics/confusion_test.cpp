@@ -28,6 +28,17 @@ TEST_CASE("A confusion matrix has presented classes in rows and answers in colum
   CHECK(confusion.accuracy() == analysis::Proportion{4, 2});
 }
 
+TEST_CASE("Trials that are alike count the same at once as one by one") {
+  analysis::ConfusionMatrix at_once(2);
+  at_once.add({0, 1}, 3);
+  at_once.add({1, std::nullopt}, 2);
+  at_once.add({1, 1}, 0);
+  analysis::ConfusionMatrix one_by_one(2);
+  for (int i = 0; i < 3; ++i) one_by_one.add({0, 1});
+  for (int i = 0; i < 2; ++i) one_by_one.add({1, std::nullopt});
+  CHECK(at_once == one_by_one);
+}
+
 TEST_CASE("A trial without a response counts as wrong and stands in its own column") {
   analysis::ConfusionMatrix confusion(2);
   confusion.add({0, 0});
