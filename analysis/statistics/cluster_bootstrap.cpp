@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <stdexcept>
 
@@ -55,16 +56,19 @@ class IndexDraws {
   bool second_ = false;
 };
 
-/// The ((draws + 1) share)-th of the sorted draws, interpolated where that is not a whole number:
+/// The ((n + 1) share)-th of the n draws by size, interpolated where that is not a whole number:
 /// about this share of the statistic's distribution lies below it.
-double percentile(const std::vector<double>& sorted, double share) {
-  const auto draws = static_cast<double>(sorted.size());
-  const double place = std::clamp((draws + 1.0) * share, 1.0, draws) - 1.0;
+/// \param draws  on return in another order
+double percentile(std::vector<double>& draws, double share) {
+  const auto n = static_cast<double>(draws.size());
+  const double place = std::clamp((n + 1.0) * share, 1.0, n) - 1.0;
   const double below =
       std::floor(place + 1e-9);  // 10,000 * 0.025 is the 250th in spite of rounding
-  const auto at = static_cast<std::size_t>(below);
-  if (at + 1 >= sorted.size()) return sorted.back();
-  return sorted[at] + std::max(0.0, place - below) * (sorted[at + 1] - sorted[at]);
+  const auto at = draws.begin() + static_cast<std::ptrdiff_t>(below);
+  std::nth_element(draws.begin(), at, draws.end());
+  if (at + 1 == draws.end()) return *at;
+  const double next = *std::min_element(at + 1, draws.end());
+  return *at + std::max(0.0, place - below) * (next - *at);
 }
 
 /// The share of a statistic's distribution that the interval omits at each end.
@@ -79,7 +83,6 @@ double expanded_tail(std::size_t participants, double level) {
 Interval expanded_percentiles(std::vector<double> draws, std::size_t participants, double level) {
   require_arguments(participants, static_cast<int>(draws.size()), level);
   if (participants < 2) throw std::invalid_argument("a bootstrap needs at least two participants");
-  std::sort(draws.begin(), draws.end());
   const double tail = expanded_tail(participants, level);
   return {without_noise(percentile(draws, tail)), without_noise(percentile(draws, 1.0 - tail))};
 }

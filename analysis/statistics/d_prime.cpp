@@ -39,6 +39,8 @@ namespace {
 
 /// Beyond this distance from the mean a normal density is 0 in double precision.
 constexpr double kReach = 12.0;
+/// From here on a normal distribution is 1 in double precision.
+constexpr double kCertain = 8.5;
 /// No proportion of counts needs a larger d'.
 constexpr double kLargest = 50.0;
 
@@ -63,8 +65,8 @@ double proportion_correct_of(double d_prime, int alternatives) {
   const boost::math::normal_distribution<> normal;
   // The integral over z with z = u + d': the weight's place does not depend on d'.
   const auto all_others_are_weaker = [&](double u) {
-    return boost::math::pdf(normal, u) *
-           std::pow(boost::math::cdf(normal, u + d_prime), alternatives - 1);
+    const double weaker = u + d_prime < kCertain ? boost::math::cdf(normal, u + d_prime) : 1.0;
+    return boost::math::pdf(normal, u) * std::pow(weaker, alternatives - 1);
   };
   // The integrand vanishes at both ends, so the trapezoidal rule converges exponentially.
   const double share =
