@@ -131,11 +131,7 @@ design::StudyKey key_of_database(const store::StudyStore& store,
 analysis::Outcomes outcomes_of(const store::StudyStore& store, const design::StudyKey& key,
                                const std::string& participant) {
   analysis::Outcomes outcomes = analysis::load_outcomes(store, key, participant);
-  const session::SessionTexts texts = session_texts(outcomes.design);
-  outcomes.asked.clear();
-  for (const auto& questionnaire : {texts.handedness, texts.closing}) {
-    if (questionnaire) outcomes.asked.push_back(*questionnaire);
-  }
+  outcomes.asked = questionnaires_of(outcomes.design);
   return outcomes;
 }
 

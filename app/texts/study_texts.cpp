@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -100,38 +101,44 @@ std::vector<std::string> instructions(const design::Study& study, const Section&
   return pages;
 }
 
-/// One question in all languages; in the study's, with the study's own words.
-/// \param texts  the study's, of this section
+/// Whose words questions have: the study's, in its language, and those of other languages.
+struct Wording {
+  const design::SessionPlan& plan;
+  const design::Texts& texts;                 ///< the study's
+  std::span<const std::string_view> further;  ///< languages
+};
+
+/// \param section  of the texts
 /// \param key  of its text
 /// \param options  keys of the options' texts; empty: a free answer
-design::Question question(const design::SessionPlan& plan, const char* section,
-                          const Section& texts, std::string id, const char* key,
-                          std::initializer_list<const char*> options) {
-  const auto wording = [&](const char* of) {
+design::Question question(const Wording& wording, const char* section, std::string id,
+                          const char* key, std::initializer_list<const char*> options) {
+  const auto words_for = [&](const char* of) {
     design::Translated words;
-    for (const std::string_view code : design::language_codes()) {
+    for (const std::string_view code : wording.further) {
       words[std::string(code)] = design::language_of(code).texts.at(section).at(of);
     }
-    words[plan.language] = texts.at(of);
+    words[wording.plan.language] = wording.texts.at(section).at(of);
     return words;
   };
   design::Question asked;
   asked.id = std::move(id);
   asked.kind = options.size() == 0 ? design::QuestionKind::text : design::QuestionKind::choice;
-  asked.text = wording(key);
-  for (const char* option : options) asked.options.push_back(wording(option));
+  asked.text = words_for(key);
+  for (const char* option : options) asked.options.push_back(words_for(option));
   return asked;
 }
 
-design::Questionnaire handedness_inventory(const design::SessionPlan& plan, const Section& texts) {
+std::optional<design::Questionnaire> handedness_inventory(const Wording& wording) {
+  if (!wording.plan.handedness) return std::nullopt;
   design::Questionnaire inventory{"handedness", {}};
   for (const char* item : {"writing", "throwing", "toothbrush", "spoon"}) {
     inventory.questions.push_back(
-        question(plan, "handedness", texts, item, item,
+        question(wording, "handedness", item, item,
                  {"always_right", "usually_right", "both", "usually_left", "always_left"}));
   }
   inventory.questions.push_back(
-      question(plan, "handedness", texts, "pen-hand", "pen_hand", {"pen_right", "pen_left"}));
+      question(wording, "handedness", "pen-hand", "pen_hand", {"pen_right", "pen_left"}));
   inventory.questions.back().required = true;
   return inventory;
 }
@@ -145,16 +152,17 @@ void join(std::vector<design::Question>& questions, const design::Question& give
   }
 }
 
-std::optional<design::Questionnaire> closing_questions(const design::SessionPlan& plan,
-                                                       const Section& texts) {
+std::optional<design::Questionnaire> closing_questions(const Wording& wording) {
   design::Questionnaire closing{"closing", {}};
-  if (plan.closing) {
-    closing.questions = {question(plan, "closing", texts, "heard", "heard",
+  if (wording.plan.closing) {
+    closing.questions = {question(wording, "closing", "heard", "heard",
                                   {"heard_no", "heard_sometimes", "heard_often", "heard_helped"}),
-                         question(plan, "closing", texts, "strategy", "strategy", {}),
-                         question(plan, "closing", texts, "remarks", "remarks", {})};
+                         question(wording, "closing", "strategy", "strategy", {}),
+                         question(wording, "closing", "remarks", "remarks", {})};
   }
-  for (const design::Question& given : plan.closing_questions) join(closing.questions, given);
+  for (const design::Question& given : wording.plan.closing_questions) {
+    join(closing.questions, given);
+  }
   if (closing.questions.empty()) return std::nullopt;
   return closing;
 }
@@ -201,12 +209,21 @@ session::SessionTexts session_texts(const design::Study& study) {
   const design::Texts texts = design::texts_of(study.session);
   session::SessionTexts session;
   session.instructions = instructions(study, texts.at("instructions"));
-  if (study.session.handedness) {
-    session.handedness = handedness_inventory(study.session, texts.at("handedness"));
-  }
-  session.closing = closing_questions(study.session, texts.at("closing"));
+  const Wording wording{study.session, texts, design::language_codes()};
+  session.handedness = handedness_inventory(wording);
+  session.closing = closing_questions(wording);
   session.day_sheet = day_sheet(study, texts.at("day_sheet"));
   return session;
+}
+
+std::vector<design::Questionnaire> questionnaires_of(const design::Study& study) {
+  const design::Texts texts = design::texts_of(study.session);
+  const Wording wording{study.session, texts, {}};
+  std::vector<design::Questionnaire> all;
+  for (auto& one : {handedness_inventory(wording), closing_questions(wording)}) {
+    if (one) all.push_back(*one);
+  }
+  return all;
 }
 
 }  // namespace touchtrial::app

@@ -12,4 +12,8 @@ namespace touchtrial::app {
 /// program's replaces it. Texts are English if the program does not have the study's language.
 [[nodiscard]] session::SessionTexts session_texts(const design::Study& study);
 
+/// The questionnaires of these texts, worded in the study's language alone: no other language's
+/// file is read.
+[[nodiscard]] std::vector<design::Questionnaire> questionnaires_of(const design::Study& study);
+
 }  // namespace touchtrial::app

@@ -107,6 +107,36 @@ std::vector<design::Study> every_kind_with_intervals(const std::string& language
   return studies;
 }
 
+TEST_CASE("a study's questionnaires alone are those of its session, in its language") {
+  for (const std::string_view code : design::language_codes()) {
+    const std::string language(code);
+    CAPTURE(language);
+    for (const design::Study& study : every_kind(language)) {
+      const session::SessionTexts texts = app::session_texts(study);
+      std::vector<design::Questionnaire> expected;
+      for (const auto& one : {texts.handedness, texts.closing}) {
+        if (one) expected.push_back(*one);
+      }
+      const std::vector<design::Questionnaire> alone = app::questionnaires_of(study);
+      REQUIRE(alone.size() == expected.size());
+      for (std::size_t i = 0; i < alone.size(); ++i) {
+        CHECK(alone[i].name == expected[i].name);
+        REQUIRE(alone[i].questions.size() == expected[i].questions.size());
+        for (std::size_t k = 0; k < alone[i].questions.size(); ++k) {
+          const design::Question& own = alone[i].questions[k];
+          const design::Question& other = expected[i].questions[k];
+          CHECK(own.id == other.id);
+          CHECK(own.text.at(language) == other.text.at(language));
+          REQUIRE(own.options.size() == other.options.size());
+          for (std::size_t option = 0; option < own.options.size(); ++option) {
+            CHECK(own.options[option].at(language) == other.options[option].at(language));
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("instructions of trials with several planes hold their numbers and their question") {
   for (const std::string_view code : design::language_codes()) {
     const std::string language(code);
