@@ -3,6 +3,7 @@
 #include "core/sodium.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include <sodium.h>
@@ -20,9 +21,9 @@ std::size_t padded(std::size_t size, std::size_t multiple) {
 }
 
 std::optional<Bytes> unpadded(Bytes bytes) {
-  while (!bytes.empty() && bytes.back() == 0) bytes.pop_back();
-  if (bytes.empty() || bytes.back() != 0x80) return std::nullopt;
-  bytes.pop_back();
+  const auto mark = std::find_if(bytes.rbegin(), bytes.rend(), [](auto byte) { return byte != 0; });
+  if (mark == bytes.rend() || *mark != 0x80) return std::nullopt;
+  bytes.erase(std::prev(mark.base()), bytes.end());
   return bytes;
 }
 

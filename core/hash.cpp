@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <variant>
 
 #include <nettle/sha2.h>
 #include <sodium.h>
@@ -69,21 +70,25 @@ Digest sha256_of_file(const std::filesystem::path& path) {
 }
 
 struct FieldHasher::State {
-  explicit State(HashFunction chosen) : function(chosen) {
+  explicit State(HashFunction function) {
+    if (function == HashFunction::sha256) return;
     prepare_sodium();
-    crypto_generichash_init(&blake, nullptr, 0, Digest{}.size());
+    crypto_generichash_init(&hash.emplace<crypto_generichash_state>(), nullptr, 0, Digest{}.size());
   }
   void add(ByteView bytes) {
-    if (function == HashFunction::sha256) {
-      sha.add(bytes);
-    } else {
-      crypto_generichash_update(&blake, bytes.data(), bytes.size());
-    }
+    if (auto* const sha = std::get_if<Sha256>(&hash)) return sha->add(bytes);
+    auto& blake = std::get<crypto_generichash_state>(hash);
+    crypto_generichash_update(&blake, bytes.data(), bytes.size());
+  }
+  [[nodiscard]] Digest finish() {
+    if (auto* const sha = std::get_if<Sha256>(&hash)) return sha->finish();
+    Digest digest{};
+    crypto_generichash_final(&std::get<crypto_generichash_state>(hash), digest.data(),
+                             digest.size());
+    return digest;
   }
 
-  HashFunction function;
-  Sha256 sha;
-  crypto_generichash_state blake;
+  std::variant<Sha256, crypto_generichash_state> hash;
 };
 
 FieldHasher::FieldHasher(HashFunction function) : state_(std::make_unique<State>(function)) {}
@@ -104,10 +109,7 @@ FieldHasher& FieldHasher::add(std::int64_t number) {
 }
 
 Digest FieldHasher::finish() {
-  if (state_->function == HashFunction::sha256) return state_->sha.finish();
-  Digest digest{};
-  crypto_generichash_final(&state_->blake, digest.data(), digest.size());
-  return digest;
+  return state_->finish();
 }
 
 Digest keyed_hash(const Digest& key, ByteView bytes) {
@@ -119,10 +121,11 @@ Digest keyed_hash(const Digest& key, ByteView bytes) {
 }
 
 std::optional<Digest> digest_from_hex(std::string_view hex) {
-  const std::optional<Bytes> bytes = from_hex(hex);
   Digest digest{};
-  if (!bytes || bytes->size() != digest.size()) return std::nullopt;
-  std::copy(bytes->begin(), bytes->end(), digest.begin());
+  if (hex.size() != 2 * digest.size()) return std::nullopt;
+  const int failed = sodium_hex2bin(digest.data(), digest.size(), hex.data(), hex.size(), nullptr,
+                                    nullptr, nullptr);
+  if (failed != 0) return std::nullopt;
   return digest;
 }
 

@@ -244,12 +244,12 @@ Query& Query::bind(ByteView blob) {
   return *this;
 }
 
-Bytes Query::blob(int column) const {
+ByteView Query::blob_view(int column) const {
   const SQLite::Column value = statement_->getColumn(column);
   // The pointer first: asking for the size may convert a value of another type.
   const auto* data = static_cast<const std::uint8_t*>(value.getBlob());
   const auto size = static_cast<std::size_t>(value.getBytes());
-  return data == nullptr ? Bytes() : Bytes(data, data + size);
+  return data == nullptr ? ByteView() : ByteView(data, size);
 }
 
 Database Database::create(const std::filesystem::path& path) {

@@ -76,7 +76,12 @@ class Query {
   [[nodiscard]] std::string text(int column) const {
     return statement_->getColumn(column).getString();
   }
-  [[nodiscard]] Bytes blob(int column) const;
+  [[nodiscard]] Bytes blob(int column) const {
+    const ByteView bytes = blob_view(column);
+    return {bytes.begin(), bytes.end()};
+  }
+  /// Without a copy: until the next step, or until the column is asked for again.
+  [[nodiscard]] ByteView blob_view(int column) const;
   [[nodiscard]] bool is_null(int column) const { return statement_->isColumnNull(column); }
 
  private:

@@ -44,43 +44,45 @@ class BodyReader {
   BodyReader(const BodyReader&) = delete;
   BodyReader& operator=(const BodyReader&) = delete;
 
-  void operator()(const char* key, std::string& value) const { value = text(key, "is not a text"); }
-  void operator()(const char* key, bool& value) const {
+  void operator()(std::string_view key, std::string& value) const {
+    value = text(key, "is not a text");
+  }
+  void operator()(std::string_view key, bool& value) const {
     const Json& found = at(key);
     if (!found.IsBool()) refuse(key, "is neither true nor false");
     value = found.GetBool();
   }
-  void operator()(const char* key, double& value) const {
+  void operator()(std::string_view key, double& value) const {
     const Json& found = at(key);
     if (!found.IsNumber()) refuse(key, "is not a number");
     value = found.GetDouble();
   }
-  void operator()(const char* key, Digest& value) const {
+  void operator()(std::string_view key, Digest& value) const {
     constexpr const char* kWhy = "is not 64 hexadecimal digits";
     const std::optional<Digest> digest = digest_from_hex(text(key, kWhy));
     if (!digest) refuse(key, kWhy);
     value = *digest;
   }
-  void operator()(const char* key, Signature& value) const {
+  void operator()(std::string_view key, Signature& value) const {
     constexpr const char* kWhy = "is not 128 hexadecimal digits";
     const std::optional<Bytes> bytes = from_hex(text(key, kWhy));
     if (!bytes || bytes->size() != value.size()) refuse(key, kWhy);
     std::copy(bytes->begin(), bytes->end(), value.begin());
   }
-  void operator()(const char* key, Kept& value) const {
+  void operator()(std::string_view key, Kept& value) const {
     const auto* const found = std::ranges::find(kKeptNames, text(key, "is not a text"));
     if (found == kKeptNames.end()) refuse(key, "is none of data, safety-record and nothing");
     value = static_cast<Kept>(found - kKeptNames.begin());
   }
   /// A whole number, at least `least`.
-  void operator()(const char* key, std::int64_t& value, std::int64_t least = 0) const {
+  void operator()(std::string_view key, std::int64_t& value, std::int64_t least = 0) const {
     value = whole(key, least, std::numeric_limits<std::int64_t>::max());
   }
-  void operator()(const char* key, int& value, int least = 0) const {
+  void operator()(std::string_view key, int& value, int least = 0) const {
     value = static_cast<int>(whole(key, least, std::numeric_limits<int>::max()));
   }
   /// Whole numbers from 0.
-  void operator()(const char* key, std::vector<std::int64_t>& value) const {
+  void operator()(std::string_view key, std::vector<std::int64_t>& value) const {
     const Json& found = at(key);
     if (!found.IsArray()) refuse(key, "is not a list");
     for (const Json& number : found.GetArray()) {
@@ -89,7 +91,7 @@ class BodyReader {
     }
   }
   /// Whole numbers from 1.
-  void operator()(const char* key, std::vector<int>& value) const {
+  void operator()(std::string_view key, std::vector<int>& value) const {
     std::vector<std::int64_t> numbers;
     (*this)(key, numbers);
     for (const std::int64_t number : numbers) {
@@ -99,40 +101,46 @@ class BodyReader {
   }
   /// Any of these, or nothing if the key is absent.
   template <typename Value, typename... Least>
-  void operator()(const char* key, std::optional<Value>& value, Least... least) const {
+  void operator()(std::string_view key, std::optional<Value>& value, Least... least) const {
     if (find(key) != nullptr) (*this)(key, value.emplace(), least...);
   }
   /// Any of these, left as it is if the key is absent.
   template <typename Value, typename... Least>
-  void if_any(const char* key, Value& value, Least... least) const {
+  void if_any(std::string_view key, Value& value, Least... least) const {
     if (find(key) != nullptr) (*this)(key, value, least...);
   }
   /// A member that is sealed: left as it is if the key is absent, as it is before the event is
   /// opened.
   template <typename Value>
-  void sealed(const char* key, Value& value) const {
+  void sealed(std::string_view key, Value& value) const {
     if_any(key, value);
   }
   /// An object within this one, or nothing if the key is absent. Its errors name both keys.
   template <typename Part>
-  void part(const char* key, std::optional<Part>& value) const {
+  void part(std::string_view key, std::optional<Part>& value) const {
     const Json* const found = find(key);
     if (found == nullptr) return;
     if (!found->IsObject()) refuse(key, "is not an object");
-    const BodyReader within(*found, place_ + "/" + key);
+    const BodyReader within(*found, place_ + "/" + std::string(key));
     members(within, value.emplace());
   }
 
  private:
   using Json = rapidjson::Value;
+  using Pool = rapidjson::MemoryPoolAllocator<>;
+  /// Everything in the pool, so that most bodies take no memory from the heap.
+  using Document = rapidjson::GenericDocument<rapidjson::UTF8<>, Pool, Pool>;
 
   BodyReader(const Json& object, std::string place) : object_(&object), place_(std::move(place)) {}
 
-  static void parse(rapidjson::Document& document, std::string_view text) {
+  void parse(Document& document, std::string_view text) {
     constexpr unsigned kFlags = rapidjson::kParseFullPrecisionFlag | rapidjson::kParseIterativeFlag;
-    // Nearly all bodies are ASCII, whose encoding needs no check sign by sign.
-    if (std::ranges::all_of(text, [](char sign) { return static_cast<signed char>(sign) >= 0; })) {
-      document.Parse<kFlags>(text.data(), text.size());
+    // Nearly all bodies are ASCII, whose encoding needs no check sign by sign: texts stay where
+    // they are in a copy.
+    if (is_ascii(text)) {
+      auto* const copy = static_cast<char*>(pool_.Malloc(text.size() + 1));
+      *std::ranges::copy(text, copy).out = '\0';
+      document.ParseInsitu<kFlags>(copy);
     } else {
       document.Parse<kFlags | rapidjson::kParseValidateEncodingFlag>(text.data(), text.size());
     }
@@ -141,8 +149,15 @@ class BodyReader {
     }
   }
 
-  [[noreturn]] void refuse(const char* key, const char* why) const {
-    throw StoreError(place_ + "/" + key + " " + why);
+  /// Looks at all signs, several at once.
+  [[nodiscard]] static bool is_ascii(std::string_view text) {
+    unsigned char bits = 0;
+    for (const char sign : text) bits |= static_cast<unsigned char>(sign);
+    return bits < 0x80;
+  }
+
+  [[noreturn]] void refuse(std::string_view key, const char* why) const {
+    throw StoreError(place_ + "/" + std::string(key) + " " + why);
   }
   /// \return the last of several, or null
   [[nodiscard]] static const Json* find_in(const Json& object, std::string_view key) {
@@ -154,21 +169,22 @@ class BodyReader {
     }
     return found;
   }
-  [[nodiscard]] const Json* find(const char* key) const {
+  [[nodiscard]] const Json* find(std::string_view key) const {
     const Json* const found = more_ == nullptr ? nullptr : find_in(*more_, key);
     return found != nullptr ? found : find_in(*object_, key);
   }
-  [[nodiscard]] const Json& at(const char* key) const {
+  [[nodiscard]] const Json& at(std::string_view key) const {
     const Json* const found = find(key);
     if (found == nullptr) refuse(key, "is missing");
     return *found;
   }
-  [[nodiscard]] std::string_view text(const char* key, const char* otherwise) const {
+  [[nodiscard]] std::string_view text(std::string_view key, const char* otherwise) const {
     const Json& found = at(key);
     if (!found.IsString()) refuse(key, otherwise);
     return {found.GetString(), found.GetStringLength()};
   }
-  [[nodiscard]] std::int64_t whole(const char* key, std::int64_t least, std::int64_t most) const {
+  [[nodiscard]] std::int64_t whole(std::string_view key, std::int64_t least,
+                                   std::int64_t most) const {
     const Json& found = at(key);
     if (!found.IsInt64()) refuse(key, "is not a whole number");
     const std::int64_t number = found.GetInt64();
@@ -176,11 +192,12 @@ class BodyReader {
     return number;
   }
 
+  static constexpr std::size_t kStack = 512;
   // Most bodies fit into the buffer.
-  std::array<std::byte, 4096> buffer_;
-  rapidjson::MemoryPoolAllocator<> pool_{buffer_.data(), buffer_.size()};
-  rapidjson::Document first_{&pool_};
-  rapidjson::Document second_{&pool_};
+  std::array<std::byte, 8192> buffer_;
+  Pool pool_{buffer_.data(), buffer_.size()};
+  Document first_{&pool_, kStack, &pool_};
+  Document second_{&pool_, kStack, &pool_};
   const Json* object_ = nullptr;
   const Json* more_ = nullptr;
   std::string place_;  ///< JSON pointer

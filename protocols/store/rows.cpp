@@ -47,8 +47,8 @@ Event event_of_row(const Query& row) {
           .at = std::chrono::nanoseconds(row.integer(3)),
           .body = row.text(4),
           .sealed = row.blob(5),
-          .previous = stored_hash(row.blob(6), session, sequence),
-          .hash = stored_hash(row.blob(7), session, sequence),
+          .previous = stored_hash(row.blob_view(6), session, sequence),
+          .hash = stored_hash(row.blob_view(7), session, sequence),
           .signature = row.blob(8),
           .renumbered_from = renumbered_from(row, 9)};
 }

@@ -230,6 +230,7 @@ Cells trial_cells(const TrialRow& row) {
 
 Cells cells_of(Table table, const std::function<Cell(int, ColumnType)>& cell) {
   Cells cells;
+  cells.reserve(table_definition(table).columns.size());
   for (const TableColumn& column : table_definition(table).columns) {
     cells.push_back(cell(static_cast<int>(cells.size()), column.type));
   }
