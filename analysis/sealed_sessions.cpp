@@ -2,15 +2,19 @@
 
 #include "analysis/outcomes.hpp"
 #include "core/errors.hpp"
+#include "core/parallel.hpp"
 #include "protocols/store/damage.hpp"
 #include "protocols/store/opened_parts.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/sealing.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <exception>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,21 +34,25 @@ std::string place_of(const store::Event& event) {
                           "without the key; restore a backup of the database");
 }
 
-/// Calls `visit` with each event of a kind, opened, and its secret text, for all sessions that have
-/// a key.
+/// Calls `visit` with an event, opened, and its secret text, if its session has a key.
+template <typename Visit>
+void read_secret(const store::Event& stored, const SessionKeys& keys, Visit visit) {
+  const auto own = keys.find(stored.session);
+  if (own == keys.end() || !own->second.participant) return;
+  const auto [event, secret] = whole_event(stored, *own->second.participant);
+  try {
+    visit(event, secret);
+  } catch (const StoreError& error) {
+    throw VerificationError(place_of(event) + ": " + error.what());
+  }
+}
+
+/// The same with each event of a kind.
 template <typename Visit>
 void for_each_secret(const StudyEvents& events, const SessionKeys& keys, store::EventKind kind,
                      Visit visit) {
-  events.for_each_of(std::span(&kind, 1), [&](const store::Event& stored) {
-    const auto own = keys.find(stored.session);
-    if (own == keys.end() || !own->second.participant) return;
-    const auto [event, secret] = whole_event(stored, *own->second.participant);
-    try {
-      visit(event, secret);
-    } catch (const StoreError& error) {
-      throw VerificationError(place_of(event) + ": " + error.what());
-    }
-  });
+  events.for_each_of(std::span(&kind, 1),
+                     [&](const store::Event& stored) { read_secret(stored, keys, visit); });
 }
 
 /// What the events of a session come to.
@@ -289,12 +297,19 @@ store::Trace open_trace(const std::optional<store::SealedTrace>& sealed,
 std::map<int, design::Schedule> open_schedules(const StudyEvents& events,
                                                const design::StudyKey& key,
                                                const SessionKeys& keys) {
+  std::vector<store::Event> openings;
+  events.for_each_of(std::to_array({store::EventKind::opened}),
+                     [&](const store::Event& event) { openings.push_back(event); });
+  std::vector<std::optional<design::Schedule>> opened(openings.size());
+  all_in_parallel(openings.size(), [&](std::size_t i) {
+    read_secret(openings[i], keys, [&](const store::Event&, const std::string& text) {
+      opened[i] = design::schedule_from_json(text, key);
+    });
+  });
   std::map<int, design::Schedule> schedules;
-  for_each_secret(events, keys, store::EventKind::opened,
-                  [&](const store::Event& event, const std::string& text) {
-                    schedules.insert_or_assign(event.session,
-                                               design::schedule_from_json(text, key));
-                  });
+  for (std::size_t i = 0; i < openings.size(); ++i) {
+    if (opened[i]) schedules.insert_or_assign(openings[i].session, *std::move(opened[i]));
+  }
   const auto add_block = [&](const store::Event& event, const std::string& text) {
     std::vector<design::Presentation>& all = schedules[event.session].presentations;
     const std::vector<design::Presentation> block = block_from_json(text, key);

@@ -3,6 +3,7 @@
 #include "analysis/statistics/cluster_bootstrap.hpp"
 #include "analysis/statistics/d_prime.hpp"
 #include "analysis/statistics/paired_tests.hpp"
+#include "core/parallel.hpp"
 #include "protocols/identification/analysis/chance.hpp"
 #include "protocols/identification/analysis/counted_trials.hpp"
 #include "protocols/identification/analysis/order.hpp"
@@ -10,6 +11,9 @@
 #include "protocols/identification/analysis/report_parts.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <initializer_list>
 #include <map>
 #include <utility>
 
@@ -234,39 +238,54 @@ void judge(ChoiceModel& model, int trials, int method) {
   model.drawn_p = choice_model_p(model, model.draws, static_cast<std::uint64_t>(method));
 }
 
-void add_confusions(const Outcomes& outcomes, const CountedTrials& counted, int method,
-                    MethodReport& report) {
+InformationTransfer information_of(int classes, const std::vector<OwnTrials>& by_participant,
+                                   int trials, int method) {
   std::vector<Choices> choices;
-  for (const OwnTrials& trials : counted.trials[method]) choices.push_back(choices_of(trials));
-  const auto classes = static_cast<int>(outcomes.classes.size());
-  report.confusion = confusion_of(outcomes, method);
-  report.overall = report.confusion.accuracy();
-  report.information = information_transfer(classes, choices, static_cast<std::uint64_t>(method),
-                                            null_deals(report.overall.n));
-  report.choice = choice_model(report.confusion);
-  if (report.choice) judge(*report.choice, report.overall.n, method);
-  report.matching = best_label_matching(report.confusion);
-  report.d_prime = d_prime(report.overall, classes);
+  for (const OwnTrials& own : by_participant) choices.push_back(choices_of(own));
+  return information_transfer(classes, choices, static_cast<std::uint64_t>(method),
+                              null_deals(trials));
+}
+
+/// Calls functions at once where a study is so large that threads pay.
+void in_parts(int trials, std::initializer_list<std::function<void()>> parts) {
+  constexpr int kFewTrials = 2'000;
+  in_parallel(trials < kFewTrials ? 1 : 0, parts.size(),
+              [&](std::size_t i) { parts.begin()[i](); });
 }
 
 }  // namespace
 
 MethodReport method_report(const Outcomes& outcomes, int method, const CountedTrials& counted) {
   const auto classes = static_cast<int>(outcomes.classes.size());
+  const std::vector<OwnTrials>& trials = counted.trials[method];
   MethodReport report;
   report.method = outcomes.methods[method];
-  add_confusions(outcomes, counted, method, report);
-  add_class_accuracies(counted.trials[method], report);
-  add_participants(classes, counted, method, report);
-  add_unbiased_hits(classes, counted.trials[method], report);
-  KnownMatches known;
-  report.chance = chance_of(outcomes, method, kMostChanceDeals, &known);
-  report.prevalence = own_prevalence(outcomes, method, &known);
-  report.reaction = reaction_times(outcomes, method);
-  report.breakdowns = breakdowns(outcomes, method);
-  report.order = order_of(outcomes, method);
-  report.confidence = confidence_of(outcomes, method);
-  report.robustness = robustness(outcomes, method);
+  report.confusion = confusion_of(outcomes, method);
+  report.overall = report.confusion.accuracy();
+  const int all = report.overall.n;
+  // Each part has its own members of the report, and its own random numbers.
+  in_parts(all, {[&] {
+                   report.choice = choice_model(report.confusion);
+                   if (report.choice) judge(*report.choice, all, method);
+                 },
+                 [&] { report.order = order_of(outcomes, method); },
+                 [&] { report.information = information_of(classes, trials, all, method); },
+                 [&] { add_participants(classes, counted, method, report); },
+                 [&] {
+                   KnownMatches known;
+                   report.chance = chance_of(outcomes, method, kMostChanceDeals, &known);
+                   report.prevalence = own_prevalence(outcomes, method, &known);
+                 },
+                 [&] {
+                   report.matching = best_label_matching(report.confusion);
+                   report.d_prime = d_prime(report.overall, classes);
+                   add_class_accuracies(trials, report);
+                   add_unbiased_hits(classes, trials, report);
+                   report.reaction = reaction_times(outcomes, method);
+                   report.breakdowns = breakdowns(outcomes, method);
+                   report.confidence = confidence_of(outcomes, method);
+                   report.robustness = robustness(outcomes, method);
+                 }});
   return report;
 }
 
