@@ -213,7 +213,9 @@ Outcomes opened(const store::StudyStore& store, const design::StudyKey& key, Sho
   take_what_was_said(sessions_opened, key.study, outcomes);
   const auto schedules = open_schedules(events, key, keys);
   Measures measures;
-  for (const store::TrialRow& row : sessions_opened.take_trials(measures)) {
+  const std::vector<store::TrialRow> trials = sessions_opened.take_trials(measures);
+  outcomes.trials.reserve(trials.size());
+  for (const store::TrialRow& row : trials) {
     const auto schedule = schedules.find(row.session);
     if (schedule == schedules.end()) continue;  // without an opening
     const auto session = sessions.find(row.session);

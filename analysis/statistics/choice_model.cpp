@@ -111,17 +111,18 @@ class Weights {
 
   /// Only the weights' ratios matter: scales the largest of each group to 1.
   void keep_in_range() {
-    std::vector<double> largest(static_cast<std::size_t>(model_.groups), 0.0);
+    largest_.assign(static_cast<std::size_t>(model_.groups), 0.0);
     for (std::size_t i = 0; i < weights_.size(); ++i) {
-      double& so_far = largest[model_.group[i]];
+      double& so_far = largest_[model_.group[i]];
       so_far = std::max(so_far, weights_[i]);
     }
-    for (std::size_t i = 0; i < weights_.size(); ++i) weights_[i] /= largest[model_.group[i]];
+    for (std::size_t i = 0; i < weights_.size(); ++i) weights_[i] /= largest_[model_.group[i]];
   }
 
   const ConfusionMatrix& confusion_;
   const ChoiceModel& model_;
   std::vector<double> weights_;
+  std::vector<double> largest_;  ///< of each group
   bool converged_ = false;
 };
 

@@ -34,26 +34,34 @@ class IndexDraws {
         bound_(static_cast<std::uint32_t>(bound)),
         excess_((0U - bound_) % bound_) {}
 
-  [[nodiscard]] std::size_t next() {
-    while (true) {
-      const std::uint64_t product = std::uint64_t{half()} * bound_;
-      if (static_cast<std::uint32_t>(product) >= excess_) return product >> 32U;
+  /// Calls `take` with one index after the other.
+  template <typename Take>
+  void each(std::size_t count, const Take& take) {
+    while (count > 0) {
+      if (!has_second_) word_ = random_.bits();
+      const std::uint64_t first = (word_ & 0xffffffffU) * bound_;
+      const std::uint64_t second = (word_ >> 32U) * bound_;
+      if (!has_second_ && is_taken(first)) {
+        take(first >> 32U);
+        --count;
+      }
+      has_second_ = count == 0;
+      if (has_second_ || !is_taken(second)) continue;
+      take(second >> 32U);
+      --count;
     }
   }
 
  private:
-  std::uint32_t half() {
-    second_ = !second_;
-    if (!second_) return static_cast<std::uint32_t>(word_ >> 32U);
-    word_ = random_.bits();
-    return static_cast<std::uint32_t>(word_);
+  [[nodiscard]] bool is_taken(std::uint64_t product) const {
+    return static_cast<std::uint32_t>(product) >= excess_;
   }
 
   RandomStream& random_;
   std::uint32_t bound_;
   std::uint32_t excess_;  // 2^32 mod bound
   std::uint64_t word_ = 0;
-  bool second_ = false;
+  bool has_second_ = false;  ///< only the first half of the word has been used
 };
 
 /// The ((n + 1) share)-th of the n draws by size, interpolated where that is not a whole number:
@@ -101,11 +109,10 @@ std::optional<Interval> cluster_bootstrap(std::span<const Proportion> participan
   for (double& share : shares) {
     std::int64_t n = 0;
     std::int64_t correct = 0;
-    for (std::size_t i = 0; i < participants.size(); ++i) {
-      const Proportion& one = participants[drawn.next()];
-      n += one.n;
-      correct += one.correct;
-    }
+    drawn.each(participants.size(), [&](std::size_t i) {
+      n += participants[i].n;
+      correct += participants[i].correct;
+    });
     share = static_cast<double>(correct) / static_cast<double>(n);
   }
   return expanded_percentiles(std::move(shares), participants.size(), level);
@@ -121,7 +128,7 @@ std::optional<Interval> bootstrap_mean(std::span<const double> values, std::uint
   std::vector<double> means(static_cast<std::size_t>(draws));
   for (double& mean : means) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < values.size(); ++i) sum += values[drawn.next()];
+    drawn.each(values.size(), [&](std::size_t i) { sum += values[i]; });
     mean = sum / static_cast<double>(values.size());
   }
   return expanded_percentiles(std::move(means), values.size(), level);
@@ -141,11 +148,10 @@ std::optional<Interval> bootstrap_ratio(std::span<const Ratio> participants, std
   std::vector<double> logs(static_cast<std::size_t>(draws));
   for (double& one : logs) {
     Ratio sum;
-    for (std::size_t i = 0; i < participants.size(); ++i) {
-      const Ratio& own = participants[drawn.next()];
-      sum.above += own.above;
-      sum.below += own.below;
-    }
+    drawn.each(participants.size(), [&](std::size_t i) {
+      sum.above += participants[i].above;
+      sum.below += participants[i].below;
+    });
     if (sum.above == 0.0 && sum.below == 0.0) return std::nullopt;
     one = std::log(sum.above) - std::log(sum.below);
   }
