@@ -96,8 +96,8 @@ void DeviceDynamics::place(Vec3 position_mm) noexcept {
   read_mm_s_ = {};
 }
 
-Vec3 DeviceDynamics::through_motors(Vec3 commanded_n) noexcept {
-  Vec3 force_n = commanded_n;
+Vec3 DeviceDynamics::through_motors(const Vec3& commanded_n) noexcept {
+  Vec3 force_n = by_number(commanded_n);
   if (!on_the_way_n_.empty()) {
     std::swap(force_n, on_the_way_n_[next_command_]);
     if (++next_command_ == on_the_way_n_.size()) next_command_ = 0;
@@ -126,8 +126,8 @@ double DeviceDynamics::friction_n(double speed_mm_s) const noexcept {
 /// \param free_mm_s  the velocity after the tick without friction
 /// \return the velocity with friction: at rest if friction can stop it, else less by friction's
 ///   share of `stop_n`
-Vec3 DeviceDynamics::after_friction(Vec3 velocity_mm_s, Vec3 stop_n,
-                                    Vec3 free_mm_s) const noexcept {
+Vec3 DeviceDynamics::after_friction(const Vec3& velocity_mm_s, const Vec3& stop_n,
+                                    const Vec3& free_mm_s) const noexcept {
   const auto left = [this](double before_mm_s, double needed_n, double speed_mm_s) {
     const double slip_n = friction_n(speed_mm_s);
     const double hold_n = before_mm_s == 0.0 ? static_n_ : slip_n;
@@ -145,7 +145,7 @@ Vec3 DeviceDynamics::after_friction(Vec3 velocity_mm_s, Vec3 stop_n,
 /// Two masses and the spring between them, by the trapezium rule, which neither damps nor excites
 /// their resonance; damping to the ground is implicit, as in a rigid device. docs/devices/models.md
 /// has the equations.
-void DeviceDynamics::move_structure(Vec3 motor_n, const Outside& outside) noexcept {
+void DeviceDynamics::move_structure(const Vec3& motor_n, const Outside& outside) noexcept {
   const double joint = joint_;
   const double motor_mass = kMPerMm * (model_.mass_kg - tip_kg_) / tick_s_;
   const double tip_mass = kMPerMm * (tip_kg_ + outside.mass_kg) / tick_s_;
@@ -184,7 +184,7 @@ void DeviceDynamics::make_out_reading() noexcept {
   }
   if (model_.position_step_mm > 0.0) read_mm_ = whole_steps(read_mm_, model_.position_step_mm);
   if (readings_mm_.empty()) {
-    read_mm_s_ = joint_ > 0.0 ? motor_mm_s_ : tip_mm_s_;
+    read_mm_s_ = by_number(joint_ > 0.0 ? motor_mm_s_ : tip_mm_s_);
   } else {
     estimate_velocity();
   }
@@ -194,14 +194,15 @@ void DeviceDynamics::make_out_reading() noexcept {
 /// 6 / (n (n^2 - 1) T) * sum over i = 0 .. n - 1 of (2 i - (n - 1)) x_i.
 void DeviceDynamics::estimate_velocity() noexcept {
   const std::size_t n = readings_mm_.size();
-  readings_mm_[next_reading_] = read_mm_;
+  const Vec3 now_mm = by_number(read_mm_);
+  readings_mm_[next_reading_] = now_mm;
   if (++next_reading_ == n) next_reading_ = 0;
   const double count = static_cast<double>(n);
   Vec3 sum_mm;
   double weight = 1.0 - count;
   std::size_t place = next_reading_;  // the oldest
   for (std::size_t i = 0; i < n; ++i, weight += 2.0) {
-    sum_mm = sum_mm + weight * (readings_mm_[place] - read_mm_);
+    sum_mm = sum_mm + weight * (readings_mm_[place] - now_mm);
     if (++place == n) place = 0;
   }
   read_mm_s_ = (6.0 / (count * (count * count - 1.0) * tick_s_)) * sum_mm;

@@ -136,12 +136,12 @@ class DeviceDynamics {
   explicit DeviceDynamics(const DeviceModel& model, double tick_s = 0.001);
 
   /// As a driver reads it: quantised, with noise.
-  [[nodiscard]] Vec3 read_position_mm() const noexcept { return read_mm_; }
+  [[nodiscard]] const Vec3& read_position_mm() const noexcept { return read_mm_; }
   /// As a driver estimates it from its readings; the velocity itself without velocity_readings.
-  [[nodiscard]] Vec3 read_velocity_mm_s() const noexcept { return read_mm_s_; }
+  [[nodiscard]] const Vec3& read_velocity_mm_s() const noexcept { return read_mm_s_; }
   /// Of the tip.
-  [[nodiscard]] Vec3 true_position_mm() const noexcept { return tip_mm_; }
-  [[nodiscard]] Vec3 true_velocity_mm_s() const noexcept { return tip_mm_s_; }
+  [[nodiscard]] const Vec3& true_position_mm() const noexcept { return tip_mm_; }
+  [[nodiscard]] const Vec3& true_velocity_mm_s() const noexcept { return tip_mm_s_; }
   /// The motors' force during the last tick.
   [[nodiscard]] Vec3 delivered_force_n() const noexcept { return delivered_n_; }
 
@@ -171,11 +171,12 @@ class DeviceDynamics {
   static constexpr double kMmPerM = 1000.0;
   static constexpr double kMPerMm = 0.001;
 
-  [[nodiscard]] Vec3 through_motors(Vec3 commanded_n) noexcept;
-  [[nodiscard]] Vec3 after_friction(Vec3 velocity_mm_s, Vec3 stop_n, Vec3 free_mm_s) const noexcept;
+  [[nodiscard]] Vec3 through_motors(const Vec3& commanded_n) noexcept;
+  [[nodiscard]] Vec3 after_friction(const Vec3& velocity_mm_s, const Vec3& stop_n,
+                                    const Vec3& free_mm_s) const noexcept;
   [[nodiscard]] double friction_n(double speed_mm_s) const noexcept;
-  void move_rigid(Vec3 force_n, const Outside& outside) noexcept;
-  void move_structure(Vec3 motor_n, const Outside& outside) noexcept;
+  void move_rigid(const Vec3& force_n, const Outside& outside) noexcept;
+  void move_structure(const Vec3& motor_n, const Outside& outside) noexcept;
   void take_reading() noexcept;
   /// From the true position: what quantisation, noise and the estimate of velocity make of it.
   void make_out_reading() noexcept;
@@ -223,7 +224,7 @@ inline void DeviceDynamics::tick(Vec3 commanded_n, const Outside& outside) noexc
   take_reading();
 }
 
-inline void DeviceDynamics::move_rigid(Vec3 force_n, const Outside& outside) noexcept {
+inline void DeviceDynamics::move_rigid(const Vec3& force_n, const Outside& outside) noexcept {
   const double mass_kg = model_.mass_kg + outside.mass_kg;
   const double tick_per_mass = tick_s_ * kMmPerM / (mass_kg > 0.0 ? mass_kg : kLeastMassKg);
   const double viscous = kMPerMm * model_.viscous_n_s_per_m;
@@ -244,9 +245,9 @@ inline void DeviceDynamics::move_rigid(Vec3 force_n, const Outside& outside) noe
 }
 
 inline void DeviceDynamics::take_reading() noexcept {
-  read_mm_ = joint_ > 0.0 ? motor_mm_ : tip_mm_;
+  read_mm_ = by_number(joint_ > 0.0 ? motor_mm_ : tip_mm_);
   if (has_true_readings_) {
-    read_mm_s_ = joint_ > 0.0 ? motor_mm_s_ : tip_mm_s_;
+    read_mm_s_ = by_number(joint_ > 0.0 ? motor_mm_s_ : tip_mm_s_);
   } else {
     make_out_reading();
   }

@@ -222,7 +222,7 @@ class ServoRun {
     if (state == DeviceStatus::fault) safety_.trip(SafetyFault::device);
     if (sample.delivered_n) note_delivered(*sample.delivered_n);
     const double fade = fade_at(start.tick);
-    const Vec3 rendered_n = (fade * share()) * force_.force_n(sample);
+    const Vec3 rendered_n = (fade * share()) * by_number(force_.force_n(sample));
     if (force_.is_done()) fade_out(start.tick, ServoEnd::hand_stopped);
     const Vec3 carried_n = device_.support_force_n(sample);
     const Vec3 support_n = carried_n == Vec3{} ? carried_n : fade * carried_n;

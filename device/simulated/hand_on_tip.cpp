@@ -103,8 +103,8 @@ HandOnTip::Pull HandOnTip::pull(Axis& a, double tip_mm, double tip_mm_s, double 
   return {fingers_n + a.finger_after * a.carried_mm_s, a.finger_after * (1.0 - a.share)};
 }
 
-DeviceDynamics::Outside HandOnTip::grip(Vec3 tip_mm, Vec3 tip_mm_s, const PathPoint& intention,
-                                        double push_n) noexcept {
+DeviceDynamics::Outside HandOnTip::grip(const Vec3& tip_mm, const Vec3& tip_mm_s,
+                                        const PathPoint& intention, double push_n) noexcept {
   const double lead_s = is_held_ ? 0.5 * tick_s_ : 0.0;
   const Vec2 place_mm = intention.position_mm + lead_s * intention.velocity_mm_s;
   const Vec2 way_mm_s = intention.velocity_mm_s;
@@ -118,7 +118,7 @@ DeviceDynamics::Outside HandOnTip::grip(Vec3 tip_mm, Vec3 tip_mm_s, const PathPo
           {x.damping_n_s_per_mm, y.damping_n_s_per_mm, z.damping_n_s_per_mm}};
 }
 
-void HandOnTip::follow_grip(Vec3 tip_mm_s) noexcept {
+void HandOnTip::follow_grip(const Vec3& tip_mm_s) noexcept {
   const std::array<double, 3> tip{tip_mm_s.x, tip_mm_s.y, tip_mm_s.z};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& a = axes_[i];

@@ -67,8 +67,8 @@ class HandOnTip {
   /// \param tip_mm, tip_mm_s  of the tip, true, in the plane frame
   /// \param intention  where the arm wants to be, along the plane
   /// \param push_n  towards the plane
-  [[nodiscard]] DeviceDynamics::Outside hold(Vec3 tip_mm, Vec3 tip_mm_s, const PathPoint& intention,
-                                             double push_n) noexcept {
+  [[nodiscard]] DeviceDynamics::Outside hold(const Vec3& tip_mm, const Vec3& tip_mm_s,
+                                             const PathPoint& intention, double push_n) noexcept {
     return is_grip_ ? grip(tip_mm, tip_mm_s, intention, push_n)
                     : hold_as_point(tip_mm, intention, push_n);
   }
@@ -86,7 +86,7 @@ class HandOnTip {
   }
   /// Ends the tick.
   /// \param tip_mm_s  of the tip after it
-  void follow(Vec3 tip_mm_s) noexcept {
+  void follow(const Vec3& tip_mm_s) noexcept {
     if (is_grip_) follow_grip(tip_mm_s);
   }
 
@@ -117,9 +117,9 @@ class HandOnTip {
     double force_n, damping_n_s_per_mm;
   };
   [[nodiscard]] Axis grip_axis(std::size_t axis) const noexcept;
-  [[nodiscard]] DeviceDynamics::Outside grip(Vec3 tip_mm, Vec3 tip_mm_s, const PathPoint& intention,
-                                             double push_n) noexcept;
-  void follow_grip(Vec3 tip_mm_s) noexcept;
+  [[nodiscard]] DeviceDynamics::Outside grip(const Vec3& tip_mm, const Vec3& tip_mm_s,
+                                             const PathPoint& intention, double push_n) noexcept;
+  void follow_grip(const Vec3& tip_mm_s) noexcept;
   [[nodiscard]] static Pull pull(Axis& axis, double tip_mm, double tip_mm_s, double place_mm,
                                  double drive_n) noexcept;
 

@@ -165,7 +165,7 @@ void SimulatedHand::foresee() {
   for (std::int64_t tick = 0; tick <= last_tick_; ++tick) {
     const Intention intention = intention_at(tick, stroke);
     static_cast<void>(free.tick({}, intention.target, intention.push_n));
-    const Vec3 tip_mm_s = free.device.true_velocity_mm_s();
+    const Vec3& tip_mm_s = free.device.true_velocity_mm_s();
     way->push_back({intention, {tip_mm_s.x, tip_mm_s.y}});
   }
   foreseen_ = std::move(way);

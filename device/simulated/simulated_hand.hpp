@@ -180,8 +180,8 @@ inline SimulatedHand::Intention SimulatedHand::intention_at(std::int64_t tick,
 }
 
 inline DeviceStatus SimulatedHand::read(DeviceSample& sample) noexcept {
-  sample = {held_.device.read_position_mm(), held_.device.read_velocity_mm_s(),
-            static_cast<std::uint64_t>(tick_) + 1};
+  sample = {by_number(held_.device.read_position_mm()),
+            by_number(held_.device.read_velocity_mm_s()), static_cast<std::uint64_t>(tick_) + 1};
   return tick_ < last_tick_ ? DeviceStatus::ok : DeviceStatus::stopped;
 }
 
@@ -190,7 +190,7 @@ inline DeviceStatus SimulatedHand::write(Vec3 force_n) noexcept {
   if (foreseen_ != nullptr) foreseen = &(*foreseen_)[std::min(tick_, last_tick_)];
   const Intention intention =
       foreseen != nullptr ? foreseen->intention : intention_at(tick_, stroke_);
-  const Vec3 tip_mm = held_.device.true_position_mm();
+  const Vec3 tip_mm = by_number(held_.device.true_position_mm());
   held_.tick(force_n, intention.target, intention.push_n);
   ++tick_;
   if (sense_ != nullptr) tell(*sense_, tip_mm, force_n, intention, foreseen);
@@ -204,10 +204,10 @@ inline void SimulatedHand::tell(TipSense& sense, Vec3 tip_mm, Vec3 force_n,
     own_mm_s = foreseen->tip_mm_s;
   } else {
     static_cast<void>(unforced_->tick({}, intention.target, intention.push_n));
-    const Vec3 free_mm_s = unforced_->device.true_velocity_mm_s();
+    const Vec3& free_mm_s = unforced_->device.true_velocity_mm_s();
     own_mm_s = {free_mm_s.x, free_mm_s.y};
   }
-  const Vec3 before_mm_s = yielding_mm_s_;
+  const Vec3 before_mm_s = by_number(yielding_mm_s_);
   yielding_mm_s_ = held_.device.true_velocity_mm_s() - Vec3{own_mm_s.x, own_mm_s.y, 0.0};
   // mm/s in a tick of 1 ms are m/s^2.
   static_assert(kServoTick == std::chrono::milliseconds(1));

@@ -133,7 +133,7 @@ struct TextureSense::State {
   FeltPower power;
 };
 
-void TextureSense::State::take(const Vec3& at_mm, const Vec3& felt, bool touches) noexcept {
+inline void TextureSense::State::take(const Vec3& at_mm, const Vec3& felt, bool touches) noexcept {
   x[filled] = static_cast<float>(felt.x);
   y[filled] = static_cast<float>(felt.y);
   z[filled] = static_cast<float>(felt.z);
@@ -142,7 +142,7 @@ void TextureSense::State::take(const Vec3& at_mm, const Vec3& felt, bool touches
   const Vec2 step_mm{at_mm.x - last_mm.x, at_mm.y - last_mm.y};
   current.path_mm += std::sqrt(step_mm.x * step_mm.x + step_mm.y * step_mm.y);
   current.contacts += touches ? 1 : 0;
-  current.end_mm = at_mm;
+  current.end_mm = by_number(at_mm);
   ++filled;
   if (filled % kHop == 0) end_half();
 }
@@ -249,7 +249,7 @@ void TextureSense::feel(const Vec3& position_mm, const Vec3& force_n, const Vec3
   } else {
     s.take(position_mm, felt, force_n.z > 0.0);
   }
-  s.last_mm = position_mm;
+  s.last_mm = by_number(position_mm);
 }
 
 FeltFeatures TextureSense::features() const noexcept {

@@ -1,5 +1,6 @@
 #include "engine/rendering/cubic_spline.hpp"
 
+#include "engine/rendering/model_parts.hpp"
 #include "engine/symmetric_extension.hpp"
 
 #include <algorithm>
@@ -137,6 +138,7 @@ SplinePoint spline_at(std::span<const float> coefficients, int height_px, int wi
   const auto stride = static_cast<std::size_t>(width_px);
   if (column >= 0 && row >= 0 && column + 4 <= width_px && row + 4 <= height_px) {
     const float* corner = coefficients.data() + static_cast<std::size_t>(row) * stride + column;
+    fetch_rows_beside(corner, stride);
     return summed(at, [=](int dy) { return corner + static_cast<std::size_t>(dy) * stride; });
   }
   std::array<float, 4> mirrored;

@@ -89,8 +89,7 @@ struct Place {
   double to_down;
 };
 
-Place place_in(const PlaneGeometry& plane, double x_mm, double y_mm) noexcept {
-  const Vec2 px = plane.to_px(x_mm, y_mm);
+Place place_in(const PlaneGeometry& plane, Vec2 px) noexcept {
   const double x = std::clamp(px.x, 0.0, plane.width_px - 1.0);
   const double y = std::clamp(px.y, 0.0, plane.height_px - 1.0);
   const auto left = static_cast<int>(x);
@@ -119,9 +118,14 @@ double height_at(const FieldView& field, const Place& at) noexcept {
 }
 
 /// Whether the point's four pixels have all their neighbours in a neighbourhood of 3.
-bool is_inside(const PlaneGeometry& plane, const Place& at) noexcept {
-  return at.left >= 1 && at.top >= 1 && at.left + 2 < plane.width_px &&
-         at.top + 2 < plane.height_px;
+bool is_inside(const PlaneGeometry& plane, Vec2 px) noexcept {
+  return px.x >= 1.0 && px.y >= 1.0 && px.x < plane.width_px - 2.0 && px.y < plane.height_px - 2.0;
+}
+
+/// `place_in` of such a point.
+Place place_inside(Vec2 px) noexcept {
+  return {static_cast<int>(px.x),  static_cast<int>(px.y), 1, 1,
+          px.x - std::trunc(px.x), px.y - std::trunc(px.y)};
 }
 
 /// Two numbers side by side in a register.
@@ -131,13 +135,15 @@ using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 /// cancels in each pair of opposite neighbours, so the force is [1 2 1] / 2 across and [1 0 -1]
 /// along its component; mixing two neighbouring pixels gives weights for four rows and columns.
 /// \param heights  of the slopes; the texture's height is theirs
-Texture texture_inside(const float* heights, std::size_t stride, const Place& at) noexcept {
+[[gnu::flatten]] Texture texture_inside(const float* heights, std::size_t stride,
+                                        const Place& at) noexcept {
   const double v = at.to_down;
   const double u = at.to_right;
   const Pair smooth_first = {0.5 * (1.0 - u), 1.0 - 0.5 * u};
   const Pair smooth_last = {0.5 + 0.5 * u, 0.5 * u};
   const float* row = heights + static_cast<std::size_t>(at.top - 1) * stride +
                      static_cast<std::size_t>(at.left - 1);
+  fetch_rows_beside(row, stride);
   Pair steps{};   // along x, smoothed along y
   Pair smooth{};  // along x, and then steps along y
   const auto add_row = [&](double smooth_down, double step_down) {
@@ -158,17 +164,20 @@ Texture texture_inside(const float* heights, std::size_t stride, const Place& at
           {(1.0 - u) * steps[0] + u * steps[1], smooth[0] + smooth[1]}};
 }
 
-Texture texture_at(const FieldView& field, double x_mm, double y_mm) noexcept {
-  const Place at = place_in(field.geometry, x_mm, y_mm);
-  if (field.neighbourhood != 3) {
-    return {height_at(field, at),
-            mixed(at, [&](int y, int x) { return force_at_pixel(field, y, x); })};
-  }
-  if (!is_inside(field.geometry, at)) {
-    return {height_at(field, at), mixed(at, [&](int y, int x) {
-              return force_at_any_pixel(field.slopes().data(), field.geometry, y, x);
-            })};
-  }
+/// Apart, so that the usual case keeps the registers.
+[[gnu::noinline]] Texture texture_anywhere(const FieldView& field, Vec2 px) noexcept {
+  const Place at = place_in(field.geometry, px);
+  const bool is_usual = field.neighbourhood == 3;
+  return {height_at(field, at), mixed(at, [&](int y, int x) {
+            return is_usual ? force_at_any_pixel(field.slopes().data(), field.geometry, y, x)
+                            : force_at_pixel(field, y, x);
+          })};
+}
+
+Texture texture_at(const FieldView& field, Vec2 px) noexcept {
+  if (field.neighbourhood != 3 || !is_inside(field.geometry, px))
+    return texture_anywhere(field, px);
+  const Place at = place_inside(px);
   Texture texture =
       texture_inside(field.slopes().data(), static_cast<std::size_t>(field.geometry.width_px), at);
   if (!field.other_slopes.empty()) texture.height = height_at(field, at);
@@ -187,13 +196,13 @@ PaperModel::PaperModel(FieldView field, const RenderingOptions& options, Gains g
   if (field.model != ModelKind::paper) field_.heights = {};  // the flat wall
 }
 
-Vec3 PaperModel::force_n(Vec3 position_mm, Vec3 velocity_mm_s) const noexcept {
+Vec3 PaperModel::force_n(const Vec3& position_mm, const Vec3& velocity_mm_s) const noexcept {
   if (!is_finite(position_mm) || !is_finite(velocity_mm_s)) return {};
   double elastic_n = -stiffness_n_per_mm_ * position_mm.z;
   Vec2 texture;
   if (field_.geometry.contains(position_mm.x, position_mm.y) && !field_.empty()) {
     if (is_out_of_reach(elastic_n)) return {};
-    const Texture felt = texture_at(field_, position_mm.x, position_mm.y);
+    const Texture felt = texture_at(field_, field_.geometry.to_px(position_mm.x, position_mm.y));
     texture = felt.force;
     elastic_n += gains_.normal_n * (felt.height - reference_height_);
   }

@@ -29,7 +29,7 @@ class PaperModel {
   /// hand. A position or velocity that is not finite gives zero force.
   /// No allocation, lock or exception. Any number of threads. Cost: about 20 ns; with wider
   /// neighbourhoods about 4 n^2 ns.
-  [[nodiscard]] Vec3 force_n(Vec3 position_mm, Vec3 velocity_mm_s) const noexcept;
+  [[nodiscard]] Vec3 force_n(const Vec3& position_mm, const Vec3& velocity_mm_s) const noexcept;
 
  private:
   /// Whether no surface of this field could touch a hand that meets the wall with this force.

@@ -17,7 +17,8 @@ class RenderingModel {
 
   /// PaperModel::force_n or SurfaceModel::force_n.
   /// \param touch  the state that a presentation keeps from tick to tick; a new one for each
-  [[nodiscard]] Vec3 force_n(Vec3 position_mm, Vec3 velocity_mm_s, Bristle& touch) const noexcept {
+  [[nodiscard]] Vec3 force_n(const Vec3& position_mm, const Vec3& velocity_mm_s,
+                             Bristle& touch) const noexcept {
     if (const auto* paper = std::get_if<PaperModel>(&model_)) {
       return paper->force_n(position_mm, velocity_mm_s);
     }

@@ -45,7 +45,8 @@ SurfaceModel::SurfaceModel(FieldView field, const RenderingOptions& options, Gai
       // A B-spline is a weighted mean of its coefficients, and so never above the highest.
       reach_mm_(mm_per_grey_ > 0.0 ? std::max(0.0, mm_per_grey_ * field.highest) : 0.0) {}
 
-Vec3 SurfaceModel::force_n(Vec3 position_mm, Vec3 velocity_mm_s, Bristle& bristle) const noexcept {
+Vec3 SurfaceModel::force_n(const Vec3& position_mm, const Vec3& velocity_mm_s,
+                           Bristle& bristle) const noexcept {
   const bool in_reach = position_mm.z < reach_mm_;
   if (in_reach && is_finite(position_mm) && is_finite(velocity_mm_s)) {
     return contact_force_n(position_mm, velocity_mm_s, bristle);
@@ -54,7 +55,7 @@ Vec3 SurfaceModel::force_n(Vec3 position_mm, Vec3 velocity_mm_s, Bristle& bristl
   return {};
 }
 
-Vec3 SurfaceModel::contact_force_n(Vec3 position_mm, Vec3 velocity_mm_s,
+Vec3 SurfaceModel::contact_force_n(const Vec3& position_mm, const Vec3& velocity_mm_s,
                                    Bristle& bristle) const noexcept {
   const Relief relief = relief_at(position_mm.x, position_mm.y);
   const double elastic_n = stiffness_n_per_mm_ * (relief.height_mm - position_mm.z);

@@ -65,7 +65,8 @@ class SurfaceModel {
   /// No allocation, lock or exception. Any number of threads, each with its own bristle. Cost: less
   /// than twice PaperModel's.
   /// \param bristle  of this presentation; not used without friction
-  [[nodiscard]] Vec3 force_n(Vec3 position_mm, Vec3 velocity_mm_s, Bristle& bristle) const noexcept;
+  [[nodiscard]] Vec3 force_n(const Vec3& position_mm, const Vec3& velocity_mm_s,
+                             Bristle& bristle) const noexcept;
 
  private:
   /// alpha * h and its gradient at a point of the plane.
@@ -74,7 +75,7 @@ class SurfaceModel {
     Vec2 slope;
   };
   [[nodiscard]] Relief relief_at(double x_mm, double y_mm) const noexcept;
-  [[nodiscard]] Vec3 contact_force_n(Vec3 position_mm, Vec3 velocity_mm_s,
+  [[nodiscard]] Vec3 contact_force_n(const Vec3& position_mm, const Vec3& velocity_mm_s,
                                      Bristle& bristle) const noexcept;
 
   FieldView field_;

@@ -66,10 +66,9 @@ class TraceBuilder {
   void add(const device::ServoSample& sample) noexcept {
     const auto tick = static_cast<std::size_t>(std::max<std::int64_t>(sample.tick, 0));
     if (tick >= room_ || tick < next_) return;
-    const store::TraceSample kept{sample.position_mm, sample.force_n};
-    if (next_ < tick) hold_until(tick, kept);
+    if (next_ < tick) hold_until(tick, {sample.position_mm, sample.force_n});
     if (!landing_tick_ && sample.position_mm.z <= kLandingHeightMm) landing_tick_ = sample.tick;
-    trace_.samples.push_back(kept);
+    trace_.samples.push_back({by_number(sample.position_mm), by_number(sample.force_n)});
     next_ = tick + 1;
   }
 

@@ -39,9 +39,12 @@ Powers stroked(const engine::RenderingModel& model, const PlaneGeometry& plane,
   return sense.mean_powers();
 }
 
+const std::vector<double>& weights_of(engine::ThresholdCurve curve) {
+  return engine::threshold_weights(curve, engine::kSenseWindow, device::kServoRateHz);
+}
+
 BandPowers in_bands(const Powers& powers, engine::ThresholdCurve curve) {
-  const std::vector<double>& weights =
-      engine::threshold_weights(curve, engine::kSenseWindow, device::kServoRateHz);
+  const std::vector<double>& weights = weights_of(curve);
   BandPowers bands{};
   for (std::size_t k = 1; k < powers.size(); ++k) {
     const double frequency_hz =
@@ -122,12 +125,19 @@ StimulusLevels levels_of(const design::StudyCodes& key, const session::StimulusS
     subjects[d].sense = engine::ThresholdCurve::israr_2006;  // so that accelerations are felt
     subjects[d].device = devices[d];
   }
-  // By device and pass: the same path on every plane.
+  // By device and pass: the same path on every plane. Meanwhile the weights of each curve, which
+  // are worked out once in a program's life, while whoever else asks for them waits.
+  constexpr std::size_t kCurves = engine::kThresholdCurves.size();
   std::vector<std::optional<device::SimulatedHand>> hands(devices.size() * kPasses);
-  in_parallel(jobs, hands.size(), [&](std::size_t i) {
-    RandomStream random(seed, "levels: path", i % kPasses);
-    hands[i].emplace(make_exploring_hand(subjects[i / kPasses], fields.plane(), random));
-    hands[i]->foresee();
+  in_parallel(jobs, kCurves + hands.size(), [&](std::size_t i) {
+    if (i < kCurves) {
+      static_cast<void>(weights_of(engine::kThresholdCurves[i]));
+      return;
+    }
+    const std::size_t hand = i - kCurves;
+    RandomStream random(seed, "levels: path", hand % kPasses);
+    hands[hand].emplace(make_exploring_hand(subjects[hand / kPasses], fields.plane(), random));
+    hands[hand]->foresee();
   });
   std::vector<Powers> powers(devices.size() * planes.size() * kPasses);
   in_parallel(jobs, powers.size(), [&](std::size_t i) {
