@@ -2,9 +2,8 @@
 /// one.
 ///
 /// The first pass computes sub-bands, gradients and the maximum of CSGV in rolling rows. The second
-/// computes orders and texture, and picture and force if they are wanted. Besides the wanted
-/// planes, they need memory for CSGV, one byte per pixel (adaptive), and for rows whose number
-/// depends on the radius.
+/// computes orders and texture, and the picture if it is wanted. CSGV waits in the texture's plane
+/// in between. Besides the planes they need memory for rows whose number depends on the radius.
 #pragma once
 
 #include "engine/extraction.hpp"

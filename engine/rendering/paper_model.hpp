@@ -27,7 +27,7 @@ class PaperModel {
   /// Beyond the plane's edge: the flat wall, k * depth - damping * v_z.
   /// Without contact the force is zero; the field is not read where no surface could reach the
   /// hand. A position or velocity that is not finite gives zero force.
-  /// No allocation, lock or exception. Any number of threads. Cost: about 20 ns; with wider
+  /// No allocation, lock or exception. Any number of threads. Cost: 25 to 50 ns; with wider
   /// neighbourhoods about 4 n^2 ns.
   [[nodiscard]] Vec3 force_n(const Vec3& position_mm, const Vec3& velocity_mm_s) const noexcept;
 

@@ -103,6 +103,8 @@ class StationPush {
       note_pushed(*sent);
     }
     push(segments(stored));
+    // Others may have pushed some of them meanwhile.
+    report_.already_there = finished_ - static_cast<int>(report_.pushed.size());
     restore_keys();
     if (report_.keys_destroyed > 0) report_.keys_wiped = server_->wipe_deleted_keys();
   }
@@ -171,6 +173,7 @@ class StationPush {
     if (std::exchange(planned_, true)) return;
     for (const auto& [session, course] : courses_) {
       if (!course.closed_at) continue;
+      ++finished_;
       ++(*course.closed_at < stored ? report_.already_there : to_push_);
     }
   }
@@ -189,34 +192,55 @@ class StationPush {
     std::map<std::int64_t, SentTrace> traces;
   };
 
-  /// All that a transaction sends.
-  struct Shipment {
-    std::vector<SentSession> sessions;
+  /// What is read and packed at once: a session, and with a segment's last one, or alone in a
+  /// segment without sessions, the segment's part of the file chain.
+  struct Parcel {
+    const ChainSegment& segment;
+    std::optional<int> session;
+    bool is_last;
+  };
+  struct PackedParcel {
+    std::optional<SentSession> session;
     std::vector<InsertStatement> statements;
   };
 
-  /// While the server works on a segment, another thread reads and packs the next one.
+  static std::vector<Parcel> parcels_of(const std::vector<ChainSegment>& segments) {
+    std::vector<Parcel> parcels;
+    for (const ChainSegment& segment : segments) {
+      for (const int session : segment.sessions) {
+        parcels.push_back({segment, session, session == segment.sessions.back()});
+      }
+      if (segment.sessions.empty()) parcels.push_back({segment, std::nullopt, true});
+    }
+    return parcels;
+  }
+
+  /// While the server works on a parcel, another thread reads and packs the next one: no more than
+  /// two are in memory, however many sessions a segment closes.
   void push(const std::vector<ChainSegment>& segments) {
-    std::future<Shipment> next;  // waits for its thread before it goes
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-      sent_ = segments[i];
-      push(segments[i], [&](int station) {
-        Shipment shipment = next.valid() ? next.get() : packed(segments[i], station);
-        if (i + 1 < segments.size()) {
-          next = std::async(std::launch::async, [this, &segment = segments[i + 1], station] {
-            return packed(segment, station);
-          });
-        }
-        return shipment;
-      });
-      note_pushed(segments[i]);
+    const std::vector<Parcel> parcels = parcels_of(segments);
+    auto parcel = parcels.begin();
+    std::future<PackedParcel> ahead;  // waits for its thread before it goes
+    const auto next_parcel = [&](int station) {
+      PackedParcel ready = ahead.valid() ? ahead.get() : packed(*parcel, station);
+      if (++parcel != parcels.end()) {
+        ahead = std::async(std::launch::async,
+                           [this, &next = *parcel, station] { return packed(next, station); });
+      }
+      return ready;
+    };
+    for (const ChainSegment& segment : segments) {
+      sent_ = segment;
+      push(segment, next_parcel);
+      note_pushed(segment);
       sent_.reset();
     }
   }
 
-  /// \param shipment_of  called once with the station's number on the server
-  template <typename ShipmentOf>
-  void push(const ChainSegment& segment, ShipmentOf shipment_of) {
+  /// \param next_parcel  called with the station's number on the server once for each of the
+  ///   segment's parcels
+  template <typename NextParcel>
+  void push(const ChainSegment& segment, const NextParcel& next_parcel) {
     report_.keys_destroyed += server_->change([&](ServerWork& work) {
       int keys_destroyed = 0;
       lock_station(work, identity());
@@ -231,14 +255,18 @@ class StationPush {
           keys_destroyed += update_session(work, station, session, now) ? 1 : 0;
         }
       }
-      const Shipment shipment = shipment_of(station);
-      for (const SentSession& sent : shipment.sessions) {
-        refuse_if_there_or_taken(work, *server_, sent.row);
+      std::vector<SentSession> sent;
+      for (std::size_t i = 0; i < std::max<std::size_t>(segment.sessions.size(), 1); ++i) {
+        PackedParcel parcel = next_parcel(station);
+        if (parcel.session) {
+          refuse_if_there_or_taken(work, *server_, parcel.session->row);
+          sent.push_back(*std::move(parcel.session));
+        }
+        for (const InsertStatement& statement : parcel.statements) statement.send(work);
       }
-      for (const InsertStatement& statement : shipment.statements) statement.send(work);
-      for (const SentSession& sent : shipment.sessions) {
-        check_session_arrival(work, *server_, sent.row.session, sent.row.own_session, sent.course,
-                              commitment_, sent.traces, options_.investigator);
+      for (const SentSession& one : sent) {
+        check_session_arrival(work, *server_, one.row.session, one.row.own_session, one.course,
+                              commitment_, one.traces, options_.investigator);
       }
       check_chain_arrival(work, *server_, station, chain_to(segment.end), segment.first);
       report_.station = station;
@@ -246,17 +274,20 @@ class StationPush {
     });
   }
 
-  /// Reads a segment's sessions from the station's file. Asks no server.
-  [[nodiscard]] Shipment packed(const ChainSegment& segment, int station) const {
-    Shipment shipment;
+  /// Reads what belongs into a parcel from the station's file. Asks no server.
+  [[nodiscard]] PackedParcel packed(const Parcel& parcel, int station) const {
+    PackedParcel ready;
     Insertions insertions;
-    for (const int session : segment.sessions) {
-      shipment.sessions.push_back(packed_session(insertions, station, session, segment.end));
+    const ChainSegment& segment = parcel.segment;
+    if (parcel.session) {
+      ready.session = packed_session(insertions, station, *parcel.session, segment.end);
     }
-    insert_events(insertions, chain_number(station),
-                  chain_to(segment.end).subspan(static_cast<std::size_t>(segment.first)));
-    shipment.statements = insertions.take();
-    return shipment;
+    if (parcel.is_last) {
+      insert_events(insertions, chain_number(station),
+                    chain_to(segment.end).subspan(static_cast<std::size_t>(segment.first)));
+    }
+    ready.statements = insertions.take();
+    return ready;
   }
 
   [[nodiscard]] SentSession packed_session(Insertions& insertions, int station, int session,
@@ -347,6 +378,7 @@ class StationPush {
   std::unique_ptr<ServerConnection> server_;
   bool was_connected_ = false;
   bool planned_ = false;
+  int finished_ = 0;  ///< sessions of the file
   int to_push_ = 0;
   std::optional<ChainSegment> sent_;  ///< sent without an answer so far
   int done_ = 0;                      ///< transactions; after progress, failures count from 0 again

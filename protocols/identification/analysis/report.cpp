@@ -249,8 +249,9 @@ InformationTransfer information_of(int classes, const std::vector<OwnTrials>& by
 /// Calls functions at once where a study is so large that threads pay.
 void in_parts(int trials, std::initializer_list<std::function<void()>> parts) {
   constexpr int kFewTrials = 2'000;
-  in_parallel(trials < kFewTrials ? 1 : 0, parts.size(),
-              [&](std::size_t i) { parts.begin()[i](); });
+  const auto take = [&](std::size_t i) { parts.begin()[i](); };
+  if (trials >= kFewTrials) return all_in_parallel(parts.size(), take);
+  for (std::size_t i = 0; i < parts.size(); ++i) take(i);
 }
 
 }  // namespace

@@ -95,6 +95,33 @@ TEST_CASE("a session that was replaced before it ended is not announced for late
   CHECK(there.first("SELECT count(*) FROM sessions") == "1");
 }
 
+TEST_CASE("of many sessions in one transaction, no more than two are read before they are sent") {
+  const ServerFixture there;
+  StoredFixture empty;
+  there.push(*empty.store);
+  const int sessions = 8;
+  for (int session = 1; session <= sessions; ++session) add(*empty.store, session);
+  empty.store->withdraw(1, kUtc, "asked");  // its key is gone: the withdrawal comes with it
+  OpenStation station(*empty.store);
+  // What a transaction has added takes room before anybody sees it.
+  std::vector<std::int64_t> bytes_there;
+  std::int64_t bytes_of_session = 0;
+  station.alter_trace = [&](int, const Bytes& box) {
+    bytes_of_session += static_cast<std::int64_t>(box.size());
+  };
+  station.before_trace = [&](int, int trial) {
+    if (trial != 1) return;
+    bytes_there.push_back(std::stoll(there.first("SELECT pg_total_relation_size('traces')")));
+  };
+  CHECK(there.push(station).pushed.size() == sessions);
+  bytes_of_session /= sessions;
+  REQUIRE(bytes_there.size() == sessions);
+  REQUIRE(bytes_of_session > 0);
+  for (int session = 3; session <= sessions; ++session) {
+    CHECK(bytes_there[static_cast<std::size_t>(session) - 1] >= (session - 2) * bytes_of_session);
+  }
+}
+
 TEST_CASE("decisions at the station follow with the next push") {
   const ServerFixture there;
   StoredFixture study(3);
