@@ -243,11 +243,14 @@ TEST_CASE("a station that is pushed by two programs at once comes once") {
   const auto push = [&] {
     const StudyStore store = StudyStore::open(study.path, StudyStore::Access::read_only);
     start.arrive_and_wait();
-    return there.push(store, without_waiting()).pushed.size();
+    return there.push(store, without_waiting());
   };
-  std::future<std::size_t> other = std::async(std::launch::async, push);
-  const std::size_t here = push();
-  CHECK(here + other.get() == 6);
+  std::future<PushReport> other = std::async(std::launch::async, push);
+  const PushReport here = push();
+  const PushReport beside = other.get();
+  CHECK(here.pushed.size() + beside.pushed.size() == 6);
+  CHECK(here.already_there == static_cast<int>(beside.pushed.size()));
+  CHECK(beside.already_there == static_cast<int>(here.pushed.size()));
   CHECK(there.counts() == expected);
 }
 
