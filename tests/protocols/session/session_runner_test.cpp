@@ -8,6 +8,7 @@
 #include "support/sanitized.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -108,11 +109,11 @@ class PageCountingExplorer final : public session::Explorer {
         felt_n_ += force.force_n({.position_mm = {x_mm, y_mm, -1.0}, .velocity_mm_s = {}}).z;
       }
     }
-    fetched += fetched_so_far() - before;
+    fetched.push_back(fetched_so_far() - before);
     return usual_.explore(force, plane, participant, options, trace);
   }
 
-  long fetched = 0;
+  std::vector<long> fetched;  ///< by presentation
 
  private:
   static long fetched_so_far() {
@@ -374,16 +375,24 @@ TEST_CASE("in real time every field is in memory before it is felt") {
   // Larger than what the system fetches round the first page that is read.
   constexpr int kSidePx = 300;
   session::VirtualSessionClock clock;
-  PageCountingExplorer real(true);
-  const auto presentations = [&](PageCountingExplorer& explorer) {
-    return run_with(explorer, clock, session::no_experimenter(), kSidePx).tally.presentations;
+  const auto fetched = [&](bool in_real_time) {
+    PageCountingExplorer explorer(in_real_time);
+    CHECK(run_with(explorer, clock, session::no_experimenter(), kSidePx).tally.presentations == 6);
+    return explorer.fetched;
   };
-  CHECK(presentations(real) == 6);
-  PageCountingExplorer careless(false);
-  CHECK(presentations(careless) == 6);
-  CHECK(careless.fetched > 0);
-  // A sanitizer fetches pages of its own beside those of a field, one for eight.
-  CHECK(real.fetched <= (kSanitized ? careless.fetched / 4 : 0));
+  // The careless one goes first: pages of the code come with the first force.
+  const std::vector<long> careless = fetched(false);
+  const std::vector<long> real = fetched(true);
+  // The sixth presentation is a repetition, whose field was felt before.
+  CHECK(std::ranges::count(careless, 0) <= 1);
+  if (kSanitized) {
+    // A sanitizer fetches pages of its own beside those of a field, one for eight.
+    CHECK(std::reduce(real.begin(), real.end()) <=
+          std::reduce(careless.begin(), careless.end()) / 4);
+  } else {
+    // The system may take a page back once; a field that was not fetched lacks one every time.
+    CHECK(std::ranges::count(real, 0) >= 5);
+  }
 }
 
 TEST_CASE("times say when an exploration ended, not how long its trace took to pack") {
