@@ -62,51 +62,6 @@ void filter(const Lines& lines, std::vector<double>& state) {
   }
 }
 
-/// Two numbers side by side in a register: without this type compilers do not vectorise the sums.
-using Pair = double __attribute__((vector_size(2 * sizeof(double))));
-
-/// Weights of the four coefficients around a point, along x and along y.
-struct Weights {
-  std::array<Pair, 4> value;
-  std::array<Pair, 4> slope;
-};
-
-/// Weights for a point at a distance t, 0 <= t < 1, beyond the second coefficient of each axis.
-Weights weights_at(Pair t) noexcept {
-  constexpr double kSixth = 1.0 / 6.0;
-  const Pair u = 1.0 - t;
-  return {{kSixth * u * u * u, kSixth * (4.0 + t * t * (3.0 * t - 6.0)),
-           kSixth * (4.0 + u * u * (3.0 * u - 6.0)), kSixth * t * t * t},
-          {-0.5 * u * u, t * (1.5 * t - 2.0), -u * (1.5 * u - 2.0), 0.5 * t * t}};
-}
-
-/// The sum over four columns with the weights of the x axis.
-double across(const std::array<Pair, 4>& weights, Pair first, Pair second) noexcept {
-  const Pair sum =
-      first * Pair{weights[0][0], weights[1][0]} + second * Pair{weights[2][0], weights[3][0]};
-  return sum[0] + sum[1];
-}
-
-/// Sums the 4 x 4 coefficients, whose rows `row_at(row)` points to: along the columns first.
-template <typename RowAt>
-SplinePoint summed(const Weights& at, RowAt row_at) noexcept {
-  Pair value_first{};
-  Pair value_second{};
-  Pair slope_first{};
-  Pair slope_second{};
-  for (int row = 0; row < 4; ++row) {
-    const float* c = row_at(row);
-    const Pair first = {c[0], c[1]};
-    const Pair second = {c[2], c[3]};
-    value_first += at.value[row][1] * first;
-    value_second += at.value[row][1] * second;
-    slope_first += at.slope[row][1] * first;
-    slope_second += at.slope[row][1] * second;
-  }
-  return {across(at.value, value_first, value_second), across(at.slope, value_first, value_second),
-          across(at.value, slope_first, slope_second)};
-}
-
 }  // namespace
 
 Plane<double> cubic_spline_coefficients(Plane<double> samples) {
@@ -126,29 +81,26 @@ Plane<double> cubic_spline_coefficients(Plane<double> samples) {
   return samples;
 }
 
-SplinePoint spline_at(std::span<const float> coefficients, int height_px, int width_px, double x_px,
-                      double y_px) noexcept {
-  const double x_in_range = std::clamp(x_px, -kFarthestPx, kFarthestPx);
-  const double y_in_range = std::clamp(y_px, -kFarthestPx, kFarthestPx);
-  const double left = std::floor(x_in_range);
-  const double top = std::floor(y_in_range);
-  const Weights at = weights_at(Pair{x_in_range - left, y_in_range - top});
+PatchSums spline_at(std::span<const float> coefficients, int height_px, int width_px, double x_px,
+                    double y_px) {
+  const SumOfPatch sum = spline_sum();
+  const Patches patches(coefficients, height_px, width_px, sum);
+  if (patches.has({x_px, y_px})) return patches.at({x_px, y_px});
+  const double x = std::clamp(x_px, -kFarthestPx, kFarthestPx);
+  const double y = std::clamp(y_px, -kFarthestPx, kFarthestPx);
+  const double left = std::floor(x);
+  const double top = std::floor(y);
   const int column = static_cast<int>(left) - 1;
   const int row = static_cast<int>(top) - 1;
-  const auto stride = static_cast<std::size_t>(width_px);
-  if (column >= 0 && row >= 0 && column + 4 <= width_px && row + 4 <= height_px) {
-    const float* corner = coefficients.data() + static_cast<std::size_t>(row) * stride + column;
-    fetch_rows_beside(corner, stride);
-    return summed(at, [=](int dy) { return corner + static_cast<std::size_t>(dy) * stride; });
-  }
-  std::array<float, 4> mirrored;
-  return summed(at, [&](int dy) {
+  std::array<float, 16> mirrored;
+  for (int dy = 0; dy < 4; ++dy) {
     const auto at_row = static_cast<std::size_t>(symmetric_index(row + dy, height_px));
     for (int dx = 0; dx < 4; ++dx) {
-      mirrored[dx] = coefficients[at_row * stride + symmetric_index(column + dx, width_px)];
+      const auto at_column = static_cast<std::size_t>(symmetric_index(column + dx, width_px));
+      mirrored[4 * dy + dx] = coefficients[at_row * static_cast<std::size_t>(width_px) + at_column];
     }
-    return mirrored.data();
-  });
+  }
+  return sum(mirrored.data(), 4, x - left, y - top);
 }
 
 }  // namespace touchtrial::engine

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/plane.hpp"
+#include "engine/rendering/patch.hpp"
 
 #include <span>
 
@@ -15,18 +16,11 @@ namespace touchtrial::engine {
 /// \param samples  at least 1 x 1, finite, any unit
 [[nodiscard]] Plane<double> cubic_spline_coefficients(Plane<double> samples);
 
-/// Value and gradient of a spline at a point.
-struct SplinePoint {
-  double value = 0.0;
-  double along_x = 0.0;  ///< per pixel
-  double along_y = 0.0;  ///< per pixel
-};
-
-/// The spline at a point in continuous pixel coordinates (pixel centres are whole numbers),
-/// mirrored beyond the edges. Reads 16 coefficients. No allocation, lock or exception.
+/// The spline's value and its gradient at a point in continuous pixel coordinates (pixel centres
+/// are whole numbers), mirrored beyond the edges. Reads 16 coefficients. No allocation or lock.
 /// \param coefficients  row-major, height_px x width_px, each >= 1
 /// \param x_px,y_px  not NaN; clamped to a magnitude of 2^29
-[[nodiscard]] SplinePoint spline_at(std::span<const float> coefficients, int height_px,
-                                    int width_px, double x_px, double y_px) noexcept;
+[[nodiscard]] PatchSums spline_at(std::span<const float> coefficients, int height_px, int width_px,
+                                  double x_px, double y_px);
 
 }  // namespace touchtrial::engine

@@ -57,15 +57,6 @@ struct ModelParts {
 /// \throws std::invalid_argument if one of them is not finite
 void require_finite_rms(double tangential, double normal);
 
-/// Asks the memory for a sample two rows above and one two rows below the four that are read from
-/// `row` on: a hand that moves across rows needs them within a few ticks. They may lie beyond the
-/// plane.
-inline void fetch_rows_beside(const float* row, std::size_t stride) noexcept {
-  const auto at = reinterpret_cast<std::uintptr_t>(row);
-  __builtin_prefetch(reinterpret_cast<const void*>(at - 2 * stride * sizeof *row));
-  __builtin_prefetch(reinterpret_cast<const void*>(at + 5 * stride * sizeof *row));
-}
-
 /// The force, shortened to the limit with its direction kept: every model limits its force so. Also
 /// takes forces whose squares overflow; a force that is not finite becomes zero.
 [[nodiscard]] inline Vec3 limited_in_norm(Vec3 force_n, double limit_n) noexcept {

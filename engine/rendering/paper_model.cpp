@@ -17,12 +17,6 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Texture values at a point between pixels.
-struct Texture {
-  double height = 0.0;
-  Vec2 force;
-};
-
 constexpr int kLargestReach = kLargestNeighbourhood / 2;
 
 /// dx / (dx^2 + dy^2) at [dy][dx].
@@ -117,99 +111,60 @@ double height_at(const FieldView& field, const Place& at) noexcept {
   });
 }
 
-/// Whether the point's four pixels have all their neighbours in a neighbourhood of 3.
-bool is_inside(const PlaneGeometry& plane, Vec2 px) noexcept {
-  return px.x >= 1.0 && px.y >= 1.0 && px.x < plane.width_px - 2.0 && px.y < plane.height_px - 2.0;
-}
-
-/// `place_in` of such a point.
-Place place_inside(Vec2 px) noexcept {
-  return {static_cast<int>(px.x),  static_cast<int>(px.y), 1, 1,
-          px.x - std::trunc(px.x), px.y - std::trunc(px.y)};
-}
-
-/// Two numbers side by side in a register.
-using Pair = double __attribute__((vector_size(2 * sizeof(double))));
-
-/// Height and force with the usual neighbourhood of 3 inside the plane. There a pixel's own height
-/// cancels in each pair of opposite neighbours, so the force is [1 2 1] / 2 across and [1 0 -1]
-/// along its component; mixing two neighbouring pixels gives weights for four rows and columns.
-/// \param heights  of the slopes; the texture's height is theirs
-[[gnu::flatten]] Texture texture_inside(const float* heights, std::size_t stride,
-                                        const Place& at) noexcept {
-  const double v = at.to_down;
-  const double u = at.to_right;
-  const Pair smooth_first = {0.5 * (1.0 - u), 1.0 - 0.5 * u};
-  const Pair smooth_last = {0.5 + 0.5 * u, 0.5 * u};
-  const float* row = heights + static_cast<std::size_t>(at.top - 1) * stride +
-                     static_cast<std::size_t>(at.left - 1);
-  fetch_rows_beside(row, stride);
-  Pair steps{};   // along x, smoothed along y
-  Pair smooth{};  // along x, and then steps along y
-  const auto add_row = [&](double smooth_down, double step_down) {
-    const Pair first = {row[0], row[1]};
-    const Pair last = {row[2], row[3]};
-    steps += smooth_down * (first - last);
-    smooth += step_down * (smooth_first * first + smooth_last * last);
-    row += stride;
-  };
-  const auto between = [&] { return row[1] + u * (double{row[2]} - row[1]); };
-  add_row(0.5 * (1.0 - v), 1.0 - v);
-  const double upper = between();
-  add_row(1.0 - 0.5 * v, v);
-  const double lower = between();
-  add_row(0.5 + 0.5 * v, v - 1.0);
-  add_row(0.5 * v, -v);
-  return {upper + v * (lower - upper),
-          {(1.0 - u) * steps[0] + u * steps[1], smooth[0] + smooth[1]}};
-}
-
-/// Apart, so that the usual case keeps the registers.
-[[gnu::noinline]] Texture texture_anywhere(const FieldView& field, Vec2 px) noexcept {
+/// Height and force at any point, from the definition at the four pixels round it.
+[[gnu::noinline]] PatchSums sums_anywhere(const FieldView& field, Vec2 px) noexcept {
   const Place at = place_in(field.geometry, px);
   const bool is_usual = field.neighbourhood == 3;
-  return {height_at(field, at), mixed(at, [&](int y, int x) {
-            return is_usual ? force_at_any_pixel(field.slopes().data(), field.geometry, y, x)
-                            : force_at_pixel(field, y, x);
-          })};
+  const Vec2 force = mixed(at, [&](int y, int x) {
+    return is_usual ? force_at_any_pixel(field.slopes().data(), field.geometry, y, x)
+                    : force_at_pixel(field, y, x);
+  });
+  return {height_at(field, at), force.x, force.y};
 }
 
-Texture texture_at(const FieldView& field, Vec2 px) noexcept {
-  if (field.neighbourhood != 3 || !is_inside(field.geometry, px))
-    return texture_anywhere(field, px);
-  const Place at = place_inside(px);
-  Texture texture =
-      texture_inside(field.slopes().data(), static_cast<std::size_t>(field.geometry.width_px), at);
-  if (!field.other_slopes.empty()) texture.height = height_at(field, at);
-  return texture;
+/// The patches of the plane whose slopes are felt, for the usual neighbourhood.
+Patches patches_of(const FieldView& field) {
+  if (field.empty() || field.neighbourhood != 3) return {};
+  return {field.slopes(), field.geometry.height_px, field.geometry.width_px, bilinear_sum()};
+}
+
+/// The field, or the flat wall if it is of another model.
+FieldView of_paper(FieldView field) noexcept {
+  if (field.model != ModelKind::paper) field.heights = {};
+  return field;
 }
 
 }  // namespace
 
-PaperModel::PaperModel(FieldView field, const RenderingOptions& options, Gains gains) noexcept
-    : field_(field),
+PaperModel::PaperModel(FieldView field, const RenderingOptions& options, Gains gains)
+    : field_(of_paper(field)),
+      patches_(patches_of(field_)),
       stiffness_n_per_mm_(options.stiffness_n_per_mm),
       damping_n_s_per_mm_(options.damping_n_s_per_mm),
       reference_height_(options.reference_grey - kMidGrey),
       max_force_n_(options.max_force_n),
-      gains_(gains) {
-  if (field.model != ModelKind::paper) field_.heights = {};  // the flat wall
-}
+      gains_(gains) {}
 
-Vec3 PaperModel::force_n(const Vec3& position_mm, const Vec3& velocity_mm_s) const noexcept {
+Vec3 PaperModel::force_n(const Vec3& position, const Vec3& velocity_mm_s) const noexcept {
+  const Vec3 position_mm = by_number(position);
   if (!is_finite(position_mm) || !is_finite(velocity_mm_s)) return {};
   double elastic_n = -stiffness_n_per_mm_ * position_mm.z;
-  Vec2 texture;
-  if (field_.geometry.contains(position_mm.x, position_mm.y) && !field_.empty()) {
+  PatchSums texture;
+  const Vec2 px = field_.geometry.to_px(position_mm.x, position_mm.y);
+  const bool is_usual = patches_.has(px);
+  if (is_usual || (field_.geometry.contains(position_mm.x, position_mm.y) && !field_.empty())) {
     if (is_out_of_reach(elastic_n)) return {};
-    const Texture felt = texture_at(field_, field_.geometry.to_px(position_mm.x, position_mm.y));
-    texture = felt.force;
-    elastic_n += gains_.normal_n * (felt.height - reference_height_);
+    texture = is_usual ? patches_.at(px) : sums_anywhere(field_, px);
+    if (is_usual && !field_.other_slopes.empty()) {
+      texture.value = height_at(field_, place_in(field_.geometry, px));
+    }
+    elastic_n += gains_.normal_n * (texture.value - reference_height_);
   }
   const double normal_n = elastic_n - damping_n_s_per_mm_ * velocity_mm_s.z;
   if (!(elastic_n > 0.0 && normal_n > 0.0)) return {};
   return limited_in_norm(
-      {gains_.tangential_n * texture.x, gains_.tangential_n * texture.y, normal_n}, max_force_n_);
+      {gains_.tangential_n * texture.along_x, gains_.tangential_n * texture.along_y, normal_n},
+      max_force_n_);
 }
 
 bool PaperModel::is_out_of_reach(double wall_n) const noexcept {

@@ -19,8 +19,7 @@ std::variant<PaperModel, SurfaceModel> model_of(FieldView field, const Rendering
 
 }  // namespace
 
-RenderingModel::RenderingModel(FieldView field, const RenderingOptions& options,
-                               Gains gains) noexcept
+RenderingModel::RenderingModel(FieldView field, const RenderingOptions& options, Gains gains)
     : model_(model_of(field, options, gains)) {}
 
 ModelParts parts_of(ModelKind kind) noexcept {

@@ -13,7 +13,8 @@ namespace touchtrial::engine {
 class RenderingModel {
  public:
   /// \param field  made for options.model; the field of another model is the flat wall
-  RenderingModel(FieldView field, const RenderingOptions& options, Gains gains) noexcept;
+  /// \throws Error if Highway's library cannot be used
+  RenderingModel(FieldView field, const RenderingOptions& options, Gains gains);
 
   /// PaperModel::force_n or SurfaceModel::force_n.
   /// \param touch  the state that a presentation keeps from tick to tick; a new one for each

@@ -34,7 +34,7 @@ Fade fade_at(double place_mm, double side_mm) noexcept {
 
 }  // namespace
 
-SurfaceModel::SurfaceModel(FieldView field, const RenderingOptions& options, Gains gains) noexcept
+SurfaceModel::SurfaceModel(FieldView field, const RenderingOptions& options, Gains gains)
     : field_(field),
       stiffness_n_per_mm_(options.stiffness_n_per_mm),
       damping_n_s_per_mm_(options.damping_n_s_per_mm),
@@ -42,23 +42,23 @@ SurfaceModel::SurfaceModel(FieldView field, const RenderingOptions& options, Gai
       bristle_n_per_mm_(options.texture_stiffness_n_per_mm / std::numbers::sqrt2),
       max_force_n_(options.max_force_n),
       mm_per_grey_(field.empty() || field.model != ModelKind::surface ? 0.0 : gains.height_mm),
+      slope_per_grey_(mm_per_grey_ / field.geometry.pitch_mm),
+      patches_(mm_per_grey_ == 0.0 ? Patches{}
+                                   : Patches(field.heights, field.geometry.height_px,
+                                             field.geometry.width_px, spline_sum())),
       // A B-spline is a weighted mean of its coefficients, and so never above the highest.
       reach_mm_(mm_per_grey_ > 0.0 ? std::max(0.0, mm_per_grey_ * field.highest) : 0.0) {}
 
-Vec3 SurfaceModel::force_n(const Vec3& position_mm, const Vec3& velocity_mm_s,
+Vec3 SurfaceModel::force_n(const Vec3& position, const Vec3& velocity_mm_s,
                            Bristle& bristle) const noexcept {
+  const Vec3 position_mm = by_number(position);
   const bool in_reach = position_mm.z < reach_mm_;
+  Relief relief;
+  double elastic_n = 0.0;
   if (in_reach && is_finite(position_mm) && is_finite(velocity_mm_s)) {
-    return contact_force_n(position_mm, velocity_mm_s, bristle);
+    relief = relief_at(position_mm.x, position_mm.y);
+    elastic_n = stiffness_n_per_mm_ * (relief.height_mm - position_mm.z);
   }
-  bristle.release();
-  return {};
-}
-
-Vec3 SurfaceModel::contact_force_n(const Vec3& position_mm, const Vec3& velocity_mm_s,
-                                   Bristle& bristle) const noexcept {
-  const Relief relief = relief_at(position_mm.x, position_mm.y);
-  const double elastic_n = stiffness_n_per_mm_ * (relief.height_mm - position_mm.z);
   if (!(elastic_n > 0.0)) {
     bristle.release();
     return {};
@@ -74,7 +74,17 @@ Vec3 SurfaceModel::contact_force_n(const Vec3& position_mm, const Vec3& velocity
   return limited_in_norm(force_n, max_force_n_);
 }
 
-SurfaceModel::Relief SurfaceModel::relief_at(double x_mm, double y_mm) const noexcept {
+inline SurfaceModel::Relief SurfaceModel::relief_at(double x_mm, double y_mm) const noexcept {
+  const PlaneGeometry& plane = field_.geometry;
+  const Vec2 px = plane.to_px(x_mm, y_mm);
+  if (patches_.has(px)) {
+    const PatchSums h = patches_.at(px);
+    return {mm_per_grey_ * h.value, {slope_per_grey_ * h.along_x, slope_per_grey_ * h.along_y}};
+  }
+  return relief_at_edge(x_mm, y_mm);
+}
+
+SurfaceModel::Relief SurfaceModel::relief_at_edge(double x_mm, double y_mm) const noexcept {
   if (mm_per_grey_ == 0.0) return {};
   const PlaneGeometry& plane = field_.geometry;
   const bool on_plane = plane.contains(x_mm, y_mm);
@@ -82,12 +92,11 @@ SurfaceModel::Relief SurfaceModel::relief_at(double x_mm, double y_mm) const noe
   const Fade down = on_plane ? Fade{} : fade_at(y_mm, plane.height_mm());
   if (across.value == 0.0 || down.value == 0.0) return {};
   const Vec2 px = plane.to_px(x_mm, y_mm);
-  const SplinePoint h = spline_at(field_.heights, plane.height_px, plane.width_px, px.x, px.y);
-  const double per_mm = mm_per_grey_ / plane.pitch_mm;
+  const PatchSums h = spline_at(field_.heights, plane.height_px, plane.width_px, px.x, px.y);
   const double height_mm = mm_per_grey_ * h.value;
   return {height_mm * across.value * down.value,
-          {(per_mm * h.along_x * across.value + height_mm * across.slope) * down.value,
-           (per_mm * h.along_y * down.value + height_mm * down.slope) * across.value}};
+          {(slope_per_grey_ * h.along_x * across.value + height_mm * across.slope) * down.value,
+           (slope_per_grey_ * h.along_y * down.value + height_mm * down.slope) * across.value}};
 }
 
 // What make_texture_field, choose_gains, field_statistics and lateral_field do for this model.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/vec.hpp"
+#include "engine/rendering/patch.hpp"
 #include "engine/rendering/texture_field.hpp"
 
 namespace touchtrial::engine {
@@ -51,7 +52,8 @@ class SurfaceModel {
   /// Reads no coefficient.
   /// \param field  its heights must outlive the model
   /// \param options,gains  finite, in the ranges of their types
-  SurfaceModel(FieldView field, const RenderingOptions& options, Gains gains) noexcept;
+  /// \throws Error if Highway's library cannot be used
+  SurfaceModel(FieldView field, const RenderingOptions& options, Gains gains);
 
   /// With e = depth + alpha * h(x, y), the potential is U = k/2 * max(0, e)^2. Contact lasts while
   /// e > 0; then the force is -grad U: k * e across the plane and -k * e * alpha * grad h along it.
@@ -75,8 +77,8 @@ class SurfaceModel {
     Vec2 slope;
   };
   [[nodiscard]] Relief relief_at(double x_mm, double y_mm) const noexcept;
-  [[nodiscard]] Vec3 contact_force_n(const Vec3& position_mm, const Vec3& velocity_mm_s,
-                                     Bristle& bristle) const noexcept;
+  /// The same where the point has no patch: near the edges and beyond.
+  [[nodiscard]] Relief relief_at_edge(double x_mm, double y_mm) const noexcept;
 
   FieldView field_;
   double stiffness_n_per_mm_;
@@ -85,7 +87,9 @@ class SurfaceModel {
   double bristle_n_per_mm_;
   double max_force_n_;
   double mm_per_grey_;
-  double reach_mm_;  ///< nothing is felt at this height above the plane or higher
+  double slope_per_grey_;  ///< mm_per_grey_ for a change per pixel
+  Patches patches_;        ///< of the coefficients
+  double reach_mm_;        ///< nothing is felt at this height above the plane or higher
 };
 
 }  // namespace touchtrial::engine

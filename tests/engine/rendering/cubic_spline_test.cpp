@@ -41,7 +41,7 @@ struct Spline {
   explicit Spline(const Plane<double>& samples)
       : exact(engine::cubic_spline_coefficients(samples)), coefficients(rounded(exact)) {}
 
-  [[nodiscard]] engine::SplinePoint at(double x, double y) const {
+  [[nodiscard]] engine::PatchSums at(double x, double y) const {
     return engine::spline_at(coefficients, exact.height(), exact.width(), x, y);
   }
   Plane<double> exact;
@@ -91,7 +91,7 @@ TEST_CASE("the spline's gradient is the slope of its values") {
   for (int i = 0; i < 500; ++i) {
     const double x = random.uniform(-4.0, 19.0);
     const double y = random.uniform(-4.0, 16.0);
-    const engine::SplinePoint point = spline.at(x, y);
+    const engine::PatchSums point = spline.at(x, y);
     const double along_x = spline.at(x + kStep, y).value - spline.at(x - kStep, y).value;
     const double along_y = spline.at(x, y + kStep).value - spline.at(x, y - kStep).value;
     REQUIRE(point.along_x == Approx(along_x / (2.0 * kStep)).margin(1e-5));
