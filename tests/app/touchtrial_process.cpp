@@ -9,6 +9,7 @@
 #include <thread>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <pty.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -98,8 +99,25 @@ void TerminalRun::hold_enter(const std::string& prompt, std::chrono::millisecond
     std::this_thread::sleep_for(next);
     passed += next;
     next = std::chrono::milliseconds(40);
-    REQUIRE(::write(terminal_, "\r", 1) == 1);
+    press("\r");
   }
+}
+
+void TerminalRun::press(const std::string& keys) {
+  // Nobody reads them at the end, which is no error of the test.
+  [[maybe_unused]] const ssize_t written = ::write(terminal_, keys.data(), keys.size());
+}
+
+bool TerminalRun::shows(const std::string& text, std::chrono::milliseconds longest) {
+  const auto until = std::chrono::steady_clock::now() + longest;
+  while (!ended_ && shown_.find(text) == std::string::npos) {
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+    pollfd waiting{terminal_, POLLIN, 0};
+    if (::poll(&waiting, 1, static_cast<int>(std::max(left.count(), 0L))) <= 0) return false;
+    read_on();
+  }
+  return shown_.find(text) != std::string::npos;
 }
 
 int TerminalRun::finish() {
@@ -111,15 +129,20 @@ int TerminalRun::finish() {
 
 void TerminalRun::read_until(const std::string& text) {
   while (text.empty() || shown_.find(text, read_) == std::string::npos) {
-    char letter = 0;
-    if (::read(terminal_, &letter, 1) != 1) {
+    if (!ended_) read_on();
+    if (ended_) {
       INFO(shown_);
       REQUIRE(text.empty());
       return;
     }
-    shown_ += letter;
   }
   read_ = shown_.size();
+}
+
+void TerminalRun::read_on() {
+  char letter = 0;
+  ended_ = ::read(terminal_, &letter, 1) != 1;
+  if (!ended_) shown_ += letter;
 }
 
 int line_count(const std::string& text) {

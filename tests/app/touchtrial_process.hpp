@@ -46,6 +46,12 @@ class TerminalRun {
   /// Reads until the text was shown, then holds Enter down for so long, as a keyboard repeats it:
   /// for the second time after 660 ms, then every 40 ms.
   void hold_enter(const std::string& prompt, std::chrono::milliseconds held);
+  /// Presses these keys now, if the program has not ended.
+  void press(const std::string& keys);
+  /// Whether the text is shown, or will be within that time.
+  [[nodiscard]] bool shows(const std::string& text, std::chrono::milliseconds longest);
+  /// Whether all that the program ever showed was read.
+  [[nodiscard]] bool ended() const noexcept { return ended_; }
   /// The exit code.
   [[nodiscard]] int finish();
   [[nodiscard]] const std::string& shown() const { return shown_; }
@@ -53,11 +59,14 @@ class TerminalRun {
  private:
   /// \param text  empty: read to the end
   void read_until(const std::string& text);
+  /// Reads what is shown next; nothing at the end.
+  void read_on();
 
   int terminal_ = -1;
   pid_t child_ = -1;
   std::string shown_;
   std::size_t read_ = 0;
+  bool ended_ = false;
 };
 
 /// The number of lines in a text, the last one finished or not.
