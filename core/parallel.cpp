@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <exception>
-#include <thread>
 #include <vector>
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -17,8 +17,8 @@ void in_parallel(int jobs, std::size_t count, const std::function<void(std::size
   }
   const auto all = [&] { tbb::parallel_for(std::size_t{0}, count, work); };
   if (jobs == 0) return all();
-  const auto cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  tbb::task_arena arena(std::min(jobs, cores));
+  // Those that the program may use: oneTBB prints a warning if it is asked for more.
+  tbb::task_arena arena(std::min(jobs, tbb::info::default_concurrency()));
   arena.execute(all);
 }
 
