@@ -32,11 +32,11 @@ TestTexture::TestTexture(int side_px, double max_stiffness_n_per_mm)
   gains_ = engine::choose_gains(fields, options_).of_field.front();
 }
 
-engine::RenderingModel TestTexture::texture() const noexcept {
+engine::RenderingModel TestTexture::texture() const {
   return {field_.view(), options_, gains_};
 }
 
-engine::RenderingModel TestTexture::wall() const noexcept {
+engine::RenderingModel TestTexture::wall() const {
   return {engine::FieldView{.geometry = plane()}, options_, engine::Gains{}};
 }
 

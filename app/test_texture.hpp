@@ -17,9 +17,9 @@ class TestTexture {
 
   [[nodiscard]] PlaneGeometry plane() const noexcept { return field_.view().geometry; }
   /// Models refer to this object, which must outlive them.
-  [[nodiscard]] engine::RenderingModel texture() const noexcept;
+  [[nodiscard]] engine::RenderingModel texture() const;
   /// The same plane without a texture.
-  [[nodiscard]] engine::RenderingModel wall() const noexcept;
+  [[nodiscard]] engine::RenderingModel wall() const;
 
  private:
   engine::RenderingOptions options_;

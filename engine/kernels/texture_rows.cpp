@@ -82,7 +82,7 @@ void picture_row(const float* texture, int width, std::uint8_t* picture) {
   HWY_DYNAMIC_DISPATCH(row_of_picture)(texture, width, picture);
 }
 
-float highest_sample(std::span<const float> samples) noexcept {
+float highest_sample(std::span<const float> samples) {
   return HWY_DYNAMIC_DISPATCH(highest_of_samples)(samples.data(), samples.size());
 }
 

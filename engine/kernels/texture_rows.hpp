@@ -12,6 +12,6 @@ void picture_row(const float* texture, int width, std::uint8_t* picture);
 
 /// The largest of the samples; not finite if any of them is not.
 /// \param samples  at least one
-[[nodiscard]] float highest_sample(std::span<const float> samples) noexcept;
+[[nodiscard]] float highest_sample(std::span<const float> samples);
 
 }  // namespace touchtrial::engine

@@ -17,9 +17,11 @@ namespace touchtrial::engine {
 [[nodiscard]] Plane<double> cubic_spline_coefficients(Plane<double> samples);
 
 /// The spline's value and its gradient at a point in continuous pixel coordinates (pixel centres
-/// are whole numbers), mirrored beyond the edges. Reads 16 coefficients. No allocation or lock.
+/// are whole numbers), mirrored beyond the edges. Reads 16 coefficients. Neither allocates nor
+/// locks once spline_sum has been called.
 /// \param coefficients  row-major, height_px x width_px, each >= 1
-/// \param x_px,y_px  not NaN; clamped to a magnitude of 2^29
+/// \param x_px,y_px  not NaN; beyond the outer pixels clamped to a magnitude of 2^29
+/// \throws Error as spline_sum
 [[nodiscard]] PatchSums spline_at(std::span<const float> coefficients, int height_px, int width_px,
                                   double x_px, double y_px);
 

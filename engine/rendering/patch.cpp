@@ -16,7 +16,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// A row of four, in one register or in several.
 using Doubles = hn::CappedTag<double, 4>;
-constexpr std::size_t kLanes = hn::MaxLanes(Doubles());
 using Values = hn::Vec<Doubles>;
 
 /// The values of four columns.
@@ -26,7 +25,7 @@ struct Row {
 
 template <class Visit>
 HWY_INLINE void for_all_lanes(const Visit& visit) {
-  for (std::size_t i = 0; i < 4; i += kLanes) visit(i);
+  for (std::size_t i = 0; i < 4; i += hn::Lanes(Doubles())) visit(i);
 }
 
 HWY_INLINE Values load(const float* from) {

@@ -7,7 +7,7 @@ namespace touchtrial::engine {
 namespace {
 
 std::variant<PaperModel, SurfaceModel> model_of(FieldView field, const RenderingOptions& options,
-                                                Gains gains) noexcept {
+                                                Gains gains) {
   switch (options.model) {
     case ModelKind::surface:
       return SurfaceModel(field, options, gains);

@@ -44,7 +44,7 @@ void centre(Plane<double>& heights) {
 
 }  // namespace
 
-double highest_of(FieldView field) noexcept {
+double highest_of(FieldView field) {
   return highest_sample(field.heights);
 }
 

@@ -36,7 +36,7 @@ struct FieldView {
 
 /// The largest height of a field; not finite if any of them is not. Reads the whole field.
 /// \pre the field is not empty
-[[nodiscard]] double highest_of(FieldView field) noexcept;
+[[nodiscard]] double highest_of(FieldView field);
 
 /// A field in memory.
 class TextureField {
