@@ -1,6 +1,6 @@
 /// \file Sums over the four rows of four heights round a point: the inner part of both rendering
 /// models' forces, on the widest registers that the processor has.
-/// Private to engine/rendering.
+/// Every model that reads four rows of four heights can use them.
 #pragma once
 
 #include "core/vec.hpp"
