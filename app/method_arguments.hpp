@@ -2,7 +2,7 @@
 /// type.
 #pragma once
 
-#include "engine/extraction.hpp"
+#include "engine/extraction_options.hpp"
 
 #include <array>
 #include <string>

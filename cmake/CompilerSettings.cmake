@@ -4,11 +4,19 @@ if(CCACHE_PROGRAM)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
 endif()
 
+# Debug builds are for writing code: mold links the program in a second.
+find_program(MOLD_PROGRAM mold)
+if(MOLD_PROGRAM AND CMAKE_BUILD_TYPE STREQUAL "Debug" AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+  add_link_options(-fuse-ld=mold)
+endif()
+
+# Warnings are errors where CMAKE_COMPILE_WARNING_AS_ERROR is on: in the presets for writing code and in
+# continuous integration, never for users, whose compilers and libraries warn of other things.
 add_library(touchtrial_settings INTERFACE)
 target_compile_features(touchtrial_settings INTERFACE cxx_std_20)
 target_compile_options(touchtrial_settings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
-  -Wold-style-cast -Woverloaded-virtual -Wformat=2 -Werror
+  -Wold-style-cast -Woverloaded-virtual -Wformat=2
   # No contraction to fused multiply-add: results must not depend on the compiler's choices.
   -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -23,11 +31,6 @@ if(TOUCHTRIAL_SANITIZE)
   target_compile_options(touchtrial_settings INTERFACE
     -fsanitize=${TOUCHTRIAL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(touchtrial_settings INTERFACE -fsanitize=${TOUCHTRIAL_SANITIZE})
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # With the sanitizers' checks GCC warns of vector overflows that cannot happen. It is the
-    # release build that must be free of warnings.
-    target_compile_options(touchtrial_settings INTERFACE -Wno-error)
-  endif()
   if(TOUCHTRIAL_SANITIZE MATCHES "address")
     add_library(touchtrial_kept_libraries OBJECT "${CMAKE_SOURCE_DIR}/tests/support/keep_libraries.cpp")
     target_sources(touchtrial_settings INTERFACE $<TARGET_OBJECTS:touchtrial_kept_libraries>)

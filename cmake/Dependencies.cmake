@@ -9,7 +9,7 @@ find_package(spdlog REQUIRED)
 find_package(fmt REQUIRED)
 find_package(SQLiteCpp REQUIRED)
 find_package(CLI11 REQUIRED)
-find_package(Boost REQUIRED)
+find_package(Boost REQUIRED CONFIG)
 find_package(zstd QUIET)
 if(TARGET zstd::libzstd_shared)
   add_library(touchtrial_zstd ALIAS zstd::libzstd_shared)
@@ -28,11 +28,16 @@ set(LINKS_A_MODULE "$<STREQUAL:$<TARGET_PROPERTY:TYPE>,MODULE_LIBRARY>")
 # A newer libpqxx may bring a CMake package; pkg-config finds every version.
 pkg_check_modules(libpqxx REQUIRED IMPORTED_TARGET GLOBAL libpqxx libpq)
 # What one command alone needs should cost the others nothing (decision 47): libpqxx in the program
-# and libpq, with TLS, Kerberos and LDAP behind it, loaded when a server is first asked for. The
-# forwarders name the functions that libpqxx 6.4 calls; any other is linked as it comes.
+# and libpq, with TLS, Kerberos and LDAP behind it, loaded when a server is first asked for, where the
+# forwarders have all that libpqxx calls. Any other libpqxx is linked as it comes.
 find_library(PQXX_ARCHIVE libpqxx.a)
 add_library(touchtrial_pqxx INTERFACE)
-if(PQXX_ARCHIVE AND libpqxx_libpqxx_VERSION MATCHES "^6\\.4\\.")
+if(PQXX_ARCHIVE)
+  include(LinksWith)
+  touchtrial_links_with(TOUCHTRIAL_LIBPQ_LATER libpqxx protocols/collect/libpq/forwarders.cpp
+                        INCLUDES ${libpqxx_INCLUDE_DIRS} LIBRARIES "${PQXX_ARCHIVE}")
+endif()
+if(TOUCHTRIAL_LIBPQ_LATER)
   add_library(touchtrial_libpq STATIC)
   target_include_directories(touchtrial_libpq PRIVATE "${CMAKE_SOURCE_DIR}" ${libpqxx_INCLUDE_DIRS})
   target_link_libraries(touchtrial_libpq PRIVATE touchtrial_settings ${CMAKE_DL_LIBS})

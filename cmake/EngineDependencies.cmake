@@ -13,14 +13,18 @@ pkg_check_modules(fftw3f ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL fftw3f)
 pkg_check_modules(libsodium ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL libsodium)
 pkg_check_modules(nettle ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL nettle)
 
-# Highway's library calibrates a clock when it is loaded: of the series whose functions the forwarders
-# name, it is loaded with the first kernel (decision 47).
+# Highway's library calibrates a clock when it is loaded: where the forwarders have all that its headers
+# call, it is loaded with the first kernel (decision 47).
 pkg_check_modules(hwy ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL libhwy)
 if(NOT TARGET touchtrial_hwy)
   add_library(touchtrial_hwy INTERFACE IMPORTED GLOBAL)
 endif()
-if(hwy_VERSION MATCHES "^1\\.0\\." AND EXISTS "${hwy_LIBDIR}/libhwy.so.1" AND CMAKE_SIZEOF_VOID_P EQUAL 8)
-  set(TOUCHTRIAL_HIGHWAY_LATER ON)  # engine/CMakeLists.txt makes touchtrial_highway, the forwarders
+if(NOT DEFINED TOUCHTRIAL_HIGHWAY_LATER AND EXISTS "${hwy_LIBDIR}/libhwy.so.1")
+  include(LinksWith)
+  touchtrial_links_with(TOUCHTRIAL_HIGHWAY_LATER highway engine/kernels/highway/forwarders.cpp
+                        INCLUDES ${hwy_INCLUDE_DIRS})
+endif()
+if(TOUCHTRIAL_HIGHWAY_LATER)  # engine/CMakeLists.txt makes touchtrial_highway, the forwarders
   target_include_directories(touchtrial_hwy SYSTEM INTERFACE ${hwy_INCLUDE_DIRS})
 else()
   target_link_libraries(touchtrial_hwy INTERFACE PkgConfig::hwy)

@@ -74,6 +74,9 @@ endforeach()
 set(package "${CMAKE_INSTALL_LIBDIR}/cmake/touchtrial")
 install(EXPORT touchtrial_targets NAMESPACE touchtrial:: FILE touchtrial-targets.cmake
         DESTINATION "${package}" COMPONENT development)
+if(NOT TOUCHTRIAL_HIGHWAY_LATER)
+  set(TOUCHTRIAL_HIGHWAY_LATER OFF)
+endif()
 configure_package_config_file(cmake/touchtrial-config.cmake.in
   "${CMAKE_BINARY_DIR}/package/touchtrial-config.cmake" INSTALL_DESTINATION "${package}")
 write_basic_package_version_file("${CMAKE_BINARY_DIR}/package/touchtrial-config-version.cmake"

@@ -4,7 +4,7 @@
 
 #include "analysis/measures/rms_alone.hpp"
 #include "core/plane.hpp"
-#include "engine/extraction.hpp"
+#include "engine/extraction_options.hpp"
 #include "engine/metrics/glcm.hpp"
 #include "engine/rendering/rendering_options.hpp"
 

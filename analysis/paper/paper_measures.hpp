@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/evaluation.hpp"
-#include "engine/extraction.hpp"
+#include "engine/extraction_options.hpp"
 
 #include <array>
 #include <cstddef>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/plane.hpp"
-#include "engine/extraction.hpp"
+#include "engine/extraction_options.hpp"
 #include "engine/tv_gabor/admm.hpp"
 #include "engine/tv_gabor/problem.hpp"
 #include "engine/tv_gabor/torus_plane.hpp"

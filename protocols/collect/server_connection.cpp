@@ -152,26 +152,20 @@ bool is_a(const pqxx::failure& error) {
 
 }  // namespace
 
-Bytes bytes_of(const pqxx::field& field) {
-  const pqxx::binarystring text(field);
-  return {text.data(), text.data() + text.size()};
-}
-
 ServerConnection::ServerConnection(const ServerAddress& address, const AnswerLimits& limits)
     : address_(address), connection_(connected(address)), watch_(connection_.sock(), limits) {
   translated([&] { check_server(); });
 }
 
 void ServerConnection::check_server() {
-  // Libpqxx prints the server's notices unless a handler takes them.
-  pqxx::quiet_errorhandler quiet(connection_);
+  const QuietNotices quiet(connection_);
   if (connection_.server_version() < kOldestServer) {
     refuse("the server is older than PostgreSQL 11; bring it up to date");
   }
   const AnswerWatch::Waiting waiting(watch_);
   pqxx::nontransaction session(connection_);
   session.exec(kSettings);
-  const auto encoding = session.exec1("SHOW server_encoding")[0].as<std::string>();
+  const auto encoding = session.exec("SHOW server_encoding").at(0)[0].as<std::string>();
   if (encoding != "UTF8" && encoding != "SQL_ASCII") {
     refuse("the database's encoding is " + one_line(encoding) +
            "; make one with `createdb --encoding=UTF8 --template=template0`");
@@ -196,9 +190,10 @@ bool ServerConnection::wipe_deleted_keys() noexcept {
     session.exec("SET lock_timeout = '2s'");
     // For anybody else VACUUM warns and does nothing.
     const bool is_owner = session
-                              .exec1(
+                              .exec(
                                   "SELECT pg_has_role(relowner, 'USAGE') FROM pg_class WHERE "
-                                  "oid = 'participant_keys'::regclass")[0]
+                                  "oid = 'participant_keys'::regclass")
+                              .at(0)[0]
                               .as<bool>();
     if (is_owner) session.exec("VACUUM FULL participant_keys, safety_keys");
     return is_owner;

@@ -4,6 +4,7 @@
 #include "core/bytes.hpp"
 #include "core/errors.hpp"
 #include "protocols/collect/answer_watch.hpp"
+#include "protocols/collect/libpqxx_calls.hpp"
 #include "protocols/collect/server_address.hpp"
 #include "protocols/store/damage.hpp"
 
@@ -13,6 +14,7 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <pqxx/pqxx>
 
@@ -31,12 +33,6 @@ class Contention : public StoreError {
   using StoreError::StoreError;
 };
 
-/// Bytes as a statement's parameter, sent in binary form.
-[[nodiscard]] inline pqxx::binarystring binary(ByteView bytes) {
-  return {bytes.data(), bytes.size()};
-}
-[[nodiscard]] Bytes bytes_of(const pqxx::field& field);
-
 /// A transaction whose answers are watched. Rolls back unless it was committed.
 class ServerWork {
  public:
@@ -53,30 +49,30 @@ class ServerWork {
   ServerWork(const ServerWork&) = delete;
   ServerWork& operator=(const ServerWork&) = delete;
 
-  template <typename... Arguments>
-  auto exec(Arguments&&... arguments) {
+  /// Runs a statement with its parameters, $1 and following.
+  template <typename... Parameters>
+  pqxx::result exec(const std::string& sql, const Parameters&... parameters) {
     const AnswerWatch::Waiting waiting(watch_);
-    return work_.exec(std::forward<Arguments>(arguments)...);
+    return executed(work_, sql, parameters...);
   }
-  template <typename... Arguments>
-  auto exec1(Arguments&&... arguments) {
-    const AnswerWatch::Waiting waiting(watch_);
-    return work_.exec1(std::forward<Arguments>(arguments)...);
+  /// \return the only row
+  /// \throws pqxx::unexpected_rows if there are none or several
+  template <typename... Parameters>
+  pqxx::row exec1(const std::string& sql, const Parameters&... parameters) {
+    const pqxx::result rows = exec(sql, parameters...);
+    require_rows(rows, 1);
+    return rows[0];
   }
-  template <typename... Arguments>
-  auto exec_params(Arguments&&... arguments) {
-    const AnswerWatch::Waiting waiting(watch_);
-    return work_.exec_params(std::forward<Arguments>(arguments)...);
+  /// \throws pqxx::unexpected_rows if there is a row
+  template <typename... Parameters>
+  void exec0(const std::string& sql, const Parameters&... parameters) {
+    require_rows(exec(sql, parameters...), 0);
   }
-  template <typename... Arguments>
-  auto exec_params0(Arguments&&... arguments) {
+  /// Like exec0; the first parameters are the texts, the others the boxes.
+  void exec0_with_lists(const std::string& sql, const std::vector<std::string>& texts,
+                        const std::vector<Binary>& boxes) {
     const AnswerWatch::Waiting waiting(watch_);
-    return work_.exec_params0(std::forward<Arguments>(arguments)...);
-  }
-  template <typename... Arguments>
-  auto exec_params1(Arguments&&... arguments) {
-    const AnswerWatch::Waiting waiting(watch_);
-    return work_.exec_params1(std::forward<Arguments>(arguments)...);
+    require_rows(executed_with_lists(work_, sql, texts, boxes), 0);
   }
   void commit() {
     const AnswerWatch::Waiting waiting(watch_);
@@ -85,6 +81,12 @@ class ServerWork {
   }
 
  private:
+  static void require_rows(const pqxx::result& rows, pqxx::result::size_type count) {
+    if (rows.size() == count) return;
+    throw pqxx::unexpected_rows("expected " + std::to_string(count) + " rows, not " +
+                                std::to_string(rows.size()));
+  }
+
   AnswerWatch& watch_;
   pqxx::work work_;
   bool committed_ = false;

@@ -148,8 +148,7 @@ store::Event event_of(const pqxx::row& row, int session) {
 }  // namespace
 
 void InsertStatement::send(ServerWork& work) const {
-  work.exec_params0(sql, pqxx::prepare::make_dynamic_params(texts),
-                    pqxx::prepare::make_dynamic_params(boxes));
+  work.exec0_with_lists(sql, texts, boxes);
 }
 
 void Insertions::add(store::Table table, std::vector<std::string> columns) {
@@ -248,7 +247,7 @@ void insert_trials(Insertions& insertions, int session, const store::DerivedRows
 
 std::vector<store::Event> read_events(ServerWork& work, int session, std::int64_t first) {
   // What is absurdly large is told, not sent.
-  const pqxx::result rows = work.exec_params(
+  const pqxx::result rows = work.exec(
       "WITH measured AS (SELECT *, octet_length(kind) + octet_length(body) + octet_length(sealed) "
       "+ "
       "octet_length(previous) + octet_length(hash) + octet_length(signature) > $3 AS is_large FROM "
@@ -269,7 +268,7 @@ std::vector<store::Event> read_events(ServerWork& work, int session, std::int64_
 }
 
 store::WrappedKeys read_keys(ServerWork& work, int session) {
-  const pqxx::result rows = work.exec_params(
+  const pqxx::result rows = work.exec(
       "SELECT (SELECT wrapped FROM participant_keys WHERE session = $1 AND octet_length(wrapped) < "
       "4096), (SELECT wrapped FROM safety_keys WHERE session = $1 AND octet_length(wrapped) < "
       "4096)",
@@ -282,7 +281,7 @@ store::WrappedKeys read_keys(ServerWork& work, int session) {
 }
 
 std::optional<Bytes> read_trace(ServerWork& work, int session, int trial) {
-  const pqxx::result rows = work.exec_params(
+  const pqxx::result rows = work.exec(
       "SELECT box FROM traces WHERE session = $1 AND trial = $2 AND octet_length(box) <= $3",
       session, trial, kLargestTrace);
   if (rows.empty()) return std::nullopt;
@@ -292,7 +291,7 @@ std::optional<Bytes> read_trace(ServerWork& work, int session, int trial) {
 std::vector<TrialRange> trace_batches(ServerWork& work, int session) {
   std::vector<TrialRange> batches;
   std::int64_t bytes = 0;
-  for (const pqxx::row& row : work.exec_params(
+  for (const pqxx::row& row : work.exec(
            "SELECT trial, octet_length(box)::bigint FROM traces WHERE session = $1 ORDER BY trial",
            session)) {
     const auto trial = row[0].as<std::int64_t>();
@@ -312,10 +311,10 @@ std::vector<TrialRange> trace_batches(ServerWork& work, int session) {
 std::vector<std::pair<int, Bytes>> read_traces(ServerWork& work, int session,
                                                const TrialRange& trials) {
   std::vector<std::pair<int, Bytes>> traces;
-  for (const pqxx::row& row : work.exec_params(
-           "SELECT trial, box FROM traces WHERE session = $1 AND trial BETWEEN $2 AND $3 "
-           "ORDER BY trial",
-           session, trials.first, trials.last)) {
+  for (const pqxx::row& row :
+       work.exec("SELECT trial, box FROM traces WHERE session = $1 AND trial BETWEEN $2 AND $3 "
+                 "ORDER BY trial",
+                 session, trials.first, trials.last)) {
     traces.emplace_back(row[0].as<int>(), bytes_of(row[1]));
   }
   return traces;
@@ -324,7 +323,7 @@ std::vector<std::pair<int, Bytes>> read_traces(ServerWork& work, int session,
 std::map<std::int64_t, Bytes> trace_digests(ServerWork& work, int session) {
   std::map<std::int64_t, Bytes> digests;
   for (const pqxx::row& row :
-       work.exec_params("SELECT trial, sha256(box) FROM traces WHERE session = $1", session)) {
+       work.exec("SELECT trial, sha256(box) FROM traces WHERE session = $1", session)) {
     digests[row[0].as<std::int64_t>()] = bytes_of(row[1]);
   }
   return digests;

@@ -21,8 +21,8 @@ namespace touchtrial::collect {
 /// A statement that adds rows, with its parameters.
 struct InsertStatement {
   std::string sql;
-  std::vector<std::string> texts;           ///< first parameters: columns as arrays in text form
-  std::vector<pqxx::binarystring> boxes{};  ///< the others: traces
+  std::vector<std::string> texts;  ///< first parameters: columns as arrays in text form
+  std::vector<Binary> boxes{};     ///< the others: traces
 
   void send(ServerWork& work) const;
 };
@@ -45,7 +45,7 @@ class Insertions {
   std::vector<std::string> parts_;           ///< statements that become one
   std::vector<std::string> texts_;           ///< parameters of the parts
   std::vector<std::pair<int, int>> traces_;  ///< session and trial
-  std::vector<pqxx::binarystring> boxes_;
+  std::vector<Binary> boxes_;
   std::size_t bytes_ = 0;
 };
 

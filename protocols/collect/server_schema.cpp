@@ -157,7 +157,7 @@ void make_tables(ServerWork& work) {
   for (const store::TableDefinition& table : store::table_definitions()) {
     if (!table.at_stations_alone) work.exec(row_rights_sql(table));
   }
-  work.exec_params0("INSERT INTO touchtrial_schema(version) VALUES($1)", store::kSchemaVersion);
+  work.exec0("INSERT INTO touchtrial_schema(version) VALUES($1)", store::kSchemaVersion);
 }
 
 constexpr std::array<ServerMigration, store::kSchemaVersion - store::kOldestSchemaVersion>
@@ -177,7 +177,7 @@ std::optional<int> version_in(ServerWork& work, const ServerConnection& server) 
   }
   const auto tables_named = [&](const std::string& names) {
     return work
-        .exec_params1(
+        .exec1(
             "SELECT count(*) FROM pg_class c JOIN pg_namespace n ON n.oid = c.relnamespace "
             "WHERE n.nspname = current_schema() AND c.relkind IN ('r','p','v','m','f') "
             "AND c.relname = ANY($1::text[])",
@@ -240,7 +240,7 @@ void bring_forward(ServerConnection& server, std::span<const ServerMigration> st
     if (!version) return make_tables(work);
     const auto done = static_cast<std::size_t>(*version - store::kOldestSchemaVersion);
     for (const ServerMigration step : steps.subspan(done)) step(work);
-    work.exec_params0("UPDATE touchtrial_schema SET version = $1", newest);
+    work.exec0("UPDATE touchtrial_schema SET version = $1", newest);
   });
 }
 

@@ -21,7 +21,7 @@ struct Holder {
 };
 
 std::optional<Holder> holder_of(ServerWork& work, const store::SessionRow& row) {
-  const pqxx::result found = work.exec_params(
+  const pqxx::result found = work.exec(
       "SELECT s.session, coalesce(s.own_session, s.session), s.station, t.name, s.participant, "
       "s.enrolment FROM sessions s JOIN stations t USING(station) WHERE s.replaced_by IS NULL "
       "AND (s.participant = $1 OR s.enrolment = $2) AND s.visit = $3 ORDER BY s.participant <> $1, "
@@ -50,7 +50,7 @@ auto parsed_from(int session, const std::string& body, Parse parse) {
 
 /// "opened 2026-01-05T10:00:00Z on falcon 1234", from the session's first event on the server.
 std::string opening_of(ServerWork& work, int session) {
-  const pqxx::result found = work.exec_params(
+  const pqxx::result found = work.exec(
       "SELECT body FROM events WHERE session = $1 AND sequence = 0 AND octet_length(body) < 65536",
       session);
   if (found.empty()) return "of which no opening is there";
@@ -175,8 +175,8 @@ class ArrivedSession {
 void refuse_if_cut_off(ServerWork& work, const ServerConnection& server,
                        const store::SessionRow& row) {
   const pqxx::result found =
-      work.exec_params("SELECT 1 FROM sessions WHERE station = $1 AND own_session = $2",
-                       row.station, row.own_session);
+      work.exec("SELECT 1 FROM sessions WHERE station = $1 AND own_session = $2", row.station,
+                row.own_session);
   if (found.empty()) return;
   throw store::DamagedStore(
       server.address().shown() + ": the server lost the end of the chain of station " +
@@ -219,12 +219,12 @@ int server_session(const ServerConnection& server, int station, int own_session)
 }
 
 void lock_station(ServerWork& work, const Digest& identity) {
-  work.exec_params("SELECT touchtrial_lock_station($1)", binary(identity));
+  work.exec("SELECT touchtrial_lock_station($1)", binary(identity));
 }
 
 std::optional<int> find_station(ServerWork& work, const Digest& identity) {
   const pqxx::result found =
-      work.exec_params("SELECT station FROM stations WHERE identity = $1", binary(identity));
+      work.exec("SELECT station FROM stations WHERE identity = $1", binary(identity));
   if (found.empty()) return std::nullopt;
   return found[0][0].as<int>();
 }
@@ -233,16 +233,15 @@ int register_station(ServerWork& work, const ServerConnection& server, const Dig
                      const std::string& name, const store::Event& commitment) {
   refuse_other_study(work, server, commitment);
   const int station = work.exec1("SELECT touchtrial_next_station()")[0].as<int>();
-  const pqxx::result other =
-      work.exec_params("SELECT name FROM stations WHERE station = $1", station);
+  const pqxx::result other = work.exec("SELECT name FROM stations WHERE station = $1", station);
   if (!other.empty()) {
     server.refuse("this role is station " + std::to_string(station) + " (" +
                   one_line(other[0][0].as<std::string>()) +
                   "), whose file is another; have the owner admit a role of its own for this file "
                   "(touchtrial_admit)");
   }
-  work.exec_params0("INSERT INTO stations(station, identity, name) VALUES($1, $2, $3)", station,
-                    binary(identity), name);
+  work.exec0("INSERT INTO stations(station, identity, name) VALUES($1, $2, $3)", station,
+             binary(identity), name);
   return station;
 }
 
@@ -261,7 +260,7 @@ void refuse_other_study(ServerWork& work, const ServerConnection& server,
 }
 
 store::ChainHead chain_head(ServerWork& work, int station) {
-  const pqxx::result found = work.exec_params(
+  const pqxx::result found = work.exec(
       "SELECT sequence, hash FROM events WHERE session = $1 ORDER BY sequence DESC LIMIT 1",
       chain_number(station));
   if (found.empty()) return {};
@@ -272,7 +271,7 @@ store::ChainHead chain_head(ServerWork& work, int station) {
 
 std::optional<std::int64_t> parting(ServerWork& work, int station,
                                     std::span<const store::Event> file_chain) {
-  const pqxx::result hashes = work.exec_params(
+  const pqxx::result hashes = work.exec(
       "SELECT sequence, hash FROM events WHERE session = $1 AND sequence < $2 ORDER BY sequence",
       chain_number(station), file_chain.size());
   for (const pqxx::row& row : hashes) {
@@ -291,13 +290,12 @@ void refuse_if_there_or_taken(ServerWork& work, const ServerConnection& server,
 }
 
 bool destroy_key(ServerWork& work, int session, bool of_safety) {
-  return work.exec_params("SELECT touchtrial_destroy_key($1, $2)", session, of_safety)[0][0]
-             .as<int>() > 0;
+  return work.exec("SELECT touchtrial_destroy_key($1, $2)", session, of_safety)[0][0].as<int>() > 0;
 }
 
 bool update_session(ServerWork& work, int station, int own_session,
                     const store::SessionOnFile& course) {
-  const pqxx::result stored = work.exec_params(
+  const pqxx::result stored = work.exec(
       "UPDATE sessions SET excluded = $3, withdrawn = $4, erased = $5, "
       "replaced_by = nullif($6, '') WHERE station = $1 AND own_session = $2 RETURNING session",
       station, own_session, int{course.excluded_at.has_value()},
@@ -312,9 +310,9 @@ bool update_session(ServerWork& work, int station, int own_session,
 std::vector<std::pair<int, int>> sessions_of_station(ServerWork& work, int station) {
   std::vector<std::pair<int, int>> sessions;
   for (const pqxx::row& row :
-       work.exec_params("SELECT session, own_session FROM sessions WHERE station = $1 AND "
-                        "own_session IS NOT NULL ORDER BY session",
-                        station)) {
+       work.exec("SELECT session, own_session FROM sessions WHERE station = $1 AND "
+                 "own_session IS NOT NULL ORDER BY session",
+                 station)) {
     sessions.emplace_back(row[0].as<int>(), row[1].as<int>());
   }
   return sessions;

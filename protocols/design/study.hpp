@@ -2,7 +2,7 @@
 /// Format: docs/study-file.md and config/schema/study.schema.json.
 #pragma once
 
-#include "engine/extraction.hpp"
+#include "engine/extraction_options.hpp"
 #include "engine/rendering/rendering_options.hpp"
 #include "protocols/design/session_plan.hpp"
 

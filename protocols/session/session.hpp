@@ -3,7 +3,6 @@
 #pragma once
 
 #include "protocols/design/course.hpp"
-#include "protocols/store/marks.hpp"
 #include "protocols/store/payload.hpp"
 #include "protocols/store/session_recorder.hpp"
 
@@ -16,6 +15,10 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+namespace touchtrial::store {
+struct MarksBody;
+}
 
 namespace touchtrial::session {
 

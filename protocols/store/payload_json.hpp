@@ -3,12 +3,13 @@
 /// docs/data-dictionary.md, "Events".
 #pragma once
 
-#include "protocols/store/marks.hpp"
 #include "protocols/store/payload.hpp"
 
 #include <string>
 
 namespace touchtrial::store {
+
+struct MarksBody;
 
 /// Takes every struct of payload.hpp that is a body or a sealed part, except TrialBody and
 /// BlockBody.

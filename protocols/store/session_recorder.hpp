@@ -1,7 +1,6 @@
 /// \file Turns what happens in one session into chained, sealed events.
 #pragma once
 
-#include "protocols/store/marks.hpp"
 #include "protocols/store/payload.hpp"
 #include "protocols/store/sealing.hpp"
 
@@ -14,6 +13,8 @@
 #include <vector>
 
 namespace touchtrial::store {
+
+struct MarksBody;
 
 /// An event, and the trace that comes with one of kind trace_stored.
 struct RecordedEvent {

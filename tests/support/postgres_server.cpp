@@ -37,7 +37,7 @@ fs::path find_programs() {
   }
   if (found.empty()) {
     throw std::runtime_error(
-        "PostgreSQL is not installed, which these tests need; run scripts/install-dependencies");
+        "PostgreSQL is not installed, which these tests need; run scripts/install-dependencies tests");
   }
   return std::max_element(found.begin(), found.end())->second;
 }

@@ -235,7 +235,7 @@ std::unique_ptr<VirtualScreen> VirtualScreen::open(const std::string& size) {
   const std::string number = display_number(pipe[0]);
   ::close(pipe[0]);
   if (number.empty()) {
-    throw std::runtime_error("Xvfb does not start; run scripts/install-dependencies");
+    throw std::runtime_error("Xvfb does not start; run scripts/install-dependencies tests");
   }
   ::setenv("DISPLAY", (":" + number).c_str(), 1);
   ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);

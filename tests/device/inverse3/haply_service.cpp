@@ -42,7 +42,7 @@ std::string HaplyService::next_line(const std::string& beginning) {
   }
   throw std::runtime_error(
       "the emulated Inverse service does not run; it needs python3-websockets: run "
-      "scripts/install-dependencies\n" +
+      "scripts/install-dependencies tests\n" +
       process_->output());
 }
 

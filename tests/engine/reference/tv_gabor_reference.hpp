@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/plane.hpp"
-#include "engine/extraction.hpp"
+#include "engine/extraction_options.hpp"
 
 #include <vector>
 

@@ -5,7 +5,7 @@
 #include "core/plane.hpp"
 #include "engine/every_simd_target.hpp"
 #include "engine/example_images.hpp"
-#include "engine/extraction.hpp"
+#include "engine/extraction_options.hpp"
 
 #include <string>
 #include <vector>
