@@ -1,5 +1,6 @@
 // touchtrial: parses the command line and runs one command.
 #include "app/commands.hpp"
+#include "app/commit.hpp"
 #include "app/console.hpp"
 #include "app/passphrases.hpp"
 #include "core/errors.hpp"
@@ -120,6 +121,13 @@ void keep_freed_memory() {
   static_cast<void>(::mallopt(M_TRIM_THRESHOLD, kMostKept));
 }
 
+/// For instance "touchtrial 1.2.3 (f697f373)".
+std::string version_line() {
+  std::string line = "touchtrial " + std::string(program_version());
+  if (!program_commit().empty()) line += " (" + std::string(program_commit()) + ")";
+  return line;
+}
+
 int parse_and_run(int argc, char** argv) {
   keep_freed_memory();
   let_writes_fail();
@@ -128,7 +136,7 @@ int parse_and_run(int argc, char** argv) {
   answer_for_passphrases();
   engine::use_measured_plans(engine::user_cache_folder());
   CLI::App program("A psychophysics runner for textures that are felt.", "touchtrial");
-  program.set_version_flag("--version", std::string(program_version()));
+  program.set_version_flag("--version", version_line());
   program.require_subcommand(1);
   program.fallthrough(false);
   Action action;

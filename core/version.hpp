@@ -1,11 +1,11 @@
-/// \file The program's version, which every study records.
+/// \file The program's version, which every study records. It is that of CMakeLists.txt.
 #pragma once
 
 #include <string_view>
 
 namespace touchtrial {
 
-/// For instance "0.1.0".
+/// For instance "1.2.3".
 [[nodiscard]] std::string_view program_version() noexcept;
 
 }  // namespace touchtrial

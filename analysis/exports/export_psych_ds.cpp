@@ -4,6 +4,7 @@
 #include "analysis/exports/study_tables.hpp"
 #include "analysis/exports/trial_tables.hpp"
 #include "analysis/json_figures.hpp"
+#include "core/version.hpp"
 
 #include <algorithm>
 
@@ -90,8 +91,8 @@ void add_columns(std::vector<std::string>& all, const DataTable& table) {
   }
 }
 
-std::string changes_text(const store::StudyCommitment& commitment) {
-  return "# Changes\n\n- Exported by Touchtrial " + commitment.program_version + ".\n";
+std::string changes_text() {
+  return fmt::format("# Changes\n\n- Exported by Touchtrial {}.\n", program_version());
 }
 
 }  // namespace
@@ -121,7 +122,7 @@ std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
   files.push_back(text_file(outcomes ? "results/report.json" : "results/quality.json",
                             report_in_dataset(study, options.typed)));
   files.push_back(text_file("README.md", psych_ds_readme(study)));
-  files.push_back(text_file("CHANGES.md", changes_text(commitment)));
+  files.push_back(text_file("CHANGES.md", changes_text()));
   files.push_back(text_file(".psychds-ignore", std::string(kExportMark) + "\n"));
   files.push_back(
       text_file("dataset_description.json", psych_ds_description_json(study, options, columns)));

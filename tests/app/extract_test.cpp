@@ -1,6 +1,7 @@
 #include "app/touchtrial_process.hpp"
 #include "core/files.hpp"
 #include "core/random.hpp"
+#include "core/version.hpp"
 #include "engine/image_file.hpp"
 #include "support/catch.hpp"
 #include "support/npy_array.hpp"
@@ -257,7 +258,9 @@ TEST_CASE("extract says which file it cannot write") {
 TEST_CASE("every command has help that exits with 0") {
   const TempFolder folder;
   CHECK(run_touchtrial(folder.path(), {"--help"}).exit_code == 0);
-  CHECK(run_touchtrial(folder.path(), {"--version"}).exit_code == 0);
+  const ProgramResult version = run_touchtrial(folder.path(), {"--version"});
+  CHECK(version.exit_code == 0);
+  CHECK(version.output.starts_with("touchtrial " + std::string(program_version())));
   for (const std::string command :
        {"extract", "evaluate", "stimuli", "prepare", "simulate", "close", "unblind", "verify",
         "report", "export", "status", "consent"}) {

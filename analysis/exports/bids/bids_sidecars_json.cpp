@@ -3,6 +3,7 @@
 #include "analysis/collection.hpp"
 #include "analysis/exports/bids/bids_motion.hpp"
 #include "analysis/json_figures.hpp"
+#include "core/version.hpp"
 #include "protocols/design/languages.hpp"
 
 #include <algorithm>
@@ -21,9 +22,10 @@ void put_if_given(Json& object, const char* key, const std::string& value) {
   if (!value.empty()) object[key] = value;
 }
 
-Json generated_by(const DatasetSource& study) {
+/// The program that exports, not the one that recorded, which the README names.
+Json generated_by() {
   return Json::array({{{"Name", "Touchtrial"},
-                       {"Version", study.store.commitment().program_version},
+                       {"Version", program_version()},
                        {"Description", "touchtrial export --format bids"}}});
 }
 
@@ -101,7 +103,7 @@ std::string dataset_description_json(const DatasetSource& study, const DatasetOp
   if (study.key != nullptr && !study.key->study.session.ethics_number.empty()) {
     object["EthicsApprovals"] = {study.key->study.session.ethics_number};
   }
-  object["GeneratedBy"] = generated_by(study);
+  object["GeneratedBy"] = generated_by();
   put_stamp(object, commitment.simulated);
   object["pilot"] = commitment.pilot;
   object["study_id"] = commitment.study_id;
@@ -113,7 +115,7 @@ std::string derivative_description_json(const DatasetSource& study) {
   Json object{{"Name", stamped("Report of " + commitment.study, commitment.simulated)},
               {"BIDSVersion", kBidsVersion},
               {"DatasetType", "derivative"},
-              {"GeneratedBy", generated_by(study)}};
+              {"GeneratedBy", generated_by()}};
   put_stamp(object, commitment.simulated);
   return json_text(object);
 }

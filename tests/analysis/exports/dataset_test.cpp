@@ -7,6 +7,7 @@
 #include "analysis/text_matching.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/version.hpp"
 #include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
 
@@ -323,6 +324,28 @@ TEST_CASE("A study as Psych-DS keeps to the schema") {
   for (const auto& [name, text] : contents(out)) CHECK_FALSE(contains(text, "P03"));
   const std::string description = text_of_file(out / "dataset_description.json");
   CHECK(contains(description, "SIMULATED"));
+}
+
+TEST_CASE("A dataset names the program that exported it, and the one that recorded it") {
+  FakeStudy study(design::identification::classification());
+  fill(study);
+  study.close_and_unblind();
+  const OpenStudy open(study);
+  const fs::path bids = study.folder() / "bids";
+  const fs::path psych = study.folder() / "psych";
+  analysis::export_bids(open.source, {}, bids);
+  analysis::export_psych_ds(open.source, {}, psych);
+  const std::string exporter(program_version());
+  for (const fs::path& folder : {bids, bids / "derivatives/touchtrial"}) {
+    const auto description =
+        nlohmann::json::parse(text_of_file(folder / "dataset_description.json"));
+    CHECK(description["GeneratedBy"][0]["Version"] == exporter);
+  }
+  CHECK(contains(text_of_file(psych / "CHANGES.md"), "Exported by Touchtrial " + exporter + "."));
+  const std::string recorder =
+      "recorded with Touchtrial " + open.source.store.commitment().program_version;
+  CHECK(contains(text_of_file(bids / "README"), recorder));
+  CHECK(contains(text_of_file(psych / "README.md"), recorder));
 }
 
 TEST_CASE("The checkers of datasets find what is wrong") {
