@@ -1,4 +1,4 @@
-# Everything that Touchtrial uses and did not write. Debian 12's versions serve.
+# Everything that Touchtrial uses and did not write. The versions of Debian 12 and 13 serve.
 set(TOUCHTRIAL_NEED REQUIRED)
 include(EngineDependencies)
 if(NOT OPENCV_HEADERS OR NOT OPENCV_CORE OR NOT OPENCV_IMGPROC)
