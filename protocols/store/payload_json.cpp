@@ -1,5 +1,6 @@
 #include "protocols/store/payload_json.hpp"
 
+#include "protocols/store/marks.hpp"
 #include "protocols/store/opened_parts.hpp"
 #include "protocols/store/payload_io.hpp"
 
