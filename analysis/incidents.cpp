@@ -1,6 +1,7 @@
 #include "analysis/incidents.hpp"
 
 #include "analysis/sealed_sessions.hpp"
+#include "protocols/store/marks.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
