@@ -124,6 +124,6 @@ function(touchtrial_test name)
     set_tests_properties(${name} PROPERTIES TIMEOUT ${TOUCHTRIAL_TEST_TIMEOUT_S})
     return()
   endif()
-  catch_discover_tests(${name} TEST_PREFIX "${name}: "
+  catch_discover_tests(${name} TEST_PREFIX "${name}:"
     PROPERTIES TIMEOUT ${TOUCHTRIAL_TEST_TIMEOUT_S})
 endfunction()
