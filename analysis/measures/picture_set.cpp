@@ -1,6 +1,7 @@
 #include "analysis/measures/picture_set.hpp"
 
 #include "analysis/statistics/descriptive.hpp"
+#include "engine/extraction.hpp"
 #include "engine/metrics/picture_statistics.hpp"
 #include "engine/metrics/ssim.hpp"
 #include "engine/perception/texture_sense.hpp"

@@ -1,6 +1,7 @@
 #include "analysis/paper/paper_measures.hpp"
 
 #include "engine/daub4.hpp"
+#include "engine/extraction.hpp"
 #include "engine/metrics/ssim.hpp"
 
 #include <cmath>

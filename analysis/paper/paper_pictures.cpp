@@ -6,6 +6,7 @@
 #include "analysis/text_table.hpp"
 #include "core/bytes.hpp"
 #include "core/text.hpp"
+#include "engine/extraction.hpp"
 #include "engine/pictures/colour_image.hpp"
 #include "engine/pictures/force_arrows.hpp"
 

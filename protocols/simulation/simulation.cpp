@@ -5,7 +5,9 @@
 #include "protocols/simulation/trial_course.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -149,21 +151,43 @@ void check(const SimulationOptions& options) {
 }
 
 /// Runs sessions in parallel and stores them in the order of the visits and, of each visit, of the
-/// participants.
+/// participants. No exception leaves a filter: oneTBB loses the sessions that are on their way
+/// then.
 void run_sessions(const Setting& setting, const SimulationOptions& options, int first_session,
                   int sessions, Collector& collector) {
   int started = 0;
+  std::exception_ptr fault;
+  std::atomic<bool> has_fault = false;
   const auto next = [&](tbb::flow_control& flow) {
-    if (started == sessions) flow.stop();
+    if (has_fault || started == sessions) flow.stop();
     return started++;
   };
-  using Finished = std::shared_ptr<const FinishedSession>;
-  const auto run = [&](int i) -> Finished {
-    const Place place{first_session + i, options.first_participant + i % options.participants,
-                      1 + i / options.participants};
-    return std::make_shared<const FinishedSession>(run_session(setting, place));
+  struct Outcome {
+    FinishedSession session;
+    std::exception_ptr fault;
   };
-  const auto store = [&](const Finished& session) { collector.take(*session); };
+  using Finished = std::shared_ptr<Outcome>;
+  const auto run = [&](int i) -> Finished {
+    const auto outcome = std::make_shared<Outcome>();
+    try {
+      const Place place{first_session + i, options.first_participant + i % options.participants,
+                        1 + i / options.participants};
+      outcome->session = run_session(setting, place);
+    } catch (...) {
+      outcome->fault = std::current_exception();
+    }
+    return outcome;
+  };
+  const auto store = [&](const Finished& outcome) {
+    if (fault) return;
+    fault = outcome->fault;
+    try {
+      if (!fault) collector.take(outcome->session);
+    } catch (...) {
+      fault = std::current_exception();
+    }
+    has_fault = fault != nullptr;
+  };
   const auto in_order = tbb::filter_mode::serial_in_order;
   const auto pipeline = tbb::make_filter<void, int>(in_order, next) &
                         tbb::make_filter<int, Finished>(tbb::filter_mode::parallel, run) &
@@ -173,6 +197,7 @@ void run_sessions(const Setting& setting, const SimulationOptions& options, int 
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(jobs);
   arena.execute([&] { tbb::parallel_pipeline(2 * threads, pipeline); });
+  if (fault) std::rethrow_exception(fault);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "protocols/store/stored_study.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <exception>
 #include <limits>
@@ -197,12 +198,15 @@ class Inspection {
   }
 
   /// One thread reads sessions, others check them, and what they come to is added in order: the
-  /// first fault by session is named, whichever thread finds one first.
+  /// first fault by session is named, whichever thread finds one first. No exception leaves a
+  /// filter: oneTBB loses the sessions that are on their way then.
   void inspect_sessions() {
     using OnItsWay = std::shared_ptr<SessionOnItsWay>;
     auto next = file_.sessions().begin();
+    std::exception_ptr fault;
+    std::atomic<bool> has_fault = false;
     const auto read = [&](tbb::flow_control& control) -> OnItsWay {
-      if (next == file_.sessions().end()) {
+      if (has_fault || next == file_.sessions().end()) {
         control.stop();
         return nullptr;
       }
@@ -212,12 +216,18 @@ class Inspection {
       if (!one->fault) one->check(*file_.commitment(), reader_);
       return one;
     };
-    const auto add = [&](const OnItsWay& one) { add_session(*one); };
+    const auto add = [&](const OnItsWay& one) {
+      if (fault) return;
+      fault = one->fault;
+      has_fault = fault != nullptr;
+      if (!fault) add_session(*one);
+    };
     const auto in_order = tbb::filter_mode::serial_in_order;
     tbb::parallel_pipeline(kSessionsAtOnce, tbb::make_filter<void, OnItsWay>(in_order, read) &
                                                 tbb::make_filter<OnItsWay, OnItsWay>(
                                                     tbb::filter_mode::parallel, check) &
                                                 tbb::make_filter<OnItsWay, void>(in_order, add));
+    if (fault) std::rethrow_exception(fault);
     for (const std::int64_t session : sessions_with_events(database_)) {
       if (session < 0) continue;
       const bool known = session <= std::numeric_limits<int>::max() &&
@@ -241,7 +251,6 @@ class Inspection {
   }
 
   void add_session(SessionOnItsWay& one) {
-    if (one.fault) std::rethrow_exception(one.fault);
     expected_.sessions.merge(one.rows.sessions);
     expected_.trials.merge(one.rows.trials);
     for (const auto& [trial, claim] : one.claims) {

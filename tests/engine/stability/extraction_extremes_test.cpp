@@ -1,4 +1,5 @@
 // Every extractor on every extreme image is finite, bounded and deterministic, and obeys its laws.
+#include "engine/extraction.hpp"
 #include "engine/finite_plane.hpp"
 #include "engine/gl_texture.hpp"
 #include "engine/plane_comparison.hpp"

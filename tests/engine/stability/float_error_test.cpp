@@ -1,4 +1,5 @@
 // How much textures, pictures and MS-SSIM may differ between single precision and double.
+#include "engine/extraction.hpp"
 #include "engine/metrics/ssim.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/extraction_reference.hpp"

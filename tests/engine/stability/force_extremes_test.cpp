@@ -1,4 +1,5 @@
 // Tangential force and rendering for extreme textures, gains and hand movements.
+#include "engine/extraction.hpp"
 #include "engine/finite_plane.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/rendering/field_statistics.hpp"

@@ -1,4 +1,5 @@
 // 16-bit pictures over their full range, from the file to the texture.
+#include "engine/extraction.hpp"
 #include "engine/finite_plane.hpp"
 #include "engine/image_file.hpp"
 #include "engine/image_samples.hpp"

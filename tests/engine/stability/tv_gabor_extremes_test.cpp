@@ -1,4 +1,5 @@
 // TV-Gabor on extreme images, over the whole useful range of lambda.
+#include "engine/extraction.hpp"
 #include "engine/finite_plane.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/stability/extreme_cases.hpp"

@@ -1,6 +1,7 @@
 #include "engine/tv_gabor/tv_gabor.hpp"
 
 #include "engine/example_images.hpp"
+#include "engine/extraction.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/tv_gabor_reference.hpp"
 #include "engine/refusal.hpp"
