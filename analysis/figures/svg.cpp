@@ -1,6 +1,7 @@
 #include "analysis/figures/svg.hpp"
 
 #include "analysis/escaping.hpp"
+#include "analysis/figures/gnuplot.hpp"
 #include "core/errors.hpp"
 
 #include <array>
