@@ -47,9 +47,9 @@ void add_error(py::module_& module) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Error& known) {
-      error(one_line(known.what()).c_str());
+      PyErr_SetString(error.ptr(), one_line(known.what()).c_str());
     } catch (const std::filesystem::filesystem_error& failed) {
-      error(one_line(failed.what()).c_str());
+      PyErr_SetString(error.ptr(), one_line(failed.what()).c_str());
     }
   });
 }
