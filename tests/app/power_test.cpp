@@ -33,7 +33,7 @@ void check_refused(const ProgramResult& result, int code, const Words& says) {
   CHECK(result.exit_code == code);
   CHECK(result.output.empty());
   CHECK(line_count(result.errors) == 1);
-  for (const std::string& word : says) CHECK_THAT(result.errors, Catch::Contains(word));
+  for (const std::string& word : says) CHECK_THAT(result.errors, holds_text(word));
 }
 
 const Words kSizes = {"--participants", "3,5"};
@@ -64,7 +64,7 @@ TEST_CASE("power prints and writes the same numbers with any number of threads")
     CHECK(fs::exists(study.path() / "power" / name));
   }
   const ProgramResult text = run_power(study, kSizes);
-  CHECK_THAT(text.output, Catch::Contains("SIMULATED: power given the assumed sensitivity"));
+  CHECK_THAT(text.output, holds_text("SIMULATED: power given the assumed sensitivity"));
 }
 
 TEST_CASE("combined shards of a power run print the same as one run") {
@@ -88,7 +88,7 @@ TEST_CASE("combined shards of a power run print the same as one run") {
            study.path() / "shards" / "shard-copy.json");
   const ProgramResult twice = study.run(combine);
   CHECK(twice.output == whole.output);
-  CHECK_THAT(twice.errors, Catch::Contains("2/3") && Catch::Contains("used once"));
+  CHECK_THAT(twice.errors, holds_text("2/3") && holds_text("used once"));
 
   REQUIRE(run_power(study, {"--participants", "3,5", "--shard", "2/3", "--out", study.in("other"),
                             "--servo", "--no-early-stop"})

@@ -364,7 +364,7 @@ TEST_CASE("a screen that was measured with a card has a known scale from then on
   const app::ScreenScale scale = app::ParticipantWindow(window).screen();
   CHECK(scale.is_known);
   CHECK(scale.is_measured);
-  CHECK(scale.monitor == kept.at("screens").at(0).at("monitor"));
+  CHECK(scale.monitor == kept.at("screens").at(0).at("monitor").get<std::string>());
   CHECK(scale.mm_per_unit == kept.at("screens").at(0).at("mm_per_unit").get<double>());
 
   replace_file(file, R"({"screens": 3})");

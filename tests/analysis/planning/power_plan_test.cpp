@@ -36,20 +36,20 @@ TEST_CASE("sizes may be in any order, but each only once") {
   planning::PowerPlan plan = plan_of({20, 8, 12});
   planning::settle(plan);
   CHECK(plan.participants == std::vector<int>{8, 12, 20});
-  CHECK_THAT(refusal(plan_of({8, 12, 8})), Catch::Contains("8 is given twice"));
+  CHECK_THAT(refusal(plan_of({8, 12, 8})), holds_text("8 is given twice"));
 }
 
 TEST_CASE("an impossible plan is refused with the option and its range") {
-  CHECK_THAT(refusal(plan_of({})), Catch::Contains("--participants"));
-  CHECK_THAT(refusal(plan_of({1, 8})), Catch::Contains("1 is out of range"));
-  CHECK_THAT(refusal(plan_of({8, 1000000000})), Catch::Contains("1000000000"));
-  CHECK_THAT(refusal(plan_of({8}, 0)), Catch::Contains("--runs"));
-  CHECK_THAT(refusal(plan_of({8}, -5)), Catch::Contains("--runs"));
-  CHECK_THAT(refusal(plan_of({8}, 2000000000)), Catch::Contains("--runs"));
-  CHECK_THAT(refusal(plan_of(std::vector<int>(65, 8))), Catch::Contains("65 sizes"));
+  CHECK_THAT(refusal(plan_of({})), holds_text("--participants"));
+  CHECK_THAT(refusal(plan_of({1, 8})), holds_text("1 is out of range"));
+  CHECK_THAT(refusal(plan_of({8, 1000000000})), holds_text("1000000000"));
+  CHECK_THAT(refusal(plan_of({8}, 0)), holds_text("--runs"));
+  CHECK_THAT(refusal(plan_of({8}, -5)), holds_text("--runs"));
+  CHECK_THAT(refusal(plan_of({8}, 2000000000)), holds_text("--runs"));
+  CHECK_THAT(refusal(plan_of(std::vector<int>(65, 8))), holds_text("65 sizes"));
   std::vector<int> many;
   for (int i = 2; i < 40; ++i) many.push_back(i);
-  CHECK_THAT(refusal(plan_of(many, 100000)), Catch::Contains("in all"));
+  CHECK_THAT(refusal(plan_of(many, 100000)), holds_text("in all"));
 }
 
 TEST_CASE("each run belongs to exactly one shard") {

@@ -366,7 +366,7 @@ TEST_CASE("with a margin, methods are alike, or the first is worse by the margin
   CHECK(planning::judged(study.test, planned.outcomes(12, planning::Hypothesis::null, 1), true)
             .attainable == 0.05);
   study.test.margin = 1.0;
-  CHECK_THROWS_WITH(study.planned(bank), Catch::Contains("register a smaller margin"));
+  CHECK_THROWS_WITH(study.planned(bank), holds_text("register a smaller margin"));
 }
 
 TEST_CASE("with trainings of their own people are on average no better than with a shared one") {
@@ -398,7 +398,7 @@ TEST_CASE("a study whose participants could never answer is refused") {
   options.trials = R"({"explore_limit_s":1,"on_timeout":"no-response"})";
   const RehearsedTinyStudy study(options);
   CHECK_THROWS_WITH(study.planned(study.servo),
-                    Catch::Contains("/explore_s") && Catch::Contains("explore_limit_s"));
+                    holds_text("/explore_s") && holds_text("explore_limit_s"));
 }
 
 TEST_CASE("the two methods of a primary test must be named if there are three") {
@@ -408,11 +408,11 @@ TEST_CASE("the two methods of a primary test must be named if there are three") 
     study.methods.emplace_back();
     study.methods.back().label = label;
   }
-  CHECK_THROWS_WITH(planning::primary_test_of(study, {}), Catch::Contains("--methods"));
+  CHECK_THROWS_WITH(planning::primary_test_of(study, {}), holds_text("--methods"));
   CHECK_THROWS_WITH(planning::primary_test_of(study, planning::MethodLabels{"edge", "edge"}),
-                    Catch::Contains("twice"));
+                    holds_text("twice"));
   CHECK_THROWS_WITH(planning::primary_test_of(study, planning::MethodLabels{"edge", "adaptiv"}),
-                    Catch::Contains("adaptiv") && Catch::Contains("luminance"));
+                    holds_text("adaptiv") && holds_text("luminance"));
   const planning::PrimaryTest test =
       planning::primary_test_of(study, planning::MethodLabels{"luminance", "adaptive"});
   CHECK(test.first == 2);

@@ -41,7 +41,7 @@ TEST_CASE("a walk has one level more than answers until the track ends") {
   CHECK(whole.levels.size() == 8);
   CHECK(whole.beliefs.size() == 9);
   CHECK_THROWS_WITH(walked(study, 1, std::vector<bool>(9, true)),
-                    Catch::Contains("--answers: has 9 answers, more than the track's 8 trials"));
+                    holds_text("--answers: has 9 answers, more than the track's 8 trials"));
 }
 
 TEST_CASE("a walk believes what a posterior of its levels and answers believes") {
@@ -68,11 +68,11 @@ TEST_CASE("a walk names its track, and there is no other") {
   options->standards = {-12.0, -9.0};
   options->tracks_each = 2;
   study.options = options;
-  CHECK_THAT(walked(study, 1, {}).words, Catch::Contains("standard -12 dB"));
-  CHECK_THAT(walked(study, 2, {}).words, Catch::Contains("standard -12 dB"));
-  CHECK_THAT(walked(study, 4, {}).words, Catch::Contains("standard -9 dB"));
-  CHECK_THROWS_WITH(walked(study, 5, {}), Catch::Contains("--track: 5 is not a track"));
-  CHECK_THROWS_WITH(walked(study, 0, {}), Catch::Contains("give 1 to 4"));
+  CHECK_THAT(walked(study, 1, {}).words, holds_text("standard -12 dB"));
+  CHECK_THAT(walked(study, 2, {}).words, holds_text("standard -12 dB"));
+  CHECK_THAT(walked(study, 4, {}).words, holds_text("standard -9 dB"));
+  CHECK_THROWS_WITH(walked(study, 5, {}), holds_text("--track: 5 is not a track"));
+  CHECK_THROWS_WITH(walked(study, 0, {}), holds_text("give 1 to 4"));
 }
 
 TEST_CASE("constant stimuli are walked in the same order whenever they are asked for") {
@@ -117,7 +117,7 @@ TEST_CASE("the document of a walk has grid, levels and beliefs") {
 TEST_CASE("a study of another protocol has no procedure to walk") {
   const design::Study study = TinyStudy().key().study;
   CHECK_THROWS_WITH(walked(study, 1, {}),
-                    Catch::Contains("has the protocol classification") &&
-                        Catch::Contains("needs a study of the protocol threshold"));
+                    holds_text("has the protocol classification") &&
+                        holds_text("needs a study of the protocol threshold"));
   CHECK_THROWS_AS(walked(study, 1, {}), UsageError);
 }

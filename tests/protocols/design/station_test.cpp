@@ -106,8 +106,7 @@ TEST_CASE("a station takes its smallest number that nobody has") {
   CHECK_THAT(message_of<StudyError>([&] {
                return design::next_enrolment_of(stations[0], {1, 2, 3});
              }),
-             Catch::Contains("all enrolment numbers of station s1 are taken") &&
-                 Catch::Contains("--extend"));
+             holds_text("all enrolment numbers of station s1 are taken") && holds_text("--extend"));
 }
 
 TEST_CASE("names of stations are simple, and each is one station's") {
@@ -188,7 +187,7 @@ TEST_CASE("a station's file has its own secret alone, and draws as the investiga
   CHECK_THROWS_AS(key.draw_of(11, Draws::people), UsageError);
   CHECK(own.station.secret != design::station_key(key, "s1").station.secret);
   CHECK_THAT(message_of<UsageError>([&] { return design::station_key(key, "s3"); }),
-             Catch::Contains("has no station \"s3\"; it has s1, s2"));
+             holds_text("has no station \"s3\"; it has s1, s2"));
   const Bytes statement = station_statement(key.study_id, "s2", own.signer().public_half());
   CHECK(is_signed_by(key.investigator_signature, statement, own.certificate));
   CHECK_FALSE(is_signed_by(key.investigator_signature,
@@ -258,7 +257,7 @@ TEST_CASE(
   document["check"] = to_hex(sha256(bytes_of(document.dump())));
   replace_file(path, document.dump(2) + "\n", FileMode::owner_only);
   CHECK_THAT(message_of<FileError>([&] { return design::load_station_key(path); }),
-             Catch::Contains("altered or damaged"));
+             holds_text("altered or damaged"));
 }
 
 TEST_CASE("a file of secrets that others may read is refused") {
@@ -269,7 +268,7 @@ TEST_CASE("a file of secrets that others may read is refused") {
   for (const mode_t mode : {0640U, 0604U, 0620U}) {
     REQUIRE(::chmod(path.c_str(), mode) == 0);
     CHECK_THAT(message_of<FileError>([&] { return design::load_study_key(path); }),
-               Catch::Contains("chmod 600"));
+               holds_text("chmod 600"));
   }
   REQUIRE(::chmod(path.c_str(), 0400) == 0);
   CHECK_NOTHROW(design::load_study_key(path));

@@ -33,7 +33,8 @@ json schema_for(const std::string& model) {
     whole["properties"]["classes"].update(rule["else"]["properties"]["classes"]);
   }
   json& rendering = whole["properties"]["rendering"];
-  const bool of_surface = model == rendering["if"]["properties"]["model"]["const"];
+  const bool of_surface =
+      model == rendering["if"]["properties"]["model"]["const"].get<std::string>();
   const json branch = rendering[of_surface ? "then" : "else"];
   for (const auto& [key, property] : branch["properties"].items()) {
     rendering["properties"][key].update(property);

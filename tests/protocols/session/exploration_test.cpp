@@ -124,13 +124,13 @@ TEST_CASE("a study refuses a pack of another rendering model") {
   engine::RenderingOptions rendering = study.key().study.rendering;
   rendering.model = engine::ModelKind::surface;
   CHECK_THROWS_WITH(session::StimulusSource(study.pack(), rendering),
-                    Catch::Contains("is of another rendering model than the study"));
+                    holds_text("is of another rendering model than the study"));
 }
 
 TEST_CASE("a code that the pack lacks is an error that names the code") {
   const TinyStudy study;
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
-  CHECK_THROWS_WITH(source.model("0123456789abcdef"), Catch::Contains("0123456789abcdef"));
+  CHECK_THROWS_WITH(source.model("0123456789abcdef"), holds_text("0123456789abcdef"));
 }
 
 TEST_CASE("either rendering model in the servo, with ring and hooks, allocates and locks nothing") {

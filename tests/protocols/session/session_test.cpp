@@ -141,8 +141,7 @@ TEST_CASE("an input that does not fit throws, and changes and records nothing") 
       {Input::close, [&] { lab.session.close(seconds(9)); }}};
   for (const auto& [input, act] : misfits) {
     CHECK_FALSE(lab.session.accepts(input));
-    CHECK_THROWS_WITH(act(),
-                      Catch::Contains("ready") && Catch::Contains(std::string(name_of(input))));
+    CHECK_THROWS_WITH(act(), holds_text("ready") && holds_text(std::string(name_of(input))));
   }
   CHECK(lab.session.phase() == Phase::ready);
   CHECK(lab.sink.stored.events.size() == recorded);
@@ -490,7 +489,7 @@ TEST_CASE("events that do not fit the schedule are refused") {
   other.presentations.front().trial = 2;
   session::Session again(other, {}, store::SessionRecorder(1, SecretKey{}, sink));
   CHECK_THROWS_WITH(again.restore(as_recorded(lab.sink.stored.events, SecretKey{})),
-                    Catch::Contains("verify"));
+                    holds_text("verify"));
 }
 
 TEST_CASE("a session ends with how its answers are spread, also after it was taken up") {
