@@ -23,8 +23,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 sees overlapping copies in std::string's operator+ (its bug 105651).
   target_compile_options(touchtrial_settings INTERFACE -Wno-restrict)
   if(CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
-    # GCC 13 and 14 see uninitialised values in copies of std::variant that are not there.
-    target_compile_options(touchtrial_settings INTERFACE -Wno-maybe-uninitialized)
+    # GCC 13 and 14 see uninitialised values in copies of std::variant that are not there, and dangling
+    # references to what functions return that take a temporary key.
+    target_compile_options(touchtrial_settings INTERFACE -Wno-maybe-uninitialized -Wno-dangling-reference)
   endif()
 endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
