@@ -434,6 +434,26 @@ def read_options():
     return parser.parse_args()
 
 
+def http_hook(answer):
+    """`answer(path, headers)` as the installed websockets calls it: from version 14 on with a connection
+    and a request, and for a response."""
+
+    async def hook(first, second):
+        if isinstance(first, str):
+            return await answer(first, second)
+        answered = await answer(second.path, second.headers)
+        if answered is None:
+            return None
+        status, headers, body = answered
+        response = first.respond(status, body.decode())
+        for name, value in headers:
+            del response.headers[name]
+            response.headers[name] = value
+        return response
+
+    return hook
+
+
 async def main():
     options = read_options()
     service = Service(options)
@@ -441,7 +461,7 @@ async def main():
         service.simulation,
         "127.0.0.1",
         options.port,
-        process_request=service.answer_http,
+        process_request=http_hook(service.answer_http),
         compression=None,
         ping_interval=None,
     )
