@@ -30,7 +30,8 @@ std::string terminal(const Figure& figure, FigureFormat format) {
       figure.width_cm * kPixelsOfCm, figure.height_cm * kPixelsOfCm, kText_px);
 }
 
-/// Replaces the time that cairo writes, so that the same figure is the same file.
+/// Replaces the time that cairo writes, so that the same figure is the same file. From 1.18 on cairo
+/// compresses it together with what else it writes there: such a file keeps its time (docs/report.md).
 std::string without_time(std::string pdf) {
   static constexpr std::string_view kBefore = "/CreationDate (D:";
   static constexpr std::string_view kEpoch = "19700101000000";
