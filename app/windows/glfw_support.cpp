@@ -156,8 +156,12 @@ GlfwLibrary::GlfwLibrary() {
     measured_screens.clear();
     spdlog::warn("{}; no screen counts as measured: see touchtrial screen calibrate", error.what());
   }
+#ifdef GLFW_PLATFORM
+  // From 3.4 on GLFW has Wayland too, whose windows have no place of their own to be put at.
+  glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
   if (glfwInit() != GLFW_TRUE) {
-    refuse_window("run in a graphical session (DISPLAY or WAYLAND_DISPLAY), or under xvfb-run");
+    refuse_window("run in a graphical session (DISPLAY), or under xvfb-run");
   }
 }
 

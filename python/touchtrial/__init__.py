@@ -275,7 +275,7 @@ def _method(
             pairs = np.empty(0)
         if pairs.ndim != 2 or pairs.shape[1] != 2:
             raise ValueError('components: give "auto" or pairs of cycles per pixel and degrees')
-        components = tuple((f, d) for f, d in pairs.tolist())
+        components = tuple((float(f), float(d)) for f, d in pairs)
     keys = {
         "name": method,
         "order": order,
