@@ -19,7 +19,7 @@ if(EXISTS "${SOURCE}/.git")
   if(head_result EQUAL 0 AND changes_result EQUAL 0)
     string(SUBSTRING "${head}" 0 8 COMMIT)
     # A new source is compiled before it is tracked; other new files do not count.
-    if(changes MATCHES "(^|\n)([^?]|[?][?] [^\n]*\\.[ch]pp\"?\n)")
+    if(changes MATCHES "(^|\n)([^?]|[?][?] ([^\n]*\\.[ch]pp|\"?config/(devices|texts)/[^\n]*\\.json)\"?\n)")
       string(APPEND COMMIT ", modified")
     endif()
   endif()

@@ -1,4 +1,4 @@
-/// \file The calls of libpqxx that its versions 6, 7.0 and 7.10 name differently. Private to
+/// \file The calls of libpqxx that its versions 6, 7.5 and 7.10 name differently. Private to
 /// protocols/collect.
 #pragma once
 

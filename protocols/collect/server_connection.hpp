@@ -83,7 +83,7 @@ class ServerWork {
  private:
   static void require_rows(const pqxx::result& rows, pqxx::result::size_type count) {
     if (rows.size() == count) return;
-    throw pqxx::unexpected_rows("expected " + std::to_string(count) + " rows, not " +
+    throw pqxx::unexpected_rows("expected " + std::to_string(count) + " row(s), got " +
                                 std::to_string(rows.size()));
   }
 

@@ -151,8 +151,8 @@ void check(const SimulationOptions& options) {
 }
 
 /// Runs sessions in parallel and stores them in the order of the visits and, of each visit, of the
-/// participants. No exception leaves a filter: oneTBB loses the sessions that are on their way
-/// then.
+/// participants. No exception leaves a filter: oneTBB would leak the
+/// sessions in flight.
 void run_sessions(const Setting& setting, const SimulationOptions& options, int first_session,
                   int sessions, Collector& collector) {
   int started = 0;

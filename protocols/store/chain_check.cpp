@@ -199,7 +199,7 @@ class Inspection {
 
   /// One thread reads sessions, others check them, and what they come to is added in order: the
   /// first fault by session is named, whichever thread finds one first. No exception leaves a
-  /// filter: oneTBB loses the sessions that are on their way then.
+  /// filter: oneTBB would leak the sessions in flight.
   void inspect_sessions() {
     using OnItsWay = std::shared_ptr<SessionOnItsWay>;
     auto next = file_.sessions().begin();
