@@ -122,13 +122,15 @@ class CountedCues final : public app::Cues {
   void tone(app::Cue cue) noexcept override {
     if (cue == app::Cue::too_hard) ++too_hard;
     if (cue == app::Cue::stopped) ++stopped;
-    if (cue == app::Cue::first_begins) marks = 10 * marks + 1;
-    if (cue == app::Cue::second_begins) marks = 10 * marks + 2;
-    if (cue == app::Cue::interval_over) marks = 10 * marks + 9;
+    if (cue == app::Cue::first_begins) mark(1);
+    if (cue == app::Cue::second_begins) mark(2);
+    if (cue == app::Cue::interval_over) mark(9);
   }
+  void mark(int digit) noexcept { marks = (10 * marks + digit) % 10'000; }
+
   std::atomic<int> too_hard{0};
   std::atomic<int> stopped{0};
-  std::atomic<int> marks{0};  ///< of intervals, a digit each; 9: the end
+  std::atomic<int> marks{0};  ///< the last four, of intervals, a digit each; 9: the end
 };
 
 TEST_CASE("replies to 25 trials hold the choices made by keys, with times after the keys") {
