@@ -79,7 +79,7 @@ TEST_CASE("device models lists the shipped models, with a mark at every guess") 
   const auto falcon =
       std::ranges::find_if(models, [](const json& model) { return model.at("name") == "falcon"; });
   REQUIRE(falcon != models.end());
-  CHECK(falcon->at("max_force_n") == 4.9);
+  CHECK(falcon->at("max_force_n") == 6.5);
   CHECK(falcon->at("provenance").at("max_force_n").at("confidence") == "derived");
 }
 
