@@ -414,7 +414,10 @@ DeviceDriver inverse3_driver() {
           .what = "Haply Inverse3 and Minverse, through Haply's Inverse service",
           .list = inverse3::list_inverse3,
           .open = inverse3::open_inverse3,
-          .workspace_is_known = false};
+          .workspace_is_known = false,
+          .products = {{"inverse3", "Haply Inverse3"},
+                       {"inverse3x", "Haply Inverse3x"},
+                       {"minverse", "Haply Minverse"}}};
 }
 
 }  // namespace touchtrial::device
