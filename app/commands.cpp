@@ -5,6 +5,7 @@
 #include "app/study_inputs.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
+#include "device/registry.hpp"
 #include "protocols/design/protocol.hpp"
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <thread>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace touchtrial::app {
 namespace {
@@ -159,8 +161,15 @@ CLI::Validator place_validator() {
                   "export, verify and merge read one");
 }
 
-void add_driver_argument(CLI::App& command, const std::string& name, std::string& driver) {
-  command.add_option(name, driver, "Driver, as touchtrial device list names it")->required();
+CLI::Option* add_driver_argument(CLI::App& command, const std::string& name, std::string& driver) {
+  const auto to_driver = [](std::string& text) {
+    text = device::device_driver(text).name;
+    return std::string();
+  };
+  return command
+      .add_option(name, driver, "Device or its driver, as touchtrial device list names it")
+      ->transform(CLI::Validator(
+          to_driver, fmt::format("{{{}}}", fmt::join(device::device_names(), ",")), ""));
 }
 
 void add_settings_option(CLI::App& command, std::filesystem::path& settings) {

@@ -119,9 +119,9 @@ void add_on_option(CLI::App& command, std::string& model);
 /// \name Devices
 ///@{
 
-/// A driver's name, required.
+/// A driver, by its own name or a product's; `driver` gets its own. UsageError names the nearest.
 /// \param name  of the argument or option
-void add_driver_argument(CLI::App& command, const std::string& name, std::string& driver);
+CLI::Option* add_driver_argument(CLI::App& command, const std::string& name, std::string& driver);
 /// --settings; see device::device_settings_for.
 void add_settings_option(CLI::App& command, std::filesystem::path& settings);
 /// --monitor, and --window for a window of this size in place of the whole monitor.

@@ -586,7 +586,7 @@ void add_device_accept_command(CLI::App& device, Action& action) {
       "accept",
       "Try a device step by step: signs, forces, friction, mass, delay, walls; writes its "
       "certificate, without which no session runs");
-  command->add_option("NAME", arguments->driver, "Driver, as touchtrial device list names it");
+  add_driver_argument(*command, "NAME", arguments->driver);
   command->add_option(
       "--emulate", arguments->emulated,
       "Rehearse on a device model (name or file) in virtual time; proves no device");

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace touchtrial::app {
@@ -49,7 +50,14 @@ std::string line_of(const Row& row, const std::array<std::size_t, kColumns>& wid
   return line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
 }
 
-/// One row for each device; what it lacks, and what a study must know, is in lines below its row.
+/// \return what a driver serves by another name than its own, "touch, omni"; empty if nothing
+std::string served_by(const std::string& driver) {
+  const auto names = device::device_driver(driver).names();
+  return fmt::format("{}", fmt::join(names.begin() + 1, names.end(), ", "));
+}
+
+/// One row for each device; what it lacks, what a study must know, and below the first row of a
+/// driver the products that it serves, are in lines below it.
 std::string listing_text(const std::vector<device::DeviceListing>& listings) {
   const Row header = {"driver", "state", "model", "serial", "where"};
   std::array<std::size_t, kColumns> widths{};
@@ -61,12 +69,26 @@ std::string listing_text(const std::vector<device::DeviceListing>& listings) {
   widen(header);
   for (const device::DeviceListing& listing : listings) widen(row_of(listing));
   std::string text = line_of(header, widths);
+  std::string driver;
   for (const device::DeviceListing& listing : listings) {
     text += line_of(row_of(listing), widths);
+    const std::string served = served_by(listing.driver);
+    if (listing.driver != driver && !served.empty()) {
+      text += analysis::wrapped("  ", "also by the names " + served);
+    }
+    driver = listing.driver;
     for (const std::string& missing : listing.missing) text += analysis::wrapped("  - ", missing);
     for (const std::string& note : listing.notes) text += analysis::wrapped("  ", note);
   }
   return text;
+}
+
+nlohmann::ordered_json products_json(const std::string& driver) {
+  nlohmann::ordered_json products = nlohmann::ordered_json::array();
+  for (const device::DeviceProduct& product : device::device_driver(driver).products) {
+    products.push_back({{"name", product.name}, {"title", product.title}});
+  }
+  return products;
 }
 
 std::string listing_json(const std::vector<device::DeviceListing>& listings) {
@@ -74,6 +96,7 @@ std::string listing_json(const std::vector<device::DeviceListing>& listings) {
   ordered_json devices = ordered_json::array();
   for (const device::DeviceListing& listing : listings) {
     devices.push_back({{"driver", listing.driver},
+                       {"products", products_json(listing.driver)},
                        {"model", listing.model},
                        {"serial", listing.serial},
                        {"where", listing.where},
@@ -126,7 +149,7 @@ void add_device_initialise_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<InitialiseArguments>();
   CLI::App* command = device.add_subcommand(
       "initialise", "Let a device find its axes by moving itself; asks before it moves");
-  add_driver_argument(*command, "NAME", arguments->driver);
+  add_driver_argument(*command, "NAME", arguments->driver)->required();
   add_settings_option(*command, arguments->settings);
   add_yes_flag(*command, arguments->yes);
   command->callback([=, &action] { action = [=] { return initialise(*arguments); }; });

@@ -138,16 +138,18 @@ std::vector<device::ConformanceCheck> checks_of(const ConformArguments& argument
   device::PacedClock clock(device::PacedClock::usual_spin(policy));
   if (is_plugin) return device::check_plugin_conformance(settings.plugin, clock, options);
   device::ConformanceSubject subject;
-  subject.open = [&] { return device::open_device(arguments.target, settings); };
+  // The driver itself, without the lab's scales.
+  subject.open = [&] { return device::device_driver(arguments.target).open(settings); };
   return device::check_conformance(subject, clock, options);
 }
 
-int conform(const ConformArguments& arguments) {
+int conform(ConformArguments arguments) {
   device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   const bool is_file = is_library(arguments.target);
   // A name without a slash would be searched for in the system's folders.
   if (is_file) settings.plugin.library = std::filesystem::absolute(arguments.target);
-  const bool is_plugin = is_file || device::device_driver(arguments.target).name == kPluginDriver;
+  if (!is_file) arguments.target = device::device_driver(arguments.target).name;
+  const bool is_plugin = is_file || arguments.target == kPluginDriver;
   expect_checkable(arguments, is_plugin);
   if (arguments.force) {
     confirm(fmt::format("{}: forces of {} N push the handle along each axis; rest it on the table "
@@ -176,8 +178,8 @@ void add_device_conform_command(CLI::App& device, Action& action) {
       "conform", "Check a driver, such as a plug-in of your own: readings, zero forces, time");
   command
       ->add_option("DRIVER", arguments->target,
-                   "A plug-in's file (FILE.so, or a path), or a driver as touchtrial device list "
-                   "names it")
+                   "A plug-in's file (FILE.so, or a path), or a device or its driver as touchtrial "
+                   "device list names it")
       ->required();
   add_settings_option(*command, arguments->settings);
   command->add_option("--seconds", arguments->seconds, "Duration of watching readings, s")

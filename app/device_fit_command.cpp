@@ -9,6 +9,7 @@
 #include "core/files.hpp"
 #include "device/acceptance/certificate.hpp"
 #include "device/registry.hpp"
+#include "device/scaled_device.hpp"
 #include "device/workspace_fit.hpp"
 #include "engine/image_file.hpp"
 #include "protocols/design/study.hpp"
@@ -46,7 +47,7 @@ struct StudyFit {
   WorkspaceSource source = WorkspaceSource::none;
   device::WorkspaceFit fit;
   device::RenderedStiffness rendered;
-  device::DeviceInfo limits;  ///< of the device that was read; without limits if none was
+  device::DeviceInfo limits;  ///< of the device that was read; if none was, the scale alone
 };
 
 const char* word_for(device::PlaneOrientation orientation) {
@@ -122,10 +123,14 @@ StudyFit fit_of(const design::Study& study, const std::string& driver,
   StudyFit fit;
   fit.study = study.name;
   fit.driver = driver;
+  fit.limits.scale = settings.use_of(driver).scale;
   fit.workspace = known.nominal_workspace;
-  if (fit.workspace) fit.source = WorkspaceSource::maker;
+  if (fit.workspace) {
+    fit.workspace = device::scaled(*fit.workspace, fit.limits.scale.length);
+    fit.source = WorkspaceSource::maker;
+  }
   if (!known.workspace_is_known) {
-    fit.limits = known.open(settings)->info();
+    fit.limits = device::open_device(driver, settings)->info();
     fit.workspace = fit.limits.workspace;
     fit.source = WorkspaceSource::device;
   }
@@ -273,7 +278,7 @@ void add_device_fit_command(CLI::App& device, Action& action) {
       "Check whether a study's plane fits a device's workspace, and its stiffness the device's "
       "limits; if the plane does not, give the crop that does");
   add_study_argument(*command, arguments->study);
-  add_driver_argument(*command, "--device", arguments->driver);
+  add_driver_argument(*command, "--device", arguments->driver)->required();
   command
       ->add_option_function<std::string>(
           "--orientation",

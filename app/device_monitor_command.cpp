@@ -155,7 +155,7 @@ void add_device_monitor_command(CLI::App& device, Action& action) {
   CLI::App* command = device.add_subcommand(
       "monitor",
       "Show a device's position and force, and the servo's rate and lateness, in a window");
-  add_driver_argument(*command, "NAME", arguments->driver);
+  add_driver_argument(*command, "NAME", arguments->driver)->required();
   add_settings_option(*command, arguments->settings);
   add_rate_option(*command, arguments->rate_hz);
   command->add_flag("--wall", arguments->wall, "Begin with the wall on");

@@ -272,7 +272,7 @@ void add_device_test_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<TestArguments>();
   CLI::App* command = device.add_subcommand(
       "test", "Try a device: homing, a plain wall, a texture; q stops, space releases the force");
-  add_driver_argument(*command, "NAME", arguments->driver);
+  add_driver_argument(*command, "NAME", arguments->driver)->required();
   add_settings_option(*command, arguments->settings);
   command->add_option("--seconds", arguments->seconds, "Duration of wall and texture together, s")
       ->check(finite_range(0.1, 3600.0))

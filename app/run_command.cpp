@@ -80,7 +80,7 @@ void add_session_options(CLI::App& command, RunOptions& options) {
 }
 
 void add_device_options(CLI::App& command, RunOptions& options) {
-  command.add_option("--device", options.device, "Driver, as touchtrial device list names it");
+  add_driver_argument(command, "--device", options.device);
   add_settings_option(command, options.settings);
   command.add_option("--certificate", options.certificate,
                      "Certificate of the device's acceptance (default: NAME-certificate.json)");

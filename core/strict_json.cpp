@@ -227,6 +227,10 @@ bool JsonValue::is_text() const {
   return node_->value->is_string();
 }
 
+bool JsonValue::is_list() const {
+  return node_->value->is_array();
+}
+
 bool JsonValue::is_object() const {
   return node_->value->is_object();
 }

@@ -54,6 +54,7 @@ class JsonValue {
   [[noreturn]] void refuse_below(std::string_view pointer, const std::string& what) const;
 
   [[nodiscard]] bool is_text() const;
+  [[nodiscard]] bool is_list() const;
   [[nodiscard]] bool is_object() const;
   [[nodiscard]] const std::string& text() const;
   /// true or false.

@@ -3,6 +3,7 @@
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
 #include "device/registry.hpp"
+#include "device/scaled_device.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -17,6 +18,7 @@ constexpr NumberRange kForceOrNoneN{.low = 0.0, .high = 100.0};
 constexpr NumberRange kBiasN{.low = -1.0, .high = 1.0};
 constexpr NumberRange kPlaceMm{.low = -1000.0, .high = 1000.0};
 constexpr NumberRange kLengthMm{.low = 1.0, .high = 2000.0};
+constexpr NumberRange kScale{.low = kLeastScale, .high = kGreatestScale};
 constexpr NumberRange kMassKg{.low = 0.0, .high = 10.0};
 constexpr std::int64_t kMostMotorValue = 10'000;
 constexpr NumberRange kPeakS{.low = 0.0, .high = 600.0, .open_low = true};
@@ -97,8 +99,22 @@ void read_placement(const JsonValue& place, DeviceUse& use) {
   if (const auto member = object.find("centre_mm")) use.centre_mm = read_vec3(*member, kPlaceMm);
 }
 
+/// Reads a number for all axes, or one for each.
+void read_scale(const JsonObject& object, std::string_view key, Vec3& scale) {
+  const auto member = object.find(key);
+  if (!member) return;
+  if (member->is_list()) {
+    scale = read_vec3(*member, kScale);
+    return;
+  }
+  const double all = member->number(kScale);
+  scale = {all, all, all};
+}
+
 DeviceUse read_use(const JsonObject& object) {
   DeviceUse use;
+  read_scale(object, "force_scale", use.scale.force);
+  read_scale(object, "length_scale", use.scale.length);
   if (const auto member = object.find("limits")) use.limits = read_limits(*member);
   if (const auto member = object.find("placement")) read_placement(*member, use);
   return use;
@@ -123,9 +139,9 @@ Vec3 read_gravity_bias(const JsonValue& place) {
 }
 
 DeviceUse read_falcon(const JsonValue& place, const fs::path& folder, DeviceSettings& settings) {
-  const JsonObject object =
-      place.object({"firmware", "serial", "gravity_bias_n", "led_order", "motor_peak",
-                    "motor_continuous", "motor_peak_s", "limits", "placement"});
+  const JsonObject object = place.object({"firmware", "serial", "gravity_bias_n", "led_order",
+                                          "motor_peak", "motor_continuous", "motor_peak_s",
+                                          "force_scale", "length_scale", "limits", "placement"});
   FalconSettings& falcon = settings.falcon;
   read_path(object, "firmware", folder, falcon.firmware);
   read_text(object, "serial", falcon.serial);
@@ -145,7 +161,8 @@ DeviceUse read_falcon(const JsonValue& place, const fs::path& folder, DeviceSett
 
 DeviceUse read_openhaptics(const JsonValue& place, const fs::path& folder,
                            DeviceSettings& settings) {
-  const JsonObject object = place.object({"library", "device", "rate_hz", "limits", "placement"});
+  const JsonObject object = place.object(
+      {"library", "device", "rate_hz", "force_scale", "length_scale", "limits", "placement"});
   read_library(object, folder, settings.openhaptics.library);
   read_text(object, "device", settings.openhaptics.device);
   if (const auto rate = object.find("rate_hz")) {
@@ -156,9 +173,9 @@ DeviceUse read_openhaptics(const JsonValue& place, const fs::path& folder,
 }
 
 DeviceUse read_dhd(const JsonValue& place, const fs::path& folder, DeviceSettings& settings) {
-  const JsonObject object =
-      place.object({"library", "index", "gravity_compensation", "effector_mass_kg", "max_force_n",
-                    "continuous_force_n", "workspace_mm", "limits", "placement"});
+  const JsonObject object = place.object(
+      {"library", "index", "gravity_compensation", "effector_mass_kg", "max_force_n",
+       "continuous_force_n", "workspace_mm", "force_scale", "length_scale", "limits", "placement"});
   DhdSettings& dhd = settings.dhd;
   read_library(object, folder, dhd.library);
   if (const auto index = object.find("index")) {
@@ -177,7 +194,8 @@ DeviceUse read_dhd(const JsonValue& place, const fs::path& folder, DeviceSetting
 }
 
 DeviceUse read_plugin(const JsonValue& place, const fs::path& folder, DeviceSettings& settings) {
-  const JsonObject object = place.object({"library", "settings", "limits", "placement"});
+  const JsonObject object =
+      place.object({"library", "settings", "force_scale", "length_scale", "limits", "placement"});
   read_library(object, folder, settings.plugin.library);
   if (const auto own = object.find("settings")) settings.plugin.settings = own->any_object();
   return read_use(object);
@@ -190,8 +208,9 @@ void read_port(const JsonObject& object, std::string_view key, int& port) {
 }
 
 DeviceUse read_inverse3(const JsonValue& place, const fs::path&, DeviceSettings& settings) {
-  const JsonObject object = place.object(
-      {"host", "port", "events_port", "device_id", "max_force_n", "limits", "placement"});
+  const JsonObject object =
+      place.object({"host", "port", "events_port", "http_port", "device_id", "max_force_n",
+                    "force_scale", "length_scale", "limits", "placement"});
   Inverse3Settings& inverse3 = settings.inverse3;
   read_text(object, "host", inverse3.host);
   if (inverse3.host.empty()) {
@@ -199,6 +218,7 @@ DeviceUse read_inverse3(const JsonValue& place, const fs::path&, DeviceSettings&
   }
   read_port(object, "port", inverse3.port);
   read_port(object, "events_port", inverse3.events_port);
+  read_port(object, "http_port", inverse3.http_port);
   read_text(object, "device_id", inverse3.device_id);
   if (const auto force = object.find("max_force_n")) inverse3.max_force_n = force->number(kForceN);
   return read_use(object);
@@ -278,6 +298,22 @@ void tighten(double& limit, const std::optional<double>& lab) {
   if (lab) limit = std::min(limit, *lab);
 }
 
+/// \return the driver's section, which may have the name of one of its products
+std::optional<JsonValue> section_of(const DeviceDriver& driver, const JsonObject& root) {
+  std::optional<JsonValue> section;
+  std::string_view taken;
+  for (const std::string_view name : driver.names()) {
+    const auto member = root.find(name);
+    if (!member) continue;
+    if (section) {
+      member->refuse("is the driver of /" + std::string(taken) + " too; put its settings there");
+    }
+    section = member;
+    taken = name;
+  }
+  return section;
+}
+
 }  // namespace
 
 DeviceUse DeviceSettings::use_of(const std::string& driver) const {
@@ -300,8 +336,7 @@ SafetyLimits stricter_of(SafetyLimits limits, const LabLimits& lab) noexcept {
 
 DeviceSettings parse_device_settings(std::string_view text, const fs::path& folder,
                                      const std::string& source) {
-  std::vector<std::string_view> names;
-  for (const DeviceDriver& driver : device_drivers()) names.push_back(driver.name);
+  std::vector<std::string_view> names = device_names();
   names.push_back(kInstruments);
   const JsonObject root = parse_strict_json(text, source).object(names);
   DeviceSettings settings;
@@ -309,7 +344,7 @@ DeviceSettings parse_device_settings(std::string_view text, const fs::path& fold
     settings.instruments = read_instruments(*member, folder);
   }
   for (const DeviceDriver& driver : device_drivers()) {
-    if (const auto member = root.find(driver.name)) {
+    if (const auto member = section_of(driver, root)) {
       settings.uses[driver.name] = read_driver(driver.name, *member, folder, settings);
     }
   }

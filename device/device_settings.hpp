@@ -21,7 +21,7 @@ struct FalconSettings {
   std::string serial;              ///< of the device to use; empty: the only one
   Vec3 gravity_bias_n;             ///< the device's support force, device frame; norm <= 1
   std::array<int, 3> led_order = {2, 0, 1};  ///< bits of red, green and blue
-  /// Limits of each motor, in motor values (10,000 for 1 N m): the greatest, that which it holds
+  /// Limits of each motor, in motor values (6,616 for 1 N m): the greatest, that which it holds
   /// for ever, and how long a cold motor may have the greatest, s. Guesses, until a lab measures
   /// its device (docs/devices/falcon.md).
   int motor_peak = 4095;
@@ -57,8 +57,9 @@ struct PluginSettings {
 
 struct Inverse3Settings {
   std::string host = "localhost";  ///< where Haply's Inverse service runs
-  int port = 10001;                ///< of its simulation channel, 1 to 65535
+  int port = 10001;                ///< of its simulation channel, 1 to 65535; mostly of HTTP too
   int events_port = 10020;         ///< of its events channel, 1 to 65535
+  int http_port = 10000;           ///< of HTTP where `port` has none, 1 to 65535
   std::string device_id;           ///< of the device to use; empty: the only one
   double max_force_n = 5.0;        ///< along each axis, which nobody publishes; > 0
 };
@@ -83,6 +84,7 @@ struct DeviceUse {
   std::optional<PlaneOrientation> orientation;
   /// The middle of a plane, device frame; nothing: the middle of the workspace.
   std::optional<Vec3> centre_mm;
+  DeviceScale scale;  ///< of this very device, as the lab measured it
 };
 
 /// What records beside a session and is told of its events.

@@ -62,6 +62,16 @@ struct Workspace {
   WorkspaceShape shape = WorkspaceShape::box;
 };
 
+/// True newtons for one of the driver's, and true millimetres for one of the driver's, on each axis
+/// of the device frame; a lab's settings. A force is felt as `force` times what the driver was
+/// told.
+struct DeviceScale {
+  Vec3 force = {1.0, 1.0, 1.0};
+  Vec3 length = {1.0, 1.0, 1.0};
+
+  friend bool operator==(const DeviceScale&, const DeviceScale&) = default;
+};
+
 /// What a session records of its device.
 struct DeviceInfo {
   std::string name;          ///< driver name, for instance "simulated"
@@ -81,6 +91,7 @@ struct DeviceInfo {
   double max_stiffness_n_per_mm = 0.0;
   /// The largest damping that it renders stably, N s/mm, likewise.
   double max_damping_n_s_per_mm = 0.0;
+  DeviceScale scale{};  ///< that `open_device` applied; drivers leave it alone
 };
 
 /// A force-feedback device. The constructor opens it and throws DeviceError if it cannot; the

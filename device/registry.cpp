@@ -3,17 +3,14 @@
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
 #include "device/drivers.hpp"
+#include "device/scaled_device.hpp"
 
+#include <algorithm>
 #include <string_view>
+#include <utility>
 
 namespace touchtrial::device {
 namespace {
-
-std::vector<std::string_view> driver_names() {
-  std::vector<std::string_view> names;
-  for (const DeviceDriver& driver : device_drivers()) names.push_back(driver.name);
-  return names;
-}
 
 /// \return the driver's devices, or one entry that says why it cannot list them
 std::vector<DeviceListing> listings_of(const DeviceDriver& driver, const DeviceSettings& settings) {
@@ -24,7 +21,26 @@ std::vector<DeviceListing> listings_of(const DeviceDriver& driver, const DeviceS
   }
 }
 
+/// \return settings whose limits are in the driver's newtons, for drivers that hand them on: with
+///   room for every felt force within them
+DeviceSettings in_drivers_newtons(DeviceSettings settings, const std::string& driver) {
+  DeviceUse& use = settings.uses[driver];
+  const Vec3 force = use.scale.force;
+  const double weakest = std::min({force.x, force.y, force.z});
+  if (use.limits.max_force_n) *use.limits.max_force_n /= weakest;
+  if (use.limits.continuous_force_n) *use.limits.continuous_force_n /= weakest;
+  return settings;
+}
+
 }  // namespace
+
+std::vector<std::string_view> DeviceDriver::names() const {
+  std::vector<std::string_view> all = {name};
+  for (const DeviceProduct& product : products) {
+    if (product.name != name) all.push_back(product.name);
+  }
+  return all;
+}
 
 const std::vector<DeviceDriver>& device_drivers() {
   static const std::vector<DeviceDriver> kDrivers = all_drivers();
@@ -39,19 +55,32 @@ std::vector<DeviceListing> list_devices(const DeviceSettings& settings) {
   return all;
 }
 
+std::vector<std::string_view> device_names() {
+  std::vector<std::string_view> all;
+  for (const DeviceDriver& driver : device_drivers()) {
+    for (const std::string_view name : driver.names()) all.push_back(name);
+  }
+  return all;
+}
+
 const DeviceDriver& device_driver(const std::string& name) {
   for (const DeviceDriver& known : device_drivers()) {
-    if (known.name == name) return known;
+    const std::vector<std::string_view> names = known.names();
+    if (std::ranges::find(names, name) != names.end()) return known;
   }
-  const auto nearest = nearest_name(name, driver_names());
+  const auto nearest = nearest_name(name, device_names());
   throw UsageError(one_line(
-      name + ": there is no such device driver; " +
+      name + ": there is no such device or driver; " +
       (nearest ? "did you mean " + std::string(*nearest) + "?" : "see touchtrial device list")));
 }
 
 std::unique_ptr<HapticDevice> open_device(const std::string& driver,
                                           const DeviceSettings& settings) {
-  return device_driver(driver).open(settings);
+  const DeviceDriver& known = device_driver(driver);
+  const DeviceScale scale = settings.use_of(known.name).scale;
+  if (scale == DeviceScale{}) return known.open(settings);
+  return std::make_unique<ScaledDevice>(known.open(in_drivers_newtons(settings, known.name)),
+                                        scale);
 }
 
 }  // namespace touchtrial::device

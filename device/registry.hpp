@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchtrial::device {
@@ -26,6 +27,12 @@ struct DeviceListing {
   std::vector<std::string> notes{};
 };
 
+/// A product, or a line of products, that a driver serves.
+struct DeviceProduct {
+  std::string name;   ///< that opens its driver too, for instance "omega"
+  std::string title;  ///< for people, "Force Dimension omega"
+};
+
 /// What one driver offers the registry.
 struct DeviceDriver {
   std::string name;
@@ -41,6 +48,11 @@ struct DeviceDriver {
   /// clear of it; returns what it did, for instance "is initialised". Throws DeviceError with the
   /// remedy. Null: a person moves the device, see HapticDevice::readiness.
   std::function<std::string(const DeviceSettings&)> initialise = nullptr;
+  /// Under whose names it opens as well; one may have the driver's own name.
+  std::vector<DeviceProduct> products{};
+
+  /// Its name, then those of its products: each opens it, in commands and in settings.
+  [[nodiscard]] std::vector<std::string_view> names() const;
 };
 
 /// \return all drivers, in the order in which the program lists them
@@ -50,10 +62,15 @@ struct DeviceDriver {
 ///   becomes a line of its listing
 [[nodiscard]] std::vector<DeviceListing> list_devices(const DeviceSettings& settings);
 
-/// \throws UsageError naming the nearest driver if there is none of this name
+/// \return every name that device_driver knows, driver by driver
+[[nodiscard]] std::vector<std::string_view> device_names();
+
+/// \param name  of a driver or of a product
+/// \throws UsageError naming the nearest if there is none of this name
 [[nodiscard]] const DeviceDriver& device_driver(const std::string& name);
 
-/// \throws UsageError naming the nearest driver if there is none of this name; DeviceError, or
+/// Opens the driver's device, and corrects it by the DeviceUse::scale of the settings.
+/// \throws UsageError as device_driver; DeviceError, or
 ///   FileError for a file that it needs, with the remedy if it cannot be opened
 [[nodiscard]] std::unique_ptr<HapticDevice> open_device(const std::string& driver,
                                                         const DeviceSettings& settings);

@@ -157,6 +157,10 @@ Meanings of_collection() {
       {"device_model", {"Model of the haptic device, as it tells it"}},
       {"device_firmware", {"Firmware of the haptic device, as it tells it"}},
       {"device_max_force_n", {"Largest force of the haptic device", "N"}},
+      {"device_force_scale",
+       {"Felt newtons for one of the driver's, to the right, up and towards the person, as the lab "
+        "set them"}},
+      {"device_length_scale", {"True millimetres for one of the driver's, likewise"}},
       {"certificate",
        {"SHA-256 of the certificate of the device's acceptance, or UNVERIFIED DEVICE"}},
       {"servo_hz", {"Servo rate that was asked for", "Hz"}},

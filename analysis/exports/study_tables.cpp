@@ -1,9 +1,11 @@
 #include "analysis/exports/study_tables.hpp"
 
 #include "analysis/collection.hpp"
+#include "core/strict_json.hpp"
 #include "core/utc.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <map>
 #include <set>
@@ -41,6 +43,14 @@ template <double store::StationRecord::*kNumber>
 DataCell station_number(const SessionRecord& record) {
   if (!record.station) return std::monostate{};
   return (*record.station).*kNumber;
+}
+
+/// Three numbers with blanks between them.
+template <std::array<double, 3> store::StationRecord::*kAxes>
+DataCell station_axes(const SessionRecord& record) {
+  if (!record.station) return std::monostate{};
+  const std::array<double, 3>& axes = (*record.station).*kAxes;
+  return number_text(axes[0]) + ' ' + number_text(axes[1]) + ' ' + number_text(axes[2]);
 }
 
 /// How a session was collected. Deviations have a table of their own, because a session may have
@@ -87,6 +97,8 @@ constexpr RecordColumn kRecordColumns[] = {
     {"device_model", station_text<&store::StationRecord::model>},
     {"device_firmware", station_text<&store::StationRecord::firmware>},
     {"device_max_force_n", station_number<&store::StationRecord::max_force_n>},
+    {"device_force_scale", station_axes<&store::StationRecord::force_scale>},
+    {"device_length_scale", station_axes<&store::StationRecord::length_scale>},
     {"certificate", station_text<&store::StationRecord::calibration>},
     {"servo_hz", station_number<&store::StationRecord::rate_hz>},
     {"scheduling", station_text<&store::StationRecord::scheduling>},

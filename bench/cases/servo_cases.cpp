@@ -111,28 +111,24 @@ std::vector<device::falcon::PerLeg> readings_of_a_stroke() {
 }
 
 struct FalconStroke {
-  /// \param warm  whether the search for each pose begins at the previous one, as in the driver
-  void run(bool warm) {
+  void run() {
     for (const device::falcon::PerLeg& reading : readings) {
-      const device::falcon::Pose pose =
-          device::falcon::forward_kinematics(reading, warm ? last_m : device::falcon::kCentreM);
-      last_m = pose.native_m;
+      const device::falcon::Pose pose = device::falcon::forward_kinematics(reading);
       sum_nm += device::falcon::torques_nm(pose.jacobian, kForceN).value()[0];
     }
   }
 
   std::vector<device::falcon::PerLeg> readings = readings_of_a_stroke();
-  Vec3 last_m = device::falcon::kCentreM;
   double sum_nm = 0.0;  ///< keeps the compiler from removing poses
 };
 
-Case falcon_case(bool warm) {
+Case falcon_case() {
   Case one;
   one.work = "Falcon, angles to pose to torques";
-  one.who = our_name() + (warm ? ", from the last pose" : ", from the centre");
-  one.make = [warm] {
+  one.who = our_name();
+  one.make = [] {
     const auto stroke = std::make_shared<FalconStroke>();
-    return Job{[=] { stroke->run(warm); }, {}, kReadings};
+    return Job{[=] { stroke->run(); }, {}, kReadings};
   };
   return one;
 }
@@ -152,7 +148,7 @@ Cases force_cases() {
 }
 
 Cases falcon_cases() {
-  return {falcon_case(true), falcon_case(false)};
+  return {falcon_case()};
 }
 
 }  // namespace touchtrial::bench

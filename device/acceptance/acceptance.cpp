@@ -77,6 +77,7 @@ class Procedure {
     certificate_.model = info_.model;
     certificate_.serial = info_.serial;
     certificate_.firmware = info_.firmware;
+    certificate_.scale = info_.scale;
   }
 
   Acceptance run() {

@@ -5,6 +5,8 @@
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "core/utc.hpp"
+#include "device/acceptance/measurement.hpp"
+#include "device/scaled_device.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +20,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::string_view kCertificateKind = "touchtrial device acceptance 1";
+constexpr std::string_view kCertificateKind = "touchtrial device acceptance 2";
 constexpr std::array kAxisWords = {Named<DeviceAxis>{"x", DeviceAxis::x},
                                    Named<DeviceAxis>{"y", DeviceAxis::y},
                                    Named<DeviceAxis>{"z", DeviceAxis::z}};
@@ -97,7 +99,9 @@ void judge_delay(const AxisResult& axis, const std::vector<NotMeasured>& not_mea
   }
 }
 
-void judge_axis_result(const AxisResult& axis, const std::vector<NotMeasured>& not_measured,
+/// \param force_scale  in force on this axis
+void judge_axis_result(const AxisResult& axis, double force_scale,
+                       const std::vector<NotMeasured>& not_measured,
                        std::vector<std::string>& failures) {
   const std::string where = axis_words(axis) + ": ";
   judge_push(axis, axis.plus, "along it", failures);
@@ -106,9 +110,11 @@ void judge_axis_result(const AxisResult& axis, const std::vector<NotMeasured>& n
   }
   if (const auto scale = axis.scale()) {
     if (std::abs(scale->value - 1.0) > kForceTolerance + 0.01 * kAlikePercent) {
-      failures.push_back(
-          fmt::format("{}delivers {:.0f} % of the commanded force, more than {:.0f} % off", where,
-                      100.0 * scale->value, 100.0 * kForceTolerance));
+      failures.push_back(fmt::format(
+          "{}delivers {:.0f} % of the commanded force, more than {:.0f} % off; if the "
+          "weight was right, set force_scale on this axis to {:.2f} in the device "
+          "settings",
+          where, 100.0 * scale->value, 100.0 * kForceTolerance, force_scale * scale->value));
     }
   } else {
     failures.push_back(where + "the size of its force was not measured");
@@ -123,6 +129,10 @@ void judge_axis_result(const AxisResult& axis, const std::vector<NotMeasured>& n
 ///@{
 ordered_json json_of(const Measured& measured) {
   return {{"value", measured.value}, {"error", measured.error}};
+}
+
+ordered_json json_of(Vec3 axes) {
+  return {axes.x, axes.y, axes.z};
 }
 
 ordered_json json_of(const PushResult& push) {
@@ -225,6 +235,12 @@ Measured read_measured_above_zero(const JsonValue& place) {
           object.at("error").number(kPositive)};
 }
 
+Vec3 read_scale(const JsonValue& place) {
+  constexpr NumberRange kScale{.low = kLeastScale, .high = kGreatestScale};
+  const std::vector<JsonValue> axes = place.items(3, 3);
+  return {axes[0].number(kScale), axes[1].number(kScale), axes[2].number(kScale)};
+}
+
 PushResult read_push(const JsonValue& place) {
   const JsonObject object = place.object({"force_n", "moved", "along_mm", "across_mm"});
   return {object.at("force_n").number(kPositive), object.at("moved").truth(),
@@ -322,10 +338,10 @@ std::vector<AxisResult> read_axis_results(const JsonValue& place) {
 }
 
 Certificate read_acceptance(const JsonValue& place) {
-  const JsonObject object =
-      place.object({"kind", "driver", "model", "serial", "firmware", "program", "made", "emulated",
-                    "fault", "rest", "step_mm", "axes", "wall", "warm", "observed", "spectra",
-                    "not_measured", "failures", "passed"});
+  const JsonObject object = place.object(
+      {"kind",     "driver",      "model",        "serial",  "firmware",     "program",  "made",
+       "emulated", "force_scale", "length_scale", "fault",   "rest",         "step_mm",  "axes",
+       "wall",     "warm",        "observed",     "spectra", "not_measured", "failures", "passed"});
   if (object.at("kind").text() != kCertificateKind) {
     object.at("kind").refuse("must be " + in_quotes(kCertificateKind) +
                              "; make a certificate with touchtrial device accept");
@@ -338,6 +354,7 @@ Certificate read_acceptance(const JsonValue& place) {
   certificate.program = object.at("program").text();
   certificate.made = read_made(object.at("made"));
   certificate.emulated = object.at("emulated").text();
+  certificate.scale = {read_scale(object.at("force_scale")), read_scale(object.at("length_scale"))};
   certificate.fault = object.at("fault").text();
   certificate.rest = read_if(object, "rest", read_rest);
   certificate.step_mm = read_if(object, "step_mm", read_measured);
@@ -405,7 +422,8 @@ std::vector<std::string> Certificate::failures() const {
     if (found == axes.end()) {
       failures.push_back("axis " + std::string(name_of(axis)) + ": was not measured");
     } else {
-      judge_axis_result(*found, not_measured, failures);
+      const double force_scale = dot(scale.force, direction_of(axis));
+      judge_axis_result(*found, force_scale, not_measured, failures);
     }
   }
   if (wall && wall->oscillates_n_per_mm > 0.0 && wall->stable_n_per_mm <= 0.0) {
@@ -422,7 +440,7 @@ std::vector<std::string> Certificate::failures() const {
 double Certificate::largest_scale() const {
   double largest = 0.0;
   for (const AxisResult& axis : axes) {
-    if (const auto scale = axis.scale()) largest = std::max(largest, scale->value);
+    if (const auto delivered = axis.scale()) largest = std::max(largest, delivered->value);
   }
   return largest > 0.0 ? largest : 1.0;
 }
@@ -468,6 +486,8 @@ std::string certificate_json(const Certificate& certificate) {
                          {"program", certificate.program},
                          {"made", utc_text(certificate.made.time_since_epoch())},
                          {"emulated", certificate.emulated},
+                         {"force_scale", json_of(certificate.scale.force)},
+                         {"length_scale", json_of(certificate.scale.length)},
                          {"fault", certificate.fault}};
   put_if(object, "rest", certificate.rest);
   put_if(object, "step_mm", certificate.step_mm);
@@ -502,6 +522,11 @@ std::string check_certificate(const Certificate& certificate, const DeviceInfo& 
         "the certificate is for " +
         identity_words(certificate.driver, certificate.model, certificate.serial) +
         "; the device is " + identity_words(device.name, device.model, device.serial) + remedy));
+  }
+  if (certificate.scale != device.scale) {
+    throw DeviceError(device.name + ": its certificate was made with " +
+                      scale_text(certificate.scale) + ", and the device settings have " +
+                      scale_text(device.scale) + remedy);
   }
   if (const auto failures = certificate.failures(); !failures.empty()) {
     throw DeviceError(one_line(device.name + ": its certificate says that it failed (" +

@@ -73,7 +73,7 @@ struct AxisResult {
   /// The person left its step out. Without this an axis whose delay is not known has failed.
   bool delay_left_out = false;
 
-  /// Delivered force over commanded force.
+  /// Delivered force over commanded force, which Certificate::scale has corrected.
   [[nodiscard]] std::optional<Measured> scale() const;
 };
 
@@ -128,6 +128,7 @@ struct Certificate {
   std::string program;              ///< version
   std::chrono::sys_seconds made{};  ///< UTC
   std::string emulated{};           ///< name of the device model of a rehearsal; empty: a device
+  DeviceScale scale{};              ///< of the lab's settings, in force for all measurements
   std::string fault{};              ///< of the device, which ended the acceptance; empty: none
   std::optional<RestFigures> rest{};
   std::optional<Measured> step_mm{};
@@ -165,7 +166,7 @@ struct ReadCertificate {
 /// \return a warning if the certificate is older than kCertificateAge or of another firmware, else
 ///   ""
 /// \throws DeviceError with the remedy if it is of an emulated device, did not pass, has another
-///   driver, model or serial number, or was made more than kCertificateLead after now
+///   driver, model, serial number or scale, or was made more than kCertificateLead after now
 [[nodiscard]] std::string check_certificate(const Certificate& certificate,
                                             const DeviceInfo& device, std::chrono::sys_seconds now);
 

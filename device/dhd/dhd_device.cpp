@@ -368,7 +368,11 @@ DeviceDriver dhd_driver() {
           .list = dhd::list_dhd,
           .open = dhd::open_dhd,
           .workspace_is_known = false,
-          .initialise = dhd::initialise_dhd};
+          .initialise = dhd::initialise_dhd,
+          .products = {{"omega", "Force Dimension omega"},
+                       {"delta", "Force Dimension delta"},
+                       {"sigma", "Force Dimension sigma"},
+                       {"lambda", "Force Dimension lambda"}}};
 }
 
 }  // namespace touchtrial::device

@@ -188,7 +188,8 @@ DeviceDriver falcon_driver() {
           .what = "Novint Falcon, over USB",
           .list = falcon::list_falcons,
           .open = falcon::open_falcon,
-          .nominal_workspace = falcon::kFalconWorkspace};
+          .nominal_workspace = falcon::kFalconWorkspace,
+          .products = {{"falcon", "Novint Falcon"}}};
 }
 
 }  // namespace touchtrial::device

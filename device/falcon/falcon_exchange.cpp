@@ -43,8 +43,7 @@ void FalconExchange::note_missing() noexcept {
 
 bool FalconExchange::take(const Reply& reply, Time now) noexcept {
   homed_ = reply.all_homed();
-  const Pose pose =
-      forward_kinematics(theta1_of_counts(reply.counts), known_ ? pose_.native_m : kCentreM);
+  const Pose pose = forward_kinematics(theta1_of_counts(reply.counts));
   // Before homing the counts have no origin, so every count is possible.
   if (homed_ && pose.status == PoseStatus::out_of_reach) return false;
   const Vec3 position_mm = to_device_mm(pose.native_m);

@@ -7,16 +7,17 @@
 namespace touchtrial::device::falcon {
 namespace {
 
-constexpr double kDegPerCount = 0.0364347;
-constexpr double kDegAtCountZero = 35.0;
+/// Four counts a line, 320 lines a turn of the motor, 7.6 turns of the motor a turn of the arm.
+constexpr double kDegPerCount = 360.0 / 9728.0;
+constexpr double kDegAtCountZero = 32.9895;
 
-/// A little beyond the angles of all positions in reach (-75.4 to 113.5 degrees).
+/// Beyond the angles of all positions in reach within 60 mm of the centre (-50.2 to 105.5 degrees).
 constexpr double kLeastTheta1Rad = -90.0 * kRadPerDeg;
 constexpr double kGreatestTheta1Rad = 120.0 * kRadPerDeg;
 
-/// Limit for the determinant of the three pulls, which are about unit vectors: -0.80 at the centre,
-/// nowhere nearer to zero than -0.24 within a cube of 80 mm. It is zero where the legs cannot hold
-/// the hand, and positive beyond, where the legs would have to pass through one another.
+/// Limit for the determinant of the three pulls, which have length 1: -0.58 at the centre, nowhere
+/// nearer to zero than -0.11 within a cube of 80 mm. It is zero where the legs cannot hold the
+/// hand, and positive beyond, where the legs would have to pass through one another.
 constexpr double kLeastDeterminant = -0.02;
 
 Vec3 cross(Vec3 a, Vec3 b) noexcept {
@@ -27,115 +28,51 @@ double determinant(const std::array<Vec3, 3>& rows) noexcept {
   return dot(rows[0], cross(rows[1], rows[2]));
 }
 
-/// The arms' ends, in the legs' planes.
-struct Arms {
-  PerLeg across_m;
-  PerLeg along_m;
-};
-
-Arms arms_at(const PerLeg& theta1_rad) noexcept {
-  Arms arms{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    arms.across_m[i] = kArmM * std::cos(theta1_rad[i]);
-    arms.along_m[i] = kArmM * std::sin(theta1_rad[i]);
-  }
-  return arms;
+/// The middle of the sphere on which a leg holds the hand.
+Vec3 sphere_middle_m(double theta1_rad, const LegDirection& leg) noexcept {
+  return to_native_axes(
+      {kOffsetM + kArmM * std::cos(theta1_rad), 0.0, kArmM * std::sin(theta1_rad)}, leg);
 }
 
-/// How far the legs are from closing at a position, and which way that changes.
-struct Closure {
-  PerLeg gap_m{};
-  std::array<Vec3, 3> pull;  ///< its gradient
-  PerLeg lever_m{};
-  bool exists = false;  ///< the parallelograms reach far enough to the side
+/// \return where three spheres of the parallelogram's radius meet, on the person's side
+std::optional<Vec3> meeting_point(const std::array<Vec3, 3>& middle_m) noexcept {
+  const Vec3 a = middle_m[1] - middle_m[0];
+  const Vec3 b = middle_m[2] - middle_m[0];
+  const Vec3 normal = cross(a, b);  // away from the person, as the legs follow each other
+  const double area_square = dot(normal, normal);
+  if (!(area_square > 1e-16)) return std::nullopt;
+  const Vec3 to_circle = (0.5 / area_square) * cross(dot(a, a) * b - dot(b, b) * a, normal);
+  const double height_square = kParallelogramM * kParallelogramM - dot(to_circle, to_circle);
+  if (!(height_square >= 0.0)) return std::nullopt;
+  return middle_m[0] + to_circle - std::sqrt(height_square / area_square) * normal;
+}
+
+/// How the legs stand at a position that they reach.
+struct Stand {
+  LegJacobian jacobian;
   bool upright = true;  ///< every parallelogram leads away from the base
 };
 
-Closure closure_at(Vec3 native_m, const Arms& arms) noexcept {
-  Closure c;
+Stand stand_at(Vec3 native_m, const PerLeg& theta1_rad) noexcept {
+  Stand stand;
   for (std::size_t i = 0; i < 3; ++i) {
-    const LegPoint p = seen_by_leg(native_m, kLegDirections[i]);
-    const double upright_square = kParallelogramM * kParallelogramM - p.side_m * p.side_m;
-    const double across = p.across_m - arms.across_m[i];
-    const double along = p.along_m - arms.along_m[i];
-    const double length = std::sqrt(across * across + along * along);
-    if (!(upright_square > 1e-12) || !(length > 1e-6)) return c;
-    const double upright = std::sqrt(upright_square);
-    c.gap_m[i] = length - (2.0 * kEndLinkM + upright);
-    c.pull[i] =
-        to_native_axes({across / length, p.side_m / upright, along / length}, kLegDirections[i]);
-    c.lever_m[i] = (arms.across_m[i] * along - arms.along_m[i] * across) / length;
-    c.upright = c.upright && along > 0.0;
+    const LegPoint grip = seen_by_leg(native_m, kLegDirections[i]);
+    const double arm_across = kArmM * std::cos(theta1_rad[i]);
+    const double arm_along = kArmM * std::sin(theta1_rad[i]);
+    const Vec3 pull = (1.0 / kParallelogramM) *
+                      Vec3{grip.across_m - arm_across, grip.side_m, grip.along_m - arm_along};
+    stand.jacobian.pull[i] = to_native_axes(pull, kLegDirections[i]);
+    stand.jacobian.lever_m[i] = arm_across * pull.z - arm_along * pull.x;
+    stand.upright = stand.upright && pull.z > 0.0;
   }
-  c.exists = true;
-  return c;
-}
-
-double sum_of_squares(const PerLeg& gap_m) noexcept {
-  return gap_m[0] * gap_m[0] + gap_m[1] * gap_m[1] + gap_m[2] * gap_m[2];
-}
-
-bool is_closed(const Closure& c) noexcept {
-  constexpr double kTolerance = 1e-12;
-  return std::abs(c.gap_m[0]) < kTolerance && std::abs(c.gap_m[1]) < kTolerance &&
-         std::abs(c.gap_m[2]) < kTolerance;
-}
-
-/// \return the capped Newton step; nothing where the gradients do not span the space
-std::optional<Vec3> newton_step(const Closure& c) noexcept {
-  constexpr double kLongestM = 0.020;
-  const double det = determinant(c.pull);
-  if (!(std::abs(det) > 1e-9)) return std::nullopt;
-  const Vec3 sum = c.gap_m[0] * cross(c.pull[1], c.pull[2]) +
-                   c.gap_m[1] * cross(c.pull[2], c.pull[0]) +
-                   c.gap_m[2] * cross(c.pull[0], c.pull[1]);
-  const Vec3 step = (-1.0 / det) * sum;
-  const double length = norm(step);
-  if (!std::isfinite(length)) return std::nullopt;
-  return length > kLongestM ? (kLongestM / length) * step : step;
-}
-
-/// Halves the step until the legs come nearer to closing.
-/// \return whether they did
-bool advance(Vec3& position_m, Closure& closure, Vec3 step, const Arms& arms) noexcept {
-  constexpr int kMostHalvings = 10;
-  const double before = sum_of_squares(closure.gap_m);
-  for (int halving = 0; halving < kMostHalvings; ++halving, step = 0.5 * step) {
-    const Closure next = closure_at(position_m + step, arms);
-    if (!next.exists || !(sum_of_squares(next.gap_m) < before)) continue;
-    position_m = position_m + step;
-    closure = next;
-    return true;
-  }
-  return false;
+  return stand;
 }
 
 /// \return whether the legs stand as they do in a Falcon's housing
-bool is_falcon(const Closure& c) noexcept {
-  return c.upright && c.lever_m[0] >= 0.0 && c.lever_m[1] >= 0.0 && c.lever_m[2] >= 0.0 &&
-         determinant(c.pull) < 0.0;
-}
-
-/// Newton's method from a start.
-/// \return out of reach if it does not close the legs
-Pose solve_from(Vec3 start_m, const Arms& arms) noexcept {
-  constexpr int kMostSteps = 25;
-  Pose pose;
-  Vec3 position_m = start_m;
-  Closure closure = closure_at(position_m, arms);
-  if (!closure.exists) return pose;
-  while (!is_closed(closure)) {
-    if (pose.iterations == kMostSteps) return pose;
-    ++pose.iterations;
-    const std::optional<Vec3> step = newton_step(closure);
-    if (!step || !advance(position_m, closure, *step, arms)) return pose;
-  }
-  if (!is_falcon(closure)) return pose;
-  pose.native_m = position_m;
-  pose.jacobian = {closure.pull, closure.lever_m};
-  const bool holds = determinant(closure.pull) <= kLeastDeterminant;
-  pose.status = holds ? PoseStatus::ok : PoseStatus::singular;
-  return pose;
+bool is_falcon(const Stand& stand) noexcept {
+  const PerLeg& lever_m = stand.jacobian.lever_m;
+  return stand.upright && lever_m[0] >= 0.0 && lever_m[1] >= 0.0 && lever_m[2] >= 0.0 &&
+         determinant(stand.jacobian.pull) < 0.0;
 }
 
 bool are_possible(const PerLeg& theta1_rad) noexcept {
@@ -166,15 +103,16 @@ std::optional<PerLeg> torques_nm(const LegJacobian& jacobian, Vec3 force_n) noex
   return torques;
 }
 
-Pose forward_kinematics(const PerLeg& theta1_rad, Vec3 start_m) noexcept {
+Pose forward_kinematics(const PerLeg& theta1_rad) noexcept {
   if (!are_possible(theta1_rad)) return {};
-  const Arms arms = arms_at(theta1_rad);
-  Pose pose = solve_from(start_m, arms);
-  if (pose.status != PoseStatus::out_of_reach || start_m == kCentreM) return pose;
-  const int wasted = pose.iterations;
-  pose = solve_from(kCentreM, arms);
-  pose.iterations += wasted;
-  return pose;
+  const auto position_m = meeting_point({sphere_middle_m(theta1_rad[0], kLegDirections[0]),
+                                         sphere_middle_m(theta1_rad[1], kLegDirections[1]),
+                                         sphere_middle_m(theta1_rad[2], kLegDirections[2])});
+  if (!position_m) return {};
+  const Stand stand = stand_at(*position_m, theta1_rad);
+  if (!is_falcon(stand)) return {};
+  const bool holds = determinant(stand.jacobian.pull) <= kLeastDeterminant;
+  return {holds ? PoseStatus::ok : PoseStatus::singular, *position_m, stand.jacobian};
 }
 
 }  // namespace touchtrial::device::falcon

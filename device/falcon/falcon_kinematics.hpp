@@ -1,15 +1,16 @@
 /// \file Geometry of the Novint Falcon: joint angles to hand position, force to motor torques.
 ///
-/// Three equal legs stand around the device's axis. In the plane of a leg an arm of length a turns
-/// by theta1 (its motor); a parallelogram, tilted by theta3 out of that plane, leads from the arm's
-/// end to the grip at the angle theta2. Source: R. E. Stamper, "A three degree of freedom parallel
-/// manipulator with only translational degrees of freedom", University of Maryland, 1997; the
-/// constants are those that the open drivers use. Not verified on hardware.
+/// Three equal legs stand around the device's axis. In the plane of a leg an arm turns by theta1
+/// (its motor); a parallelogram, which yields to either side, leads from the arm's end to the grip.
+/// The grip does not turn, so three spheres around the arms' ends, each moved by the leg's offset,
+/// meet in it. Source: R. Clavel, "Delta, a fast robot with parallel geometry", ISIR 1988. Lengths
+/// and angles are those with which Force Dimension's library 3.17.5 drives a Falcon, as it answers
+/// when asked (docs/devices/falcon.md). Not verified on hardware.
 ///
-/// Two frames. Native, m: z along the device's axis towards the person, measured from the base.
-/// Device, mm: the frame of HapticDevice. Only `to_device_mm` knows both.
+/// Two frames. Native, m: z along the device's axis towards the person, measured from the arms'
+/// axes. Device, mm: the frame of HapticDevice. Only `to_device_mm` knows both.
 ///
-/// Everything here is a pure function: any thread, no heap, no throw, bounded time.
+/// Everything here is a pure function: any thread, no heap, no throw, constant time.
 #pragma once
 
 #include "core/vec.hpp"
@@ -24,9 +25,8 @@ namespace touchtrial::device::falcon {
 using EncoderCounts = std::array<std::int16_t, 3>;
 using PerLeg = std::array<double, 3>;
 
-/// The device frame's origin in the native frame: the middle of the legs' reach on the axis, where
-/// theta1 exists for z from 59.8 to 183.2 mm.
-inline constexpr Vec3 kCentreM = {0.0, 0.0, 0.1215};
+/// The device frame's origin in the native frame, on the axis, where theta1 is 25.4 degrees.
+inline constexpr Vec3 kCentreM = {0.0, 0.0, 0.155};
 /// Every position nearer to the origin of the device frame than this is in reach, mm.
 inline constexpr double kWorkspaceRadiusMm = 40.0;
 
@@ -36,38 +36,33 @@ inline constexpr double kWorkspaceRadiusMm = 40.0;
 
 /// \name Lengths and angles of the legs, and the frame of each leg
 ///@{
-inline constexpr double kArmM = 0.060;             ///< a
-inline constexpr double kParallelogramM = 0.1025;  ///< b
-inline constexpr double kGripOffsetM = 0.01443;    ///< c
-inline constexpr double kEndLinkM = 0.01125;       ///< d and e, at either end of the parallelogram
-inline constexpr double kSideOffsetM = -0.025;     ///< f
-inline constexpr double kBaseRadiusM = 0.040;      ///< r
-inline constexpr double kBaseShiftM = -0.02309;    ///< s
+inline constexpr double kArmM = 0.060;
+inline constexpr double kParallelogramM = 0.150;
+/// From the device's axis to an arm's axis, less that from the grip's middle to its joint.
+inline constexpr double kOffsetM = 0.022;
 
 inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-/// Cosine and sine of a leg's angle phi around the axis: 105, -15, -135 degrees.
+/// Cosine and sine of a leg's angle phi around the axis: 104.5, -15.5, -135.5 degrees.
 struct LegDirection {
   double cosine;
   double sine;
 };
 inline constexpr std::array<LegDirection, 3> kLegDirections = {
-    {{-0.25881904510252076, 0.9659258262890683},
-     {0.9659258262890683, -0.25881904510252076},
-     {-0.7071067811865476, -0.7071067811865476}}};
+    {{-0.2503800040544414, 0.9681476403781077},
+     {0.963630453208623, -0.26723837607825685},
+     {-0.7132504491541815, -0.700909264299851}}};
 
 /// A position in the frame of one leg.
 struct LegPoint {
-  double across_m;  ///< U: in the leg's plane, outwards, from the arm's axis to the grip's joint
-  double side_m;    ///< v + f: out of the leg's plane
-  double along_m;   ///< w: along the device's axis
+  double across_m;  ///< in the leg's plane, outwards, from the arm's axis to the grip's joint
+  double side_m;    ///< out of the leg's plane
+  double along_m;   ///< along the device's axis
 };
 
 [[nodiscard]] inline LegPoint seen_by_leg(Vec3 native_m, const LegDirection& leg) noexcept {
-  const double outwards = native_m.x * leg.cosine + native_m.y * leg.sine;
-  const double sideways = -native_m.x * leg.sine + native_m.y * leg.cosine;
-  return {outwards - kBaseRadiusM + kGripOffsetM, sideways - kBaseShiftM + kSideOffsetM,
-          native_m.z};
+  return {native_m.x * leg.cosine + native_m.y * leg.sine - kOffsetM,
+          -native_m.x * leg.sine + native_m.y * leg.cosine, native_m.z};
 }
 
 /// A direction of a leg's frame (across, side, along) in native axes.
@@ -84,7 +79,7 @@ struct LegPoint {
 /// How the legs act on the hand at one pose:
 /// d theta1_i / d position = pull_i / lever_i, in rad/m.
 struct LegJacobian {
-  std::array<Vec3, 3> pull;  ///< dimensionless, native axes
+  std::array<Vec3, 3> pull;  ///< of length 1, native axes
   PerLeg lever_m{};          ///< 0 where an arm and its parallelogram are in line
 };
 
@@ -103,13 +98,9 @@ struct Pose {
   PoseStatus status = PoseStatus::out_of_reach;
   Vec3 native_m = kCentreM;  ///< the centre if out of reach
   LegJacobian jacobian;      ///< at that position
-  int iterations = 0;        ///< Newton steps taken, both attempts together
 };
 
-/// Forward kinematics: Newton on the three legs' closure, steps capped at 20 mm and halved until
-/// the closure improves. Ends within 1e-12 m of closure.
-/// \param start_m  the last position, for speed: a hand's motion in a millisecond takes <= 3 steps;
-///   if the start leads nowhere, Newton begins again at the centre
-[[nodiscard]] Pose forward_kinematics(const PerLeg& theta1_rad, Vec3 start_m = kCentreM) noexcept;
+/// Forward kinematics: the point in which the legs' three spheres meet on the person's side.
+[[nodiscard]] Pose forward_kinematics(const PerLeg& theta1_rad) noexcept;
 
 }  // namespace touchtrial::device::falcon

@@ -18,12 +18,14 @@
 
 namespace touchtrial::device::falcon {
 
-/// The motor value of a torque: the open drivers send -10,000 for 1 N m. Not verified on hardware.
-inline constexpr double kMotorValuePerNm = -1e4;
+/// The motor value of a torque, N m, at an arm. Source: S. Martin and N. Hillier, "Characterisation
+/// of the Novint Falcon haptic device for application as a robot manipulator", ACRA 2009. Other
+/// programs have other numbers (docs/devices/falcon.md). Not verified on hardware.
+inline constexpr double kMotorValuePerNm = -6616.0;
 
 /// The force that one unit of motor value gives at least, at every place of the workspace and in
-/// every direction, N. The least is at its edge; at the centre it is 1.53 mN.
-inline constexpr double kForcePerMotorValueN = 1.18e-3;
+/// every direction, N. The least is at its edge; at the centre it is 1.85 mN.
+inline constexpr double kForcePerMotorValueN = 1.59e-3;
 
 /// What goes to the motors.
 struct MotorCommand {

@@ -57,33 +57,67 @@ ServiceAddress address_of(const Inverse3Settings& settings) {
 }
 
 /// Asks a question to which there is an answer.
-std::string answer_of(const Inverse3Settings& settings, const std::string& path,
+std::string answer_of(const ServiceAddress& http, const std::string& path,
                       std::chrono::nanoseconds patience) {
-  const HttpAnswer answer = ask_service(address_of(settings), path, patience);
+  const HttpAnswer answer = ask_service(http, path, patience);
   if (answer.status == 200) return answer.body;
-  throw DeviceError(one_line("inverse3: the service at " + address_of(settings).text() +
-                             " does not know " + path + " (HTTP " + std::to_string(answer.status) +
-                             "); install Haply's Inverse service 3.5"));
+  throw DeviceError(one_line("inverse3: the service at " + http.text() + " does not know " + path +
+                             " (HTTP " + std::to_string(answer.status) +
+                             "); update Haply's Inverse service, to 3.5 or later"));
 }
 
-[[noreturn]] void refuse_answer(const Inverse3Settings& settings, const std::string& what,
+[[noreturn]] void refuse_answer(const ServiceAddress& service, const std::string& what,
                                 const BadMessage& error) {
-  throw DeviceError(one_line("inverse3: " + what + " from " + address_of(settings).text() +
-                             " makes no sense (" + error.what() +
+  throw DeviceError(one_line("inverse3: " + what + " from " + service.text() + " makes no sense (" +
+                             error.what() +
                              "); correct inverse3.host and inverse3.port, or update the service"));
 }
 
-ServiceVersion version_of(const Inverse3Settings& settings, std::chrono::nanoseconds patience) {
+KnownService service_at(const ServiceAddress& http, const std::string& version_answer) {
   ServiceVersion version;
   try {
-    version = version_in(answer_of(settings, "/version", patience));
+    version = version_in(version_answer);
   } catch (const BadMessage& error) {
-    refuse_answer(settings, "the version", error);
+    refuse_answer(http, "the version", error);
   }
-  if (version.is_known()) return version;
-  throw DeviceError("inverse3: the service at " + one_line(address_of(settings).text()) +
-                    " has version " + version.text() +
-                    ", and versions 3.1 to 3.x are known; install one of them");
+  if (version.is_known()) return {version, http};
+  throw DeviceError("inverse3: the service at " + one_line(http.text()) + " has version " +
+                    version.text() + ", and versions 3.1 to 3.x are known; install 3.5 or later");
+}
+
+/// Services before later versions 3.5 have HTTP on a port of its own.
+/// \return nothing if that port has no HTTP either
+std::optional<KnownService> older_service(const Inverse3Settings& settings,
+                                          std::chrono::nanoseconds patience) {
+  const ServiceAddress http{settings.host, settings.http_port};
+  HttpAnswer answer;
+  try {
+    answer = ask_service(http, "/version", patience);
+  } catch (const DeviceError&) {
+    return std::nullopt;
+  }
+  if (answer.status == 200) return service_at(http, answer.body);
+  throw DeviceError(one_line("inverse3: the service at " + http.text() +
+                             " does not know /version (HTTP " + std::to_string(answer.status) +
+                             "), so it is older than 3.1; install Haply's Inverse service 3.5 or "
+                             "later"));
+}
+
+KnownService find_service(const Inverse3Settings& settings, std::chrono::nanoseconds patience) {
+  const ServiceAddress usual = address_of(settings);
+  std::string error;
+  try {
+    const HttpAnswer answer = ask_service(usual, "/version", patience);
+    if (answer.status == 200) return service_at(usual, answer.body);
+    error = "inverse3: what listens at " + usual.text() + " has no HTTP, and nothing does at " +
+            std::to_string(settings.http_port) +
+            "; start Haply's Inverse service 3.5 or later, or correct inverse3.host, inverse3.port "
+            "and inverse3.http_port";
+  } catch (const NoService& none) {
+    error = none.what();
+  }
+  if (auto older = older_service(settings, patience)) return *older;
+  throw DeviceError(one_line(error));
 }
 
 std::string ids_of(const std::vector<DeviceReport>& devices) {
@@ -134,12 +168,14 @@ std::string switched(const std::optional<bool>& on) {
 std::string firmware_text(const DeviceConfig& config, const ServiceVersion& version) {
   std::string text = config.firmware.empty() ? "" : config.firmware + ", ";
   text += "service " + version.text();
+  if (!config.handedness.empty()) text += ", " + config.handedness + "-handed";
   if (config.force_gate) text += ", force gate " + number_text(*config.force_gate);
   if (config.damping) text += ", damping " + number_text(*config.damping);
   text += ", torque scaling " + switched(config.torque_scaling);
   if (config.gravity_compensation) {
     text += ", gravity compensation " + number_text(*config.gravity_compensation);
   }
+  text += ", home return " + switched(config.home_return);
   return one_line(text);
 }
 
@@ -156,14 +192,14 @@ std::vector<DeviceListing> list_inverse3(const DeviceSettings& settings) {
   const Inverse3Settings& ours = settings.inverse3;
   DeviceListing nothing{"inverse3", "", "", address_of(ours).text(), false, {}};
   try {
-    const ServiceVersion version = version_of(ours, kListPatience);
-    const ServiceReport inventory = report_in(answer_of(ours, "/devices", kListPatience));
+    const KnownService known = find_service(ours, kListPatience);
+    const ServiceReport inventory = report_in(answer_of(known.http, "/devices", kListPatience));
     std::vector<DeviceListing> found;
     for (const DeviceReport& device : inventory.devices) {
       DeviceListing listing = nothing;
       listing.model = model_of(device.config ? device.config->type : "inverse3");
       listing.serial = one_line(device.id);
-      listing.where += ", service " + version.text();
+      listing.where += ", service " + known.version.text();
       listing.present = true;
       if (device.status) listing.missing = needs_of(*device.status);
       found.push_back(std::move(listing));
@@ -192,7 +228,7 @@ std::unique_ptr<ServoClock> sleeping_clock() {
 Inverse3Device::Inverse3Device(const Inverse3Settings& settings, Inverse3Options options)
     : settings_(settings),
       options_(std::move(options)),
-      version_(version_of(settings_, options_.patience)) {
+      known_(find_service(settings_, options_.patience)) {
   service_ = std::make_unique<ServiceLink>(address_of(settings_), options_.patience);
   try {
     const ServiceReport inventory = report_in(service_->answer());
@@ -200,7 +236,7 @@ Inverse3Device::Inverse3Device(const Inverse3Settings& settings, Inverse3Options
     expect_no_other_session(inventory);
     configure();
   } catch (const BadMessage& error) {
-    refuse_answer(settings_, "what comes", error);
+    refuse_answer(address_of(settings_), "what comes", error);
   }
   thread_ = std::thread([this] {
     (void)request_scheduling(options_.scheduling);
@@ -235,7 +271,7 @@ void Inverse3Device::choose_device(const ServiceReport& inventory) {
     throw DeviceError(one_line("inverse3: " + id_ + " has no power; connect its power supply"));
   }
   session_id_ = inventory.session_id;
-  centre_m_ = version_.has_filters() ? Vec3{} : kCentreFromBaseM;
+  centre_m_ = known_.version.has_filters() ? Vec3{} : kCentreFromBaseM;
   note_status(*device->status);
   describe(device->config.value_or(DeviceConfig{}));
 }
@@ -244,13 +280,13 @@ void Inverse3Device::choose_device(const ServiceReport& inventory) {
 void Inverse3Device::expect_no_other_session(const ServiceReport& inventory) const {
   const std::string remedy =
       "; forces of several programs would add up: close the other one (Haply Hub too)";
-  if (!version_.has_filters()) {
+  if (!known_.version.has_filters()) {
     const auto& status = find_device(inventory, id_)->status;
     if (!status->in_use) return;
     throw DeviceError(one_line("inverse3: another program uses " + id_ + remedy));
   }
   const std::vector<std::string> sessions =
-      sessions_in(answer_of(settings_, "/sessions", options_.patience));
+      sessions_in(answer_of(known_.http, "/sessions", options_.patience));
   if (sessions.size() <= 1) return;
   std::string names;
   for (const std::string& name : sessions) {
@@ -272,26 +308,43 @@ DeviceReport Inverse3Device::ask_for_inventory(const std::string& message) {
 }
 
 void Inverse3Device::configure() {
-  DeviceReport device = ask_for_inventory(first_message(version_, id_));
-  if (version_.has_filters()) {
+  DeviceReport device = ask_for_inventory(first_message(known_.version, id_));
+  if (known_.version.has_filters()) {
     std::string trouble = "the service does not tell its configuration; update it";
     for (int i = 0; i < kReadBacks && !trouble.empty(); ++i) {
       if (i > 0) std::this_thread::sleep_for(kBetweenReadBacks);
-      device = ask_for_inventory(inventory_request(version_, id_));
+      device = ask_for_inventory(inventory_request(known_.version, id_));
       if (device.config) trouble = trouble_in(*device.config);
     }
     if (!trouble.empty()) throw DeviceError(one_line("inverse3: " + trouble));
+  }
+  if (device.config) {
+    refuse_home_return(*device.config);
     describe(*device.config);
   }
   if (device.status) note_status(*device.status);
   listen_to_events();
 }
 
+/// It belongs to the device and not to the session, so it is not changed here.
+void Inverse3Device::refuse_home_return(DeviceConfig& config) const {
+  const std::string path = "/inverse3/" + id_ + "/config/home_return";
+  if (!config.home_return) {
+    const HttpAnswer answer = ask_service(known_.http, path, options_.patience);
+    if (answer.status == 200) config.home_return = home_return_in(answer.body);
+  }
+  if (!config.home_return.value_or(false)) return;
+  throw DeviceError(
+      one_line("inverse3: the arm's home return is on, which moves the hand by itself; "
+               "switch it off in Haply Hub, or over HTTP at " +
+               known_.http.text() + path));
+}
+
 /// Services before 3.5 need not have the channel.
 void Inverse3Device::listen_to_events() try {
   service_->listen_to({settings_.host, settings_.events_port}, options_.patience);
 } catch (const DeviceError&) {
-  if (!version_.has_filters()) return;
+  if (!known_.version.has_filters()) return;
   throw DeviceError(one_line(
       "inverse3: the service's events, which tell of its emergency brake, do not come at " +
       settings_.host + ':' + std::to_string(settings_.events_port) +
@@ -302,7 +355,7 @@ void Inverse3Device::describe(const DeviceConfig& config) {
   info_.name = "inverse3";
   info_.serial = one_line(id_);
   info_.model = model_of(config.type);
-  info_.firmware = firmware_text(config, version_);
+  info_.firmware = firmware_text(config, known_.version);
   info_.max_force_n = settings_.max_force_n;
   info_.max_rate_hz = kRateHz;
   const double radius_mm = config.type == "minverse" ? kMinverseRadiusMm : kInverse3RadiusMm;
@@ -331,8 +384,8 @@ void Inverse3Device::exchange() {
   const Vec3 wanted_n = link_.force_to_send(options_.clock->now());
   const bool may_push = status_.is_usable() && is_finite(wanted_n);
   const Vec3 sent_n = may_push ? within_reach(wanted_n) : Vec3{};
-  switch (
-      service_->exchange(force_message(version_, id_, to_service_axes(sent_n)), options_.silence)) {
+  switch (service_->exchange(force_message(known_.version, id_, to_service_axes(sent_n)),
+                             options_.silence)) {
     case LinkOutcome::ok:
       break;
     case LinkOutcome::nonsense:
@@ -382,7 +435,7 @@ void Inverse3Device::heed(const ServiceEvent& event) noexcept {
 
 void Inverse3Device::say_farewell() noexcept {
   try {
-    const std::string no_force = force_message(version_, id_, {});
+    const std::string no_force = force_message(known_.version, id_, {});
     // A service that answers has taken it: what is still on its way when it closes may be lost.
     bool answers = true;
     for (int i = 0; i < kFarewells; ++i) {
@@ -414,7 +467,10 @@ DeviceDriver inverse3_driver() {
           .what = "Haply Inverse3 and Minverse, through Haply's Inverse service",
           .list = inverse3::list_inverse3,
           .open = inverse3::open_inverse3,
-          .workspace_is_known = false};
+          .workspace_is_known = false,
+          .products = {{"inverse3", "Haply Inverse3"},
+                       {"inverse3x", "Haply Inverse3x"},
+                       {"minverse", "Haply Minverse"}}};
 }
 
 }  // namespace touchtrial::device

@@ -33,6 +33,12 @@ struct Inverse3Options {
   std::chrono::nanoseconds silence = std::chrono::milliseconds(100);
 };
 
+/// A service that answered over HTTP.
+struct KnownService {
+  ServiceVersion version;
+  ServiceAddress http;  ///< where it did: not always the port of its simulation channel
+};
+
 /// Sends one force and takes one state at up to 2 kHz on a thread of its own. Sends no force before
 /// the arm is calibrated and powered. A fault latches: open the device anew.
 class Inverse3Device final : public HapticDevice {
@@ -69,6 +75,7 @@ class Inverse3Device final : public HapticDevice {
   void listen_to_events();
   void describe(const DeviceConfig& config);
   [[nodiscard]] DeviceReport ask_for_inventory(const std::string& message);
+  void refuse_home_return(DeviceConfig& config) const;
   void exchange_until_stopped() noexcept;
   void exchange();
   void take(const DeviceReport& report, std::uint32_t buttons) noexcept;
@@ -79,7 +86,7 @@ class Inverse3Device final : public HapticDevice {
 
   Inverse3Settings settings_;
   Inverse3Options options_;
-  ServiceVersion version_;
+  KnownService known_;
   std::unique_ptr<ServiceLink> service_;
   std::string id_;
   std::optional<std::int64_t> session_id_;

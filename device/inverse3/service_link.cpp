@@ -1,7 +1,5 @@
 #include "device/inverse3/service_link.hpp"
 
-#include "core/errors.hpp"
-
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -32,9 +30,9 @@ Clock::time_point deadline_in(std::chrono::nanoseconds patience) {
 }
 
 [[noreturn]] void refuse(const ServiceAddress& where, const std::string& why) {
-  throw DeviceError(one_line("inverse3: no service answers at " + where.text() + " (" + why +
-                             "); start Haply's Inverse service (Haply Hub, or systemctl start "
-                             "haply-inverse-service), or correct inverse3.host and inverse3.port"));
+  throw NoService(one_line("inverse3: no service answers at " + where.text() + " (" + why +
+                           "); start Haply's Inverse service (Haply Hub, or systemctl start "
+                           "haply-inverse-service), or correct inverse3.host and inverse3.port"));
 }
 
 /// Runs what the context has to do until the condition holds.

@@ -2,6 +2,8 @@
 /// channel and the events channel, with time limits. Only its source knows Boost.Beast.
 #pragma once
 
+#include "core/errors.hpp"
+
 #include <chrono>
 #include <memory>
 #include <string>
@@ -20,6 +22,12 @@ struct ServiceAddress {
   [[nodiscard]] std::string text() const { return host + ':' + std::to_string(port); }
 };
 
+/// Nothing answers where a service should.
+class NoService : public DeviceError {
+ public:
+  using DeviceError::DeviceError;
+};
+
 /// The answer to an HTTP question.
 struct HttpAnswer {
   unsigned status = 0;  ///< 200: as asked
@@ -27,7 +35,7 @@ struct HttpAnswer {
 };
 
 /// Asks GET `path`. Blocks for `patience` at the most, and for the system's search for the host.
-/// \throws DeviceError with the remedy if nothing answers
+/// \throws NoService with the remedy if nothing answers
 [[nodiscard]] HttpAnswer ask_service(const ServiceAddress& service, const std::string& path,
                                      std::chrono::nanoseconds patience);
 

@@ -100,6 +100,12 @@ std::string firmware_of(const json& config) {
   return major && minor ? std::to_string(*major) + '.' + std::to_string(*minor) : "";
 }
 
+/// A truth, or an object that says whether it is enabled.
+bool is_enabled(const json& setting) {
+  if (setting.is_boolean()) return setting.get<bool>();
+  return truth_in(setting, "enabled");
+}
+
 DeviceConfig config_of(const json& config) {
   DeviceConfig read;
   if (const std::string type = text_in(config, "type"); !type.empty()) read.type = type;
@@ -116,6 +122,8 @@ DeviceConfig config_of(const json& config) {
     read.gravity_compensation =
         truth_in(*gravity, "enabled") ? number_in(*gravity, "scaling_factor") : 0.0;
   }
+  read.handedness = text_in(config, "handedness");
+  if (config.contains("home_return")) read.home_return = is_enabled(config.at("home_return"));
   if (const json* const basis = object_in(config, "basis")) {
     read.plain_frame = text_in(*basis, "permutation") == "XYZ";
   }
@@ -212,6 +220,10 @@ ServiceReport report_in(std::string_view text) {
   }
   report.buttons = buttons_of(content);
   return report;
+}
+
+bool home_return_in(std::string_view text) {
+  return is_enabled(content_of(text));
 }
 
 std::vector<std::string> sessions_in(std::string_view text) {

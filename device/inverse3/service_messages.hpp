@@ -56,6 +56,8 @@ struct DeviceConfig {
   std::optional<double> damping;     ///< the largest of its numbers; 0 is off
   std::optional<bool> torque_scaling;
   std::optional<double> gravity_compensation;  ///< factor; 0 is off
+  std::string handedness;                      ///< of the arm, "right" or "left"; may be empty
+  std::optional<bool> home_return;             ///< whether the arm moves home by itself
   /// Positions are in metres and in the axes of the device: nobody has turned or scaled them.
   bool plain_frame = true;
 };
@@ -93,6 +95,9 @@ struct ServiceEvent {
 /// An inventory, or a state: the two have one form.
 /// \throws BadMessage
 [[nodiscard]] ServiceReport report_in(std::string_view text);
+/// The answer about the device's home return.
+/// \throws BadMessage
+[[nodiscard]] bool home_return_in(std::string_view text);
 /// \return how many sessions the service has, and their profiles' names as far as it tells them
 /// \throws BadMessage
 [[nodiscard]] std::vector<std::string> sessions_in(std::string_view text);

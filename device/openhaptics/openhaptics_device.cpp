@@ -331,7 +331,13 @@ DeviceDriver openhaptics_driver() {
           .what = "3D Systems Touch and Phantom, through the vendor's OpenHaptics",
           .list = hd::list_openhaptics,
           .open = hd::open_openhaptics,
-          .workspace_is_known = false};
+          .workspace_is_known = false,
+          .products = {{"touch", "3D Systems Touch"},
+                       {"touch_x", "3D Systems Touch X"},
+                       {"phantom", "any Phantom"},
+                       {"omni", "Phantom Omni"},
+                       {"desktop", "Phantom Desktop"},
+                       {"premium", "Phantom Premium"}}};
 }
 
 }  // namespace touchtrial::device

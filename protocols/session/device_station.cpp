@@ -4,6 +4,7 @@
 #include "device/platform/stop_signals.hpp"
 #include "device/servo/servo.hpp"
 
+#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -32,6 +33,10 @@ std::string need_of(device::DeviceReadiness readiness) {
 
 std::string identity_of(const device::DeviceInfo& device) {
   return device.name + (device.serial.empty() ? "" : " " + device.serial);
+}
+
+std::array<double, 3> axes_of(Vec3 scale) {
+  return {scale.x, scale.y, scale.z};
 }
 
 std::string text_of(const device::SchedulingObtained& scheduling) {
@@ -116,7 +121,9 @@ void describe_station(store::SessionOpening& opening, const device::DeviceInfo& 
                                          .visual = device.visual,
                                          .rate_hz = rate_hz,
                                          .scheduling = text_of(scheduling),
-                                         .calibration = certificate};
+                                         .calibration = certificate,
+                                         .force_scale = axes_of(device.scale.force),
+                                         .length_scale = axes_of(device.scale.length)};
 }
 
 }  // namespace touchtrial::session

@@ -5,6 +5,7 @@
 #include "core/hash.hpp"
 #include "core/public_keys.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -141,6 +142,11 @@ struct StationRecord {
   /// SHA-256 of the device's certificate, hexadecimal; design::kUnverifiedDevice; or empty: none.
   std::string calibration{};
   std::optional<ScreenRecord> screen{};  ///< only of sessions before a window
+  /// \name The lab's corrections that were in force, on each axis of the device frame
+  ///@{
+  std::array<double, 3> force_scale{1.0, 1.0, 1.0};
+  std::array<double, 3> length_scale{1.0, 1.0, 1.0};
+  ///@}
 
   friend bool operator==(const StationRecord&, const StationRecord&) = default;
 };

@@ -81,6 +81,17 @@ class BodyReader {
   void operator()(std::string_view key, int& value, int least = 0) const {
     value = static_cast<int>(whole(key, least, std::numeric_limits<int>::max()));
   }
+  /// As many numbers as there are places.
+  template <std::size_t size>
+  void operator()(std::string_view key, std::array<double, size>& value) const {
+    const Json& found = at(key);
+    if (!found.IsArray() || found.Size() != size) refuse(key, "is not a list of the right length");
+    for (std::size_t i = 0; i < size; ++i) {
+      const Json& number = found[static_cast<rapidjson::SizeType>(i)];
+      if (!number.IsNumber()) refuse(key, "holds what is no number");
+      value[i] = number.GetDouble();
+    }
+  }
   /// Whole numbers from 0.
   void operator()(std::string_view key, std::vector<std::int64_t>& value) const {
     const Json& found = at(key);

@@ -44,6 +44,11 @@ TEST_CASE("device list prints the same as JSON") {
   CHECK(simulated->at("present") == true);
   CHECK(simulated->at("ready") == true);
   CHECK(simulated->at("missing").empty());
+  CHECK(simulated->at("products").empty());
+  const auto dhd = std::ranges::find_if(
+      devices, [](const json& device) { return device.at("driver") == "dhd"; });
+  REQUIRE(dhd != devices.end());
+  CHECK(dhd->at("products").at(0).at("name") == "omega");
   for (const char* key : {"model", "serial", "where"}) CHECK(simulated->at(key).is_string());
 }
 
@@ -72,14 +77,14 @@ TEST_CASE("device models lists the shipped models, with a mark at every guess") 
   const ProgramResult table = run_touchtrial(folder.path(), {"device", "models"});
   REQUIRE(table.exit_code == 0);
   CHECK_THAT(table.output, holds_text("touch") && holds_text("Novint Falcon"));
-  CHECK_THAT(table.output, holds_text("0.15?") && holds_text("4.9"));
+  CHECK_THAT(table.output, holds_text("0.15?") && holds_text("6.5"));
   const ProgramResult result = run_touchtrial(folder.path(), {"device", "models", "--json"});
   REQUIRE(result.exit_code == 0);
   const json models = json::parse(result.output).at("models");
   const auto falcon =
       std::ranges::find_if(models, [](const json& model) { return model.at("name") == "falcon"; });
   REQUIRE(falcon != models.end());
-  CHECK(falcon->at("max_force_n") == 4.9);
+  CHECK(falcon->at("max_force_n") == 6.5);
   CHECK(falcon->at("provenance").at("max_force_n").at("confidence") == "derived");
 }
 

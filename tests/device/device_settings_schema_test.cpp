@@ -4,6 +4,7 @@
 #include "core/files.hpp"
 #include "device/device_settings.hpp"
 #include "device/known_keys.hpp"
+#include "device/registry.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -44,6 +45,10 @@ struct ObjectPlace {
 void collect(const json& node, const Pointer& place, std::vector<Leaf>& leaves,
              std::vector<ObjectPlace>& objects) {
   const json rule = resolved(node);
+  if (rule.contains("anyOf")) {
+    for (const json& one : rule.at("anyOf")) leaves.push_back({place, resolved(one)});
+    return;
+  }
   // Of an object that may have any key, the reader knows none.
   if (rule.at("type") != "object" || rule.at("additionalProperties") == true) {
     leaves.push_back({place, rule});
@@ -52,8 +57,15 @@ void collect(const json& node, const Pointer& place, std::vector<Leaf>& leaves,
   CHECK(rule.at("additionalProperties") == false);
   objects.push_back({place, rule});
   for (const auto& [key, property] : rule.at("properties").items()) {
+    // Another name of a section.
+    if (property.value("$ref", "").starts_with("#/properties/")) continue;
     collect(property, place / key, leaves, objects);
   }
+}
+
+/// A number, or a list of three.
+bool is_scale(const Leaf& leaf) {
+  return leaf.place.back() == "force_scale" || leaf.place.back() == "length_scale";
 }
 
 std::vector<Leaf> all_leaves() {
@@ -141,7 +153,21 @@ TEST_CASE("the schema of device settings and the reader know the same keys") {
     CHECK(keys_of_reader(object.place) == in_schema);
   }
   CHECK(objects.size() == 1 + 8 + 8 + 5 + 3);
-  CHECK(leaves.size() == 7 + 3 + 7 + 2 + 5 + 1 + 8 * 4 + 5 * 2 + 5 + 2);
+  CHECK(leaves.size() == 7 + 3 + 7 + 2 + 5 + 1 + 8 * 4 + 5 * 2 + 5 + 2 + 5 * 4 + 1);
+}
+
+TEST_CASE("in the schema of device settings a product's section is that of its driver") {
+  int products = 0;
+  for (const device::DeviceDriver& driver : device::device_drivers()) {
+    for (const std::string_view name : driver.names()) {
+      if (name == driver.name) continue;
+      INFO(name);
+      CHECK(schema().at("properties").at(std::string(name)).at("$ref") ==
+            "#/properties/" + driver.name);
+      ++products;
+    }
+  }
+  CHECK(products > 10);
 }
 
 TEST_CASE("the reader keeps the bounds of the schema of device settings") {
@@ -151,11 +177,12 @@ TEST_CASE("the reader keeps the bounds of the schema of device settings") {
     bounds += holds_bound(leaf, "maximum", 1.0, true) ? 1 : 0;
     bounds += holds_bound(leaf, "exclusiveMinimum", -1.0, false) ? 1 : 0;
   }
-  CHECK(bounds == 2 * (5 + 1 + 5 + 3 + 8 * 4 + 5 + 3));
+  CHECK(bounds == 2 * (5 + 1 + 5 + 3 + 8 * 4 + 5 + 3 + 5 * 4 + 1));
 }
 
 TEST_CASE("the reader keeps the types of the schema of device settings") {
   for (const Leaf& leaf : all_leaves()) {
+    if (is_scale(leaf)) continue;
     const std::string type = leaf.rule.at("type");
     const json number = type == "integer" ? leaf.rule.at("default") : json(1);
     for (const json& value :
@@ -175,6 +202,20 @@ TEST_CASE("the reader keeps the types of the schema of device settings") {
       CHECK(refusal(leaf.place, value).empty() == fits);
     }
   }
+}
+
+TEST_CASE("the reader takes a scale as a number or as a list of three, as the schema does") {
+  int scales = 0;
+  for (const Leaf& leaf : all_leaves()) {
+    if (!is_scale(leaf)) continue;
+    INFO(leaf.place.to_string());
+    CHECK(refusal(leaf.place, 1.5).empty());
+    CHECK(refusal(leaf.place, json::array({0.5, 1, 2})).empty());
+    for (const json& value : {json("1"), json(true), json::object(), json(), json::array()})
+      CHECK_FALSE(refusal(leaf.place, value).empty());
+    ++scales;
+  }
+  CHECK(scales == 5 * 4);
 }
 
 TEST_CASE("the reader keeps the words, lengths and defaults of the schema of device settings") {
@@ -206,7 +247,7 @@ TEST_CASE("the reader keeps the words, lengths and defaults of the schema of dev
     if (leaf.rule.contains("default")) CHECK(refusal(leaf.place, leaf.rule.at("default")).empty());
   }
   CHECK(words == 5 + 1);
-  CHECK(lists == 8);
+  CHECK(lists == 8 + 5 * 2);
   CHECK(texts == 9 + 3);
 }
 
@@ -241,6 +282,7 @@ TEST_CASE("the defaults of the schema of device settings are the reader's") {
   CHECK(written.inverse3.host == bare.inverse3.host);
   CHECK(written.inverse3.port == bare.inverse3.port);
   CHECK(written.inverse3.events_port == bare.inverse3.events_port);
+  CHECK(written.inverse3.http_port == bare.inverse3.http_port);
   CHECK(written.inverse3.device_id == bare.inverse3.device_id);
   CHECK(written.inverse3.max_force_n == bare.inverse3.max_force_n);
 }

@@ -35,7 +35,7 @@ TEST_CASE("device settings give every setting of the drivers") {
     "dhd": {"library": "libdhd.so.3", "index": 1, "gravity_compensation": false,
             "effector_mass_kg": 0.2, "max_force_n": 12, "continuous_force_n": 4,
             "workspace_mm": [190, 190, 130]},
-    "inverse3": {"host": "rig-2", "port": 8500, "events_port": 9000, "device_id": "049D",
+    "inverse3": {"host": "rig-2", "port": 8500, "events_port": 9000, "http_port": 8501, "device_id": "049D",
                  "max_force_n": 4},
     "replay": {"trace": "traces/one.csv"}})");
   CHECK(settings.falcon.firmware == "/lab/fw.bin");
@@ -58,6 +58,7 @@ TEST_CASE("device settings give every setting of the drivers") {
   CHECK(settings.inverse3.host == "rig-2");
   CHECK(settings.inverse3.port == 8500);
   CHECK(settings.inverse3.events_port == 9000);
+  CHECK(settings.inverse3.http_port == 8501);
   CHECK(settings.inverse3.device_id == "049D");
   CHECK(settings.inverse3.max_force_n == 4.0);
   CHECK(settings.replay.trace == "/lab/traces/one.csv");
@@ -98,6 +99,17 @@ TEST_CASE("limits and placement are kept for each driver") {
   CHECK(settings.use_of("simulated").limits.max_force_n == 1.0);
   CHECK_FALSE(settings.use_of("dhd").limits.max_force_n.has_value());
   CHECK_FALSE(settings.use_of("dhd").orientation.has_value());
+}
+
+TEST_CASE("scales are one number for all axes, or one for each, and 1 otherwise") {
+  const device::DeviceSettings settings = parsed(R"({
+    "falcon": {"force_scale": 1.77, "length_scale": [1, 0.9, 1.1]}, "dhd": {}})");
+  CHECK(settings.use_of("falcon").scale == device::DeviceScale{{1.77, 1.77, 1.77}, {1, 0.9, 1.1}});
+  CHECK(settings.use_of("dhd").scale == device::DeviceScale{});
+  CHECK(settings.use_of("inverse3").scale == device::DeviceScale{});
+  CHECK(is_refused(R"({"dhd": {"force_scale": 0.1}})", "/dhd/force_scale"));
+  CHECK(is_refused(R"({"dhd": {"length_scale": [1, 1, 6]}})", "/dhd/length_scale/2"));
+  CHECK(is_refused(R"({"mouse": {"length_scale": 2}})", "/mouse/length_scale"));
 }
 
 TEST_CASE("a lab's limits make limits stricter and never looser") {

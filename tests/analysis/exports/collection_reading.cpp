@@ -4,6 +4,8 @@
 #include "analysis/exports/csv_reading.hpp"
 
 #include <algorithm>
+#include <array>
+#include <sstream>
 
 namespace touchtrial {
 namespace {
@@ -20,6 +22,13 @@ std::optional<analysis::PracticeRecord> practice_of(const CsvRow& row) {
       number_of<int>(row.at("practice_correct")), is_set(row.at("practice_passed"))};
 }
 
+std::array<double, 3> axes_of(const std::string& text) {
+  std::array<double, 3> axes{};
+  std::istringstream words(text);
+  for (double& axis : axes) words >> axis;
+  return axes;
+}
+
 std::optional<store::StationRecord> station_of(const CsvRow& row) {
   if (row.at("visual").empty()) return std::nullopt;
   return store::StationRecord{row.at("device_model"),
@@ -28,7 +37,10 @@ std::optional<store::StationRecord> station_of(const CsvRow& row) {
                               is_set(row.at("visual")),
                               number_of<double>(row.at("servo_hz")),
                               row.at("scheduling"),
-                              row.at("certificate")};
+                              row.at("certificate"),
+                              std::nullopt,
+                              axes_of(row.at("device_force_scale")),
+                              axes_of(row.at("device_length_scale"))};
 }
 
 analysis::SessionRecord record_of(const CsvRow& row) {

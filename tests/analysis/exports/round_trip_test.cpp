@@ -108,8 +108,9 @@ TEST_CASE("How a study was collected is the same from its CSV files, in words an
   FakeStudy study(design::identification::classification(), {.simulated = false});
   fill(study);
   FakeSession felt{.participant = "P07", .enrolment = 7, .answers = imperfect(7)};
-  felt.station =
-      store::StationRecord{"Falcon", "1.2, beta", 8.9, false, 1000.0, "SCHED_FIFO 80", "c0ffee"};
+  felt.station = store::StationRecord{"Falcon",         "1.2, beta",     8.9,      false,
+                                      1000.0,           "SCHED_FIFO 80", "c0ffee", std::nullopt,
+                                      {1.0, 1.25, 0.8}, {1.0, 1.0, 1.5}};
   felt.servo = store::ServoHealth{999.75, 1.5, 40.25, 80.125, 1e3 / 3.0, 2, 17};
   felt.before_trials = [](store::SessionRecorder& recorder) {
     recorder.practised(milliseconds(10),

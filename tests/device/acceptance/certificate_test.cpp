@@ -81,7 +81,7 @@ TEST_CASE("an acceptance's certificate that was changed by hand is refused with 
   };
   CHECK_THAT(changed("\"passed\": true", "\"passed\": false"), holds_text("/passed"));
   CHECK_THAT(changed("2026-02-28", "2026-02-30"), holds_text("/made"));
-  CHECK_THAT(changed("acceptance 1", "acceptance 9"), holds_text("/kind"));
+  CHECK_THAT(changed("acceptance 2", "acceptance 9"), holds_text("/kind"));
   CHECK_THAT(changed("\"serial\"", "\"cereal\""), holds_text("/cereal"));
   CHECK_THAT(changed("\"measured_n\": 1.01", "\"measured_n\": 1.31"), holds_text("/axes/0/scale"));
   CHECK_THAT(changed("\"along_mm\": 2.0", "\"along_mm\": -2.0"), holds_text("/passed"));
@@ -93,6 +93,27 @@ TEST_CASE("an acceptance's certificate that was changed by hand is refused with 
   CHECK_THAT(changed("\"stable_n_per_mm\": 0.6", "\"stable_n_per_mm\": 0.9"),
              holds_text("/wall/stable_n_per_mm"));
   CHECK_THAT(changed("\"axis\": \"x\"", "\"axis\": \"y\""), holds_text("/axes/1/axis"));
+}
+
+TEST_CASE("a certificate belongs to the scales with which it was made") {
+  Certificate certificate = passed_certificate();
+  certificate.scale.force = {1.0, 1.25, 1.0};
+  const auto soon = certificate.made + std::chrono::days(30);
+  CHECK_THAT(message_of<DeviceError>(
+                 [&] { return device::check_certificate(certificate, the_falcon(), soon); }),
+             holds_text("force_scale 1, 1.25, 1") && holds_text("device accept falcon"));
+  device::DeviceInfo scaled = the_falcon();
+  scaled.scale = certificate.scale;
+  CHECK(device::check_certificate(certificate, scaled, soon).empty());
+}
+
+TEST_CASE("a force that is off names the scale that puts it right") {
+  Certificate certificate = passed_certificate();
+  certificate.scale.force = {1.0, 1.25, 1.0};
+  certificate.axes[0].weight = device::WeighResult{1.2, 1.0, 0.02};  // y is the first
+  REQUIRE(certificate.failures().size() == 1);
+  CHECK_THAT(certificate.failures().front(),
+             holds_text("axis y") && holds_text("force_scale") && holds_text("1.50"));
 }
 
 TEST_CASE("a certificate of the former format is refused with the command that makes a new one") {

@@ -12,7 +12,7 @@ std::optional<LegAngles> angles_of_leg(const LegPoint& p) noexcept {
   const double side = p.side_m / kParallelogramM;
   if (!(std::abs(side) < 1.0) || !(p.along_m > 0.0)) return std::nullopt;
   const double theta3 = std::acos(side);
-  const double reach = 2.0 * kEndLinkM + kParallelogramM * std::sin(theta3);
+  const double reach = kParallelogramM * std::sin(theta3);
   const double a2 = 2.0 * kArmM * p.across_m;
   const double sum =
       p.along_m * p.along_m + p.across_m * p.across_m + kArmM * kArmM - reach * reach;
@@ -44,9 +44,10 @@ LegJacobian leg_jacobian(const Legs& legs) noexcept {
   LegJacobian jacobian;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto& [theta1, theta2, theta3] = legs[i];
-    const Vec3 in_leg = {std::cos(theta2), std::cos(theta3) / std::sin(theta3), std::sin(theta2)};
+    const Vec3 in_leg = {std::sin(theta3) * std::cos(theta2), std::cos(theta3),
+                         std::sin(theta3) * std::sin(theta2)};
     jacobian.pull[i] = to_native_axes(in_leg, kLegDirections[i]);
-    jacobian.lever_m[i] = kArmM * std::sin(theta2 - theta1);
+    jacobian.lever_m[i] = kArmM * std::sin(theta3) * std::sin(theta2 - theta1);
   }
   return jacobian;
 }

@@ -45,13 +45,13 @@ double largest_difference(const PerLeg& a, const PerLeg& b) {
   return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
 }
 
-/// \return the distance of a grip at theta1 from the position, along the leg's parallelogram
+/// \return how far a grip is beyond the parallelogram's reach, with the arm at theta1
 double gap_m(Vec3 p, double phi_rad, double theta1_rad) {
-  const double across = p.x * std::cos(phi_rad) + p.y * std::sin(phi_rad) - 0.040 + 0.01443 -
-                        0.060 * std::cos(theta1_rad);
-  const double side = -p.x * std::sin(phi_rad) + p.y * std::cos(phi_rad) + 0.02309 - 0.025;
+  const double across =
+      p.x * std::cos(phi_rad) + p.y * std::sin(phi_rad) - 0.022 - 0.060 * std::cos(theta1_rad);
+  const double side = -p.x * std::sin(phi_rad) + p.y * std::cos(phi_rad);
   const double along = p.z - 0.060 * std::sin(theta1_rad);
-  return std::hypot(across, along) - 0.0225 - std::sqrt(0.1025 * 0.1025 - side * side);
+  return std::hypot(across, side, along) - 0.150;
 }
 
 /// Turns the arm from far back until the parallelogram reaches, then halves the interval.
@@ -69,7 +69,7 @@ double theta1_by_bisection(Vec3 p, double phi_deg) {
 
 TEST_CASE("falcon frames: the device frame is the native one from the centre, in millimetres") {
   CHECK(to_device_mm(kCentreM) == Vec3{0.0, 0.0, 0.0});
-  const Vec3 device_mm = to_device_mm({0.010, -0.020, 0.1315});
+  const Vec3 device_mm = to_device_mm({0.010, -0.020, 0.165});
   CHECK(device_mm.x == Approx(10.0));
   CHECK(device_mm.y == Approx(-20.0));
   CHECK(device_mm.z == Approx(10.0));
@@ -77,25 +77,36 @@ TEST_CASE("falcon frames: the device frame is the native one from the centre, in
   CHECK(norm(there_and_back - Vec3{1.0, 2.0, 3.0}) < 1e-12);
 }
 
-TEST_CASE("falcon frames: the centre is the middle of the legs' reach on the axis") {
-  const auto reached = [](double z_m) { return inverse_kinematics({0.0, 0.0, z_m}).has_value(); };
-  double nearest = kCentreM.z;
-  double farthest = kCentreM.z;
-  while (reached(nearest)) nearest -= 1e-5;
-  while (reached(farthest)) farthest += 1e-5;
-  CHECK(nearest == Approx(0.0598).margin(1e-4));
-  CHECK(farthest == Approx(0.1832).margin(1e-4));
-  CHECK(0.5 * (nearest + farthest) == Approx(kCentreM.z).margin(1e-4));
-}
-
-TEST_CASE("falcon encoders: 35 degrees at count 0, 0.0364347 degrees a count") {
+TEST_CASE("falcon encoders: 32.9895 degrees at count 0, 9,728 counts a turn") {
   constexpr double kDeg = 3.14159265358979323846 / 180.0;
-  CHECK(theta1_of_count(0) == Approx(35.0 * kDeg));
-  CHECK(theta1_of_count(-1000) == Approx((35.0 - 36.4347) * kDeg));
+  CHECK(theta1_of_count(0) == Approx(32.9895 * kDeg));
   for (int count = -32768; count <= 32767; ++count) {
-    const double expected = (35.0 + 0.0364347 * count) * kDeg;
+    const double expected = (32.9895 + 360.0 * count / 9728.0) * kDeg;
     const double found = theta1_of_count(static_cast<std::int16_t>(count));
     if (std::abs(found - expected) > 1e-12) FAIL("count " << count);
+  }
+}
+
+TEST_CASE("falcon positions are those of the maker-side library, to a few micrometres") {
+  // What Force Dimension's library 3.17.5 answers for these counts: z towards the person, which it
+  // calls x, then x and y. Its zero angle has more digits than ours.
+  struct Answer {
+    EncoderCounts counts;
+    Vec3 device_mm;
+  };
+  const std::vector<Answer> answers = {{{0, 0, 0}, {0.0, 0.0, 9.0804}},
+                                       {{-900, -900, -900}, {0.0, 0.0, -29.7282}},
+                                       {{900, 900, 900}, {0.0, 0.0, 42.6713}},
+                                       {{100, 50, -200}, {-8.6411, -11.7987, 7.6244}},
+                                       {{-300, 400, 120}, {-20.7295, 25.0946, 8.7451}},
+                                       {{-500, -600, -450}, {6.0308, 0.3998, -14.0197}},
+                                       {{200, -100, 300}, {19.4936, -0.3022, 13.6349}},
+                                       {{350, 0, -350}, {-7.7044, -31.1932, 5.6084}}};
+  for (const Answer& answer : answers) {
+    const Pose pose = forward_kinematics(theta1_of_counts(answer.counts));
+    INFO("counts " << answer.counts[0] << ' ' << answer.counts[1] << ' ' << answer.counts[2]);
+    REQUIRE(pose.status == PoseStatus::ok);
+    CHECK(norm(to_device_mm(pose.native_m) - answer.device_mm) < 0.003);
   }
 }
 
@@ -104,9 +115,9 @@ TEST_CASE("falcon inverse kinematics agrees with bisection and with the law of c
   for (int i = 0; i < kPoses / 10; ++i) {
     const Vec3 position = random_position_m(random);
     const PerLeg angles = theta1_at(position);
-    const PerLeg bisected = {theta1_by_bisection(position, 105.0),
-                             theta1_by_bisection(position, -15.0),
-                             theta1_by_bisection(position, -135.0)};
+    const PerLeg bisected = {theta1_by_bisection(position, 104.5),
+                             theta1_by_bisection(position, -15.5),
+                             theta1_by_bisection(position, -135.5)};
     REQUIRE(largest_difference(angles, bisected) < 1e-12);
     REQUIRE(largest_difference(angles, reference_theta1(position).value()) < 1e-12);
   }
@@ -114,14 +125,14 @@ TEST_CASE("falcon inverse kinematics agrees with bisection and with the law of c
 
 TEST_CASE("falcon inverse kinematics: the three angles of a leg lead from the base to the grip") {
   RandomStream random(2, "falcon chain");
-  const double phi = 105.0 * 3.14159265358979323846 / 180.0;
+  const double phi = 104.5 * 3.14159265358979323846 / 180.0;
   for (int i = 0; i < 500; ++i) {
     const Vec3 p = random_position_m(random);
     const LegAngles leg = inverse_kinematics(p).value()[0];
-    const double reach = 0.0225 + 0.1025 * std::sin(leg.theta3_rad);
+    const double reach = 0.150 * std::sin(leg.theta3_rad);
     const double outwards =
-        0.040 - 0.01443 + 0.060 * std::cos(leg.theta1_rad) + reach * std::cos(leg.theta2_rad);
-    const double sideways = -0.02309 + 0.025 + 0.1025 * std::cos(leg.theta3_rad);
+        0.022 + 0.060 * std::cos(leg.theta1_rad) + reach * std::cos(leg.theta2_rad);
+    const double sideways = 0.150 * std::cos(leg.theta3_rad);
     REQUIRE(std::abs(p.x * std::cos(phi) + p.y * std::sin(phi) - outwards) < 1e-14);
     REQUIRE(std::abs(-p.x * std::sin(phi) + p.y * std::cos(phi) - sideways) < 1e-14);
     REQUIRE(std::abs(p.z - 0.060 * std::sin(leg.theta1_rad) - reach * std::sin(leg.theta2_rad)) <
@@ -129,56 +140,23 @@ TEST_CASE("falcon inverse kinematics: the three angles of a leg lead from the ba
   }
 }
 
-TEST_CASE("falcon forward kinematics undoes the inverse to 1e-9 m from a cold start") {
+TEST_CASE("falcon forward kinematics undoes the inverse to 1e-12 m") {
   RandomStream random(3, "falcon forward");
-  std::vector<int> iterations;
   double worst_m = 0.0;
   for (int i = 0; i < kPoses; ++i) {
     const Vec3 position = random_position_m(random);
     const Pose pose = forward_kinematics(theta1_at(position));
     REQUIRE(pose.status == PoseStatus::ok);
     worst_m = std::max(worst_m, norm(pose.native_m - position));
-    iterations.push_back(pose.iterations);
   }
-  CHECK(worst_m < 1e-9);
-  CHECK(*std::max_element(iterations.begin(), iterations.end()) <= 6);
+  CHECK(worst_m < 1e-12);
 }
 
-TEST_CASE("falcon forward kinematics needs at most three steps from a millisecond ago") {
-  RandomStream random(4, "falcon warm");
-  for (int i = 0; i < kPoses; ++i) {
-    const Vec3 position = random_position_m(random);
-    const Vec3 before = position + random_vector(random, 0.0005);  // up to 0.9 m/s
-    const Pose pose = forward_kinematics(theta1_at(position), before);
-    REQUIRE(pose.status == PoseStatus::ok);
-    REQUIRE(norm(pose.native_m - position) < 1e-9);
-    REQUIRE(pose.iterations <= 3);
-  }
-}
-
-TEST_CASE("falcon forward kinematics finds the pose from any start, sensible or not") {
-  RandomStream random(5, "falcon starts");
-  for (int i = 0; i < kPoses; ++i) {
-    const Vec3 position = random_position_m(random);
-    const Vec3 start = random_position_m(random);
-    REQUIRE(norm(forward_kinematics(theta1_at(position), start).native_m - position) < 1e-9);
-    const Vec3 far = random_vector(random, 1.0);
-    REQUIRE(norm(forward_kinematics(theta1_at(position), far).native_m - position) < 1e-9);
-  }
-  const Vec3 position = to_native_m({10.0, 20.0, -10.0});
-  for (const double bad : {kNan, kInfinity, -kInfinity, 1e308, 0.0}) {
-    const Pose pose = forward_kinematics(theta1_at(position), {bad, bad, bad});
-    REQUIRE(pose.status == PoseStatus::ok);
-    REQUIRE(norm(pose.native_m - position) < 1e-9);
-  }
-}
-
-TEST_CASE("falcon forward kinematics: angles out of reach give a status in bounded time") {
+TEST_CASE("falcon forward kinematics: angles out of reach give a status") {
   for (const double bad : {kNan, kInfinity, -kInfinity, 10.0, -10.0, 3.0}) {
     const Pose pose = forward_kinematics({bad, 0.5, 0.5});
     CHECK(pose.status == PoseStatus::out_of_reach);
     CHECK(pose.native_m == kCentreM);
-    CHECK(pose.iterations == 0);
   }
   const Pose torn = forward_kinematics({-1.5, 2.0, -1.5});
   CHECK(torn.status == PoseStatus::out_of_reach);
@@ -187,7 +165,6 @@ TEST_CASE("falcon forward kinematics: angles out of reach give a status in bound
 
 /// Checks that hold for all counts.
 void check_sane(const Pose& pose, const PerLeg& theta1_rad) {
-  REQUIRE(pose.iterations <= 50);
   REQUIRE(is_finite(pose.native_m));
   if (pose.status == PoseStatus::out_of_reach) {
     REQUIRE(pose.native_m == kCentreM);
@@ -204,10 +181,9 @@ void check_sane(const Pose& pose, const PerLeg& theta1_rad) {
   if (torques) REQUIRE(is_finite({(*torques)[0], (*torques)[1], (*torques)[2]}));
 }
 
-TEST_CASE("falcon forward kinematics stays finite and bounded on hostile encoder counts") {
+TEST_CASE("falcon forward kinematics stays finite on hostile encoder counts") {
   RandomStream random(6, "falcon hostile");
   int found = 0;
-  Vec3 last = kCentreM;
   for (int i = 0; i < 20000; ++i) {
     const double spread = i % 2 == 0 ? 32768.0 : 3500.0;
     EncoderCounts counts{};
@@ -215,10 +191,9 @@ TEST_CASE("falcon forward kinematics stays finite and bounded on hostile encoder
       count = static_cast<std::int16_t>(random.uniform(-spread, spread));
     }
     const PerLeg angles = theta1_of_counts(counts);
-    const Pose pose = forward_kinematics(angles, last);
+    const Pose pose = forward_kinematics(angles);
     check_sane(pose, angles);
     if (pose.status == PoseStatus::ok) ++found;
-    last = pose.native_m;
   }
   CHECK(found > 500);
   CHECK(found < 15000);
@@ -282,7 +257,7 @@ TEST_CASE("falcon torques make the requested force, along z as along x and y") {
   CHECK(torques[0] > 0.0);
 }
 
-TEST_CASE("falcon torques: 8 N anywhere in the workspace stay within 0.7 N m") {
+TEST_CASE("falcon torques: 8 N anywhere in the workspace stay within 0.8 N m") {
   RandomStream random(12, "falcon strength");
   double most_nm = 0.0;
   for (int i = 0; i < kPoses; ++i) {
@@ -294,8 +269,8 @@ TEST_CASE("falcon torques: 8 N anywhere in the workspace stay within 0.7 N m") {
       most_nm = std::max(most_nm, std::abs(torque));
     }
   }
-  CHECK(most_nm < 0.7);
-  CHECK(most_nm > 0.5);
+  CHECK(most_nm < 0.8);
+  CHECK(most_nm > 0.6);
 }
 
 TEST_CASE("falcon forward kinematics: where the legs cannot hold the hand a pose is singular") {
@@ -311,7 +286,7 @@ TEST_CASE("falcon forward kinematics: where the legs cannot hold the hand a pose
                                         pull[1].z * pull[2].x - pull[1].x * pull[2].z,
                                         pull[1].x * pull[2].y - pull[1].y * pull[2].x});
     if (volume < -0.019 || volume > -0.002) continue;
-    const Pose pose = forward_kinematics(theta1_at(position), position);
+    const Pose pose = forward_kinematics(theta1_at(position));
     if (pose.status == PoseStatus::out_of_reach) continue;  // angles beyond the arms' range
     ++found;
     REQUIRE(pose.status == PoseStatus::singular);

@@ -30,10 +30,10 @@ MotorCommand cold(const PerLeg& torques_nm, const FalconSettings& settings = {})
   return FalconMotors(settings).command(torques_nm, {});
 }
 
-TEST_CASE("falcon motors: minus ten thousand for a newton metre, rounded") {
-  CHECK(cold({0.1, -0.2, 0.0}).values == MotorValues{-1000, 2000, 0});
-  CHECK(cold({0.00004, 0.00006, -0.00006}).values == MotorValues{0, -1, 1});
-  CHECK_FALSE(cold({0.4095, -0.4095, 0.0}).limited);
+TEST_CASE("falcon motors: minus 6,616 for a newton metre, rounded") {
+  CHECK(cold({0.125, -0.25, 0.0}).values == MotorValues{-827, 1654, 0});
+  CHECK(cold({0.00007, 0.00008, -0.00008}).values == MotorValues{0, -1, 1});
+  CHECK_FALSE(cold({0.6189, -0.6189, 0.0}).limited);
 }
 
 TEST_CASE("falcon motors: beyond 4,095 all three shrink by one factor, and it is told") {
@@ -47,10 +47,10 @@ TEST_CASE("falcon motors: beyond 4,095 all three shrink by one factor, and it is
     const MotorValues values = cold(torques).values;
     const double most =
         std::max({std::abs(torques[0]), std::abs(torques[1]), std::abs(torques[2])});
-    const double scale = std::min(1.0, 0.4095 / most);
+    const double scale = std::min(1.0, 4095.0 / 6616.0 / most);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       REQUIRE(std::abs(values[axis]) <= 4095);
-      REQUIRE(std::abs(values[axis] + 1e4 * scale * torques[axis]) <= 0.5 + 1e-6);
+      REQUIRE(std::abs(values[axis] + 6616.0 * scale * torques[axis]) <= 0.5 + 1e-6);
     }
   }
 }
@@ -90,7 +90,7 @@ TEST_CASE("falcon motors: the force of a value is the least in the ball of 40 mm
                                   std::abs(triple(rows[0], force, rows[2])),
                                   std::abs(triple(rows[0], rows[1], force))}) /
                         std::abs(all);
-    least_n = std::min(least_n, 1e-4 / most);
+    least_n = std::min(least_n, 1.0 / 6616.0 / most);
   }
   CHECK(least_n >= kForcePerMotorValueN);
   CHECK(least_n < 1.1 * kForcePerMotorValueN);
@@ -108,7 +108,8 @@ TEST_CASE("falcon motors: one that bears all is limited by its own heat, with th
   std::vector<double> first, second;
   int free_ms = 0;
   for (int ms = 0; ms < 600'000; ++ms) {
-    const MotorCommand command = motors.command({-0.4, 0.2, 0.0}, milliseconds(ms));
+    const MotorCommand command =
+        motors.command({-4000.0 / 6616.0, 2000.0 / 6616.0, 0.0}, milliseconds(ms));
     first.push_back(command.values[0]);
     second.push_back(command.values[1]);
     if (!command.limited && free_ms == ms) ++free_ms;
@@ -126,7 +127,7 @@ TEST_CASE("falcon motors: one that bears all is limited by its own heat, with th
 
 TEST_CASE("falcon motors: a hand that presses with 0.7 N for an hour never meets their budget") {
   // The least favourable place and direction.
-  const double torque_nm = 0.7e-4 / kForcePerMotorValueN;
+  const double torque_nm = 0.7 / 6616.0 / kForcePerMotorValueN;
   FalconMotors motors({});
   for (int ms = 0; ms < 3'600'000; ms += 10) {
     REQUIRE_FALSE(motors.command({torque_nm, 0.0, 0.0}, milliseconds(ms)).limited);
@@ -137,12 +138,12 @@ TEST_CASE("falcon motors: heat is of what was sent, over the time until the next
   FalconMotors often({});
   FalconMotors seldom({});
   for (int ms = 0; ms < 15'000; ++ms) {
-    static_cast<void>(often.command({0.4, 0.0, 0.0}, milliseconds(ms)));
-    if (ms % 3 == 0) static_cast<void>(seldom.command({0.4, 0.0, 0.0}, milliseconds(ms)));
+    static_cast<void>(often.command({0.6, 0.0, 0.0}, milliseconds(ms)));
+    if (ms % 3 == 0) static_cast<void>(seldom.command({0.6, 0.0, 0.0}, milliseconds(ms)));
   }
   const auto left_ms = [](FalconMotors& motors) {
     int ms = 15'000;
-    while (!motors.command({0.4, 0.0, 0.0}, milliseconds(ms)).limited) ++ms;
+    while (!motors.command({0.6, 0.0, 0.0}, milliseconds(ms)).limited) ++ms;
     return ms;
   };
   const int after_often = left_ms(often);
@@ -150,18 +151,18 @@ TEST_CASE("falcon motors: heat is of what was sent, over the time until the next
   // A long rest cools them.
   FalconMotors rested({});
   for (int ms = 0; ms < 15'000; ++ms) {
-    static_cast<void>(rested.command({0.4, 0.0, 0.0}, milliseconds(ms)));
+    static_cast<void>(rested.command({0.6, 0.0, 0.0}, milliseconds(ms)));
   }
   static_cast<void>(rested.command({}, milliseconds(15'000)));
   int ms = 3'600'000;
-  while (!rested.command({0.4, 0.0, 0.0}, milliseconds(ms)).limited) ++ms;
+  while (!rested.command({0.6, 0.0, 0.0}, milliseconds(ms)).limited) ++ms;
   CHECK(ms > 3'619'000);
 }
 
 TEST_CASE("falcon motors: a continuous value that is not below the peak is no budget") {
   FalconMotors motors(with_values(4095, 4095));
   for (int ms = 0; ms < 100'000; ms += 10) {
-    REQUIRE_FALSE(motors.command({0.4, 0.0, 0.0}, milliseconds(ms)).limited);
+    REQUIRE_FALSE(motors.command({0.6, 0.0, 0.0}, milliseconds(ms)).limited);
   }
 }
 

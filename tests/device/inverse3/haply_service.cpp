@@ -19,13 +19,13 @@ HaplyService::HaplyService(std::vector<std::string> options) : options_(std::mov
 }
 
 void HaplyService::start() {
-  std::vector<std::string> arguments = {kPython,         TOUCHTRIAL_INVERSE3_SERVICE,
-                                        "--port",        std::to_string(port_),
-                                        "--events-port", std::to_string(events_port_)};
+  std::vector<std::string> arguments = {
+      kPython,         TOUCHTRIAL_INVERSE3_SERVICE,  "--port",      std::to_string(port_),
+      "--events-port", std::to_string(events_port_), "--http-port", std::to_string(http_port_)};
   arguments.insert(arguments.end(), options_.begin(), options_.end());
   process_.emplace(arguments, std::vector<std::string>{});
   read_ = 0;
-  std::istringstream(next_line("ready ").substr(6)) >> port_ >> events_port_;
+  std::istringstream(next_line("ready ").substr(6)) >> port_ >> events_port_ >> http_port_;
 }
 
 std::string HaplyService::next_line(const std::string& beginning) {
@@ -50,6 +50,7 @@ device::Inverse3Settings HaplyService::settings() const {
   device::Inverse3Settings settings;
   settings.host = "127.0.0.1";
   settings.port = port_;
+  settings.http_port = http_port_;
   // Without the channel: one where nobody listens.
   settings.events_port = events_port_ == 0 ? 1 : events_port_;
   return settings;

@@ -44,6 +44,7 @@ class HaplyService {
   std::size_t read_ = 0;  ///< of its output
   int port_ = 0;
   int events_port_ = 0;
+  int http_port_ = 0;
 };
 
 }  // namespace touchtrial::testing

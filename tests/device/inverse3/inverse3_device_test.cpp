@@ -112,12 +112,51 @@ TEST_CASE("inverse3: filters are off, the frame is centred, and the session has 
   CHECK(info.model == "Haply Inverse3");
   CHECK(info.serial == "049D");
   CHECK(info.firmware ==
-        "7.4, service 3.5, force gate 0, damping 0, torque scaling on, gravity compensation 1");
+        "7.4, service 3.5, right-handed, force gate 0, damping 0, torque scaling on, gravity "
+        "compensation 1, home return off");
   CHECK(info.max_force_n == 5.0);
   CHECK_FALSE(info.simulated);
   REQUIRE(info.workspace);
   CHECK(info.workspace->shape == device::WorkspaceShape::ellipsoid);
   CHECK(info.workspace->greatest_mm == Vec3{100.0, 100.0, 100.0});
+}
+
+TEST_CASE("inverse3: a session's record tells a left arm from a right one") {
+  HaplyService service({"--handedness", "left", "--home-return", "unknown"});
+  const std::string firmware = opened(service)->info().firmware;
+  CHECK(firmware.find(", left-handed, ") != std::string::npos);
+  CHECK(firmware.find("home return not told") != std::string::npos);
+}
+
+TEST_CASE("inverse3: an arm that goes home by itself is refused") {
+  const std::string message = refusal_by({"--home-return", "on"});
+  CHECK(message.find("home return") != std::string::npos);
+  CHECK(message.find("/inverse3/049D/config/home_return") != std::string::npos);
+}
+
+TEST_CASE("inverse3: a service whose HTTP is on a port of its own is found there") {
+  HaplyService service({"--http-apart"});
+  const device::Inverse3Settings settings = service.settings();
+  REQUIRE(settings.http_port != settings.port);
+  const auto device = opened(service);
+  CHECK(device->info().firmware.find("service 3.5") != std::string::npos);
+  CHECK(reaches(service, *device, {0.5, 1.0, 1.5}, {0.5, -1.5, 1.0}));
+  device::DeviceSettings lab;
+  lab.inverse3 = settings;
+  CHECK(device::device_driver("inverse3").list(lab).at(0).present);
+}
+
+TEST_CASE("inverse3: what does not answer as a service that is known is told apart") {
+  // Older than 3.1: HTTP, but no /version.
+  CHECK(refusal_by({"--http-apart", "--no-version"}).find("older than 3.1") != std::string::npos);
+  // A simulation channel, and no HTTP anywhere.
+  HaplyService service({"--http-apart"});
+  device::Inverse3Settings settings = service.settings();
+  settings.http_port = 1;
+  CHECK(refusal(settings).find("inverse3.http_port") != std::string::npos);
+  // Nobody at all.
+  settings.port = 1;
+  CHECK(refusal(settings).find("start Haply's Inverse service") != std::string::npos);
 }
 
 TEST_CASE("inverse3: a Minverse reaches less far, and a grip has buttons") {
@@ -134,7 +173,8 @@ TEST_CASE("inverse3: version 3.1 gets its forces as values, in the frame of the 
   service.tell("hold [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]");
   CHECK(eventually([&] { return norm(next_sample(*device).position_mm) < 1e-9; }));
   CHECK(reaches(service, *device, {0.5, 1.0, 1.5}, {0.5, -1.5, 1.0}));
-  CHECK(device->info().firmware.find("service 3.1, torque scaling on") != std::string::npos);
+  CHECK(device->info().firmware.find("service 3.1, right-handed, torque scaling on") !=
+        std::string::npos);
   CHECK_FALSE(next_sample(*device).delivered_n);
   CHECK(service.report().at("complaints") == json::array());
 }

@@ -5,7 +5,7 @@ Written from Haply's public documentation of the service (the simulation channel
 configuration, events, HTTP; versions 3.1 and 3.5), and not from the driver that is tested with it.
 What the documentation leaves open, and is assumed here, is marked "assumed".
 
-Prints "ready PORT EVENTS_PORT" once it listens. Commands on standard input, one a line:
+Prints "ready PORT EVENTS_PORT HTTP_PORT" once it listens. Commands on standard input, one a line:
   explore           the hand comes down, strokes the plane, and lifts off
   calibrate         as if the grip had been put into the inkwell
   event JSON        sends an event to all listeners
@@ -167,7 +167,7 @@ class Service:
             "port": "/dev/ttyACM0",
             "device_info": {"major_version": 7, "minor_version": 4, "id": self.options.id},
             "gravity_compensation": {"enabled": True, "scaling_factor": 1.0},
-            "handedness": "right",
+            "handedness": self.options.handedness,
             "torque_scaling": {"enabled": True},
         }
         if self.is_new:
@@ -332,10 +332,17 @@ class Service:
         finally:
             self.listeners.discard(socket)
 
-    async def answer_http(self, path, headers):
-        """HTTP on the port of the simulation channel."""
-        if "Upgrade" in headers:
+    @property
+    def http_is_apart(self):
+        """Until some version 3.5 HTTP had a port of its own."""
+        return self.options.http_apart or not self.is_new
+
+    async def answer_on_simulation(self, path, headers):
+        if "Upgrade" in headers or self.http_is_apart:
             return None
+        return await self.answer_http(path, headers)
+
+    async def answer_http(self, path, _headers):
         bodies = {
             "/version": {
                 "build_time": "2024-08-07T16:01:53Z",
@@ -354,6 +361,14 @@ class Service:
                 "ok": True,
                 "data": {"session_count": len(sessions), "sessions": sessions},
             }
+            if self.options.home_return != "unknown":
+                bodies["/inverse3/" + self.options.id + "/config/home_return"] = {
+                    "ok": True,
+                    # The form is assumed, after those of torque_scaling and gravity_compensation.
+                    "data": {"enabled": self.options.home_return == "on"},
+                }
+        if self.options.no_version:
+            del bodies["/version"]
         if self.options.http_nonsense:
             return http.HTTPStatus.OK, [], b"<html>"
         if path not in bodies:
@@ -419,6 +434,11 @@ def read_options():
     parser.add_argument("--hub-scale", action="store_true", help="a workspace scaled by the Hub")
     parser.add_argument("--other-session", action="store_true")
     parser.add_argument("--http-nonsense", action="store_true")
+    parser.add_argument("--http-port", type=int, default=0, help="of HTTP, where that is apart")
+    parser.add_argument("--http-apart", action="store_true", help="as an early version 3.5")
+    parser.add_argument("--no-version", action="store_true", help="/version is not known")
+    parser.add_argument("--handedness", choices=["right", "left"], default="right")
+    parser.add_argument("--home-return", choices=["on", "off", "unknown"], default="off")
     parser.add_argument("--silence-after", type=int, metavar="MESSAGES", default=0)
     parser.add_argument("--disconnect-after", type=int, metavar="MESSAGES", default=0)
     parser.add_argument(
@@ -461,11 +481,19 @@ async def main():
         service.simulation,
         "127.0.0.1",
         options.port,
-        process_request=http_hook(service.answer_http),
+        process_request=http_hook(service.answer_on_simulation),
         compression=None,
         ping_interval=None,
     )
-    ports = [simulation.sockets[0].getsockname()[1], 0]
+    ports = [simulation.sockets[0].getsockname()[1], 0, simulation.sockets[0].getsockname()[1]]
+    if service.http_is_apart:
+        web = await websockets.serve(
+            service.events,
+            "127.0.0.1",
+            options.http_port,
+            process_request=http_hook(service.answer_http),
+        )
+        ports[2] = web.sockets[0].getsockname()[1]
     if not options.no_events:
         events = await websockets.serve(
             service.events, "127.0.0.1", options.events_port, ping_interval=None

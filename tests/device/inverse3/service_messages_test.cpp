@@ -61,6 +61,8 @@ TEST_CASE("an Inverse3's inventory gives place, status and configuration") {
   CHECK(device.config->damping == 0.0);
   CHECK(device.config->torque_scaling == true);
   CHECK(device.config->gravity_compensation == 0.8);
+  CHECK(device.config->handedness == "right");
+  CHECK_FALSE(device.config->home_return);
   CHECK(device.config->plain_frame);
 }
 

@@ -90,7 +90,9 @@ TEST_CASE("members for sessions in real time are written for those alone, and re
                                   .visual = true,
                                   .rate_hz = 1000.0,
                                   .scheduling = "fifo 80",
-                                  .calibration = std::string(64, 'a')};
+                                  .calibration = std::string(64, 'a'),
+                                  .force_scale = {1.0, 1.25, 0.8},
+                                  .length_scale = {1.0, 1.0, 1.5}};
   REQUIRE(opening_from_json(to_json(opening)).station == opening.station);
   REQUIRE(to_json(opening).find("screen") == std::string::npos);
   opening.station->screen = ScreenRecord{.mm_per_px = 0.2768, .source = "measured"};

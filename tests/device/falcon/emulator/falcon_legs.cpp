@@ -10,16 +10,13 @@ namespace {
 constexpr double kDeg = std::numbers::pi / 180.0;
 
 std::optional<double> theta1_of_leg(Vec3 p, double phi) {
-  const double u = p.x * std::cos(phi) + p.y * std::sin(phi) - 0.040;
-  const double v = -p.x * std::sin(phi) + p.y * std::cos(phi) + 0.02309;
-  const double grip = u + 0.01443;
-  const double side = v - 0.025;
-  if (std::abs(side) >= 0.1025 || p.z <= 0.0) return std::nullopt;
+  const double grip = p.x * std::cos(phi) + p.y * std::sin(phi) - 0.022;
+  const double side = -p.x * std::sin(phi) + p.y * std::cos(phi);
+  if (std::abs(side) >= 0.150 || p.z <= 0.0) return std::nullopt;
   // A triangle: the arm, the parallelogram, and the line from the arm's axis to the grip's joint.
-  const double parallelogram = 0.0225 + std::sqrt(0.1025 * 0.1025 - side * side);
+  const double parallelogram_square = 0.150 * 0.150 - side * side;
   const double line = std::hypot(grip, p.z);
-  const double cosine =
-      (line * line + 0.060 * 0.060 - parallelogram * parallelogram) / (2.0 * 0.060 * line);
+  const double cosine = (line * line + 0.060 * 0.060 - parallelogram_square) / (2.0 * 0.060 * line);
   if (!(std::abs(cosine) <= 1.0)) return std::nullopt;
   return std::atan2(p.z, grip) - std::acos(cosine);
 }
@@ -32,7 +29,7 @@ Vec3 along_axis(std::size_t axis, double length) {
 
 std::optional<std::array<double, 3>> reference_theta1(Vec3 native_m) {
   std::array<double, 3> angles{};
-  const std::array<double, 3> phi = {105.0 * kDeg, -15.0 * kDeg, -135.0 * kDeg};
+  const std::array<double, 3> phi = {104.5 * kDeg, -15.5 * kDeg, -135.5 * kDeg};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto angle = theta1_of_leg(native_m, phi[i]);
     if (!angle) return std::nullopt;

@@ -32,7 +32,6 @@ struct FlatWallServo {
   FalconHost& host;
   device::PlanePlacement placement;
   MotorValues motors{};
-  Vec3 last_m = kCentreM;
 
   /// \return the hand's place on the plane
   Vec3 tick() {
@@ -40,9 +39,8 @@ struct FlatWallServo {
     REQUIRE(reply);
     motors = {};
     if (!reply->all_homed()) return {0.0, 0.0, 1000.0};
-    const Pose pose = forward_kinematics(theta1_of_counts(reply->counts), last_m);
+    const Pose pose = forward_kinematics(theta1_of_counts(reply->counts));
     REQUIRE(pose.status == PoseStatus::ok);
-    last_m = pose.native_m;
     const Vec3 plane_mm = device::to_plane_direction(
         to_device_mm(pose.native_m) - placement.origin_mm, placement.orientation);
     const Vec3 force_n = device::to_device_direction(wall_force_n(plane_mm), placement.orientation);

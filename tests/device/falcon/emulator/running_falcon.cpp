@@ -10,7 +10,8 @@
 namespace touchtrial::device::falcon {
 namespace {
 
-constexpr double kCentreM = 0.1215;
+constexpr double kCentreM = 0.155;
+constexpr double kNmPerMotorValue = -1.0 / 6616.0;
 /// Where the encoders begin before they are homed.
 constexpr std::array<int, 3> kUnhomedOrigin = {1234, -777, 2468};
 
@@ -19,7 +20,8 @@ Vec3 native_of_mm(Vec3 mm) {
 }
 
 int count_of(double theta1_rad) {
-  return static_cast<int>(std::lround((theta1_rad * 180.0 / std::numbers::pi - 35.0) / 0.0364347));
+  return static_cast<int>(
+      std::lround((theta1_rad * 180.0 / std::numbers::pi - 32.9895) * 9728.0 / 360.0));
 }
 
 int nibble(std::uint8_t byte) {
@@ -81,7 +83,8 @@ std::vector<RunningFalcon::Packet> RunningFalcon::receive(std::span<const std::u
 RunningFalcon::Packet RunningFalcon::exchange() {
   take_command();
   const auto force =
-      reference_force_n(native_m_, {-1e-4 * motors_[0], -1e-4 * motors_[1], -1e-4 * motors_[2]});
+      reference_force_n(native_m_, {kNmPerMotorValue * motors_[0], kNmPerMotorValue * motors_[1],
+                                    kNmPerMotorValue * motors_[2]});
   force_n_ = force.value_or(Vec3{});
   move_hand();
   home_axes();

@@ -15,8 +15,8 @@
 /// - A motor's value is documented as capped at 4,096 (open driver's header); what the firmware
 /// does
 ///   beyond is unknown, so a greater one is a complaint here.
-/// - 10,000 is 1 N m at the arm, against the encoder's sense, and one count is 0.0364347 degrees
-///   (open driver's kinematics). Legs: Stamper's thesis.
+/// - 6,616 is 1 N m at the arm (Martin and Hillier 2009), against the encoder's sense (open
+///   driver). One count is 0.0370066 degrees; the legs are those of Force Dimension's library.
 /// - What the motors do when the host falls silent is unknown. The worst: they keep what they had.
 #pragma once
 
