@@ -26,6 +26,7 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -100,9 +101,7 @@ class TerminalAcceptance final : public device::AcceptanceBench, public device::
       : accelerometer_(accelerometer),
         settings_(device::device_settings_for(arguments.settings)),
         opened_(arguments.driver, settings_, {100.0, 100.0}),
-        limits_(
-            device::limits_on(opened_.device().info(),
-                              device::stricter_of({}, settings_.use_of(arguments.driver).limits))),
+        limits_(limits_of(opened_.device(), settings_.use_of(arguments.driver))),
         run_(opened_, with_motors(opened_.device()), limits_, device::kServoRateHz, false) {
     tell(
         "Before each step this program says what it will do. Enter goes on, s leaves the step out, "
@@ -137,7 +136,10 @@ class TerminalAcceptance final : public device::AcceptanceBench, public device::
   [[nodiscard]] device::Consent ready(const device::Prompt& prompt) override {
     while (true) {
       const std::string answer = answer_to("\n" + prompt.text + "\n[Enter, s, q] ");
-      if (answer.empty()) return device::Consent::go;
+      if (answer.empty()) {
+        opened_.device().rearm();  // a fault of the run before halted it
+        return device::Consent::go;
+      }
       if (answer == "s") return device::Consent::skip;
       if (answer == "q") throw AcceptanceStopped{};
       tell("press Enter to go on, or type s to leave this out, or q to end\n");
@@ -182,6 +184,15 @@ class TerminalAcceptance final : public device::AcceptanceBench, public device::
   }
 
  private:
+  /// A handle that hangs on a spring with a weight may stand still to the last bit. Encoders that
+  /// are frozen end the acceptance by themselves: the handle does not follow a push.
+  static device::SafetyLimits limits_of(device::HapticDevice& device,
+                                        const device::DeviceUse& use) {
+    device::SafetyLimits limits =
+        device::limits_on(device.info(), device::stricter_of({}, use.limits));
+    limits.frozen_s = std::numeric_limits<double>::infinity();
+    return limits;
+  }
   static device::HapticDevice& with_motors(device::HapticDevice& device) {
     const device::DeviceInfo info = device.info();
     if (info.simulated || info.visual || !info.workspace) {

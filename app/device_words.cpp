@@ -45,6 +45,10 @@ std::string fault_in_words(const device::ServoReport& report) {
       return "the stylus moved faster than a hand can";
     case device::SafetyFault::stale_sample:
       return "the device sends no new positions; check its cable";
+    case device::SafetyFault::frozen_encoders:
+      return "the device's position stood still while somebody pressed; its encoders may have "
+             "stopped, "
+             "so switch it off and on and calibrate it";
     case device::SafetyFault::stalled:
       return "the servo stalled; close other programs";
     case device::SafetyFault::device:

@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr NumberRange kForceN{.low = 0.0, .high = 100.0, .open_low = true};
 constexpr NumberRange kForceOrNoneN{.low = 0.0, .high = 100.0};
-constexpr NumberRange kBiasN{.low = -1.0, .high = 1.0};
+constexpr NumberRange kBiasN{.low = -FalconSettings::kMaxGravityBiasN,
+                             .high = FalconSettings::kMaxGravityBiasN};
 constexpr NumberRange kPlaceMm{.low = -1000.0, .high = 1000.0};
 constexpr NumberRange kLengthMm{.low = 1.0, .high = 2000.0};
 constexpr NumberRange kScale{.low = kLeastScale, .high = kGreatestScale};

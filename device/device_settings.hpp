@@ -17,9 +17,11 @@
 namespace touchtrial::device {
 
 struct FalconSettings {
+  static constexpr double kMaxGravityBiasN = 1.0;
   std::filesystem::path firmware;  ///< the vendor's image; needed unless it is already loaded
   std::string serial;              ///< of the device to use; empty: the only one
-  Vec3 gravity_bias_n;             ///< the device's support force, device frame; norm <= 1
+  /// The device's support force, device frame; norm <= kMaxGravityBiasN.
+  Vec3 gravity_bias_n;
   std::array<int, 3> led_order = {2, 0, 1};  ///< bits of red, green and blue
   /// Limits of each motor, in motor values (6,616 for 1 N m): the greatest, that which it holds
   /// for ever, and how long a cold motor may have the greatest, s. Guesses, until a lab measures
@@ -38,9 +40,9 @@ struct OpenHapticsSettings {
 struct DhdSettings {
   /// A file, a folder, or a name; this one stands for every version of libdrd.so and libdhd.so.
   std::filesystem::path library = "libdhd.so";
-  int index = 0;  ///< among the connected devices, >= 0
-  bool gravity_compensation = true;
-  double effector_mass_kg = 0.0;  ///< 0: as the device knows it
+  int index = 0;                     ///< among the connected devices, >= 0
+  bool gravity_compensation = true;  ///< the library's own, which acts whenever force is on
+  double effector_mass_kg = 0.0;     ///< 0: as the device knows it
   /// \name What the library does not tell; nothing: by the device's model
   ///@{
   std::optional<double> max_force_n;         ///< > 0

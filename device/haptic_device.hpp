@@ -91,6 +91,12 @@ struct DeviceInfo {
   double max_stiffness_n_per_mm = 0.0;
   /// The largest damping that it renders stably, N s/mm, likewise.
   double max_damping_n_s_per_mm = 0.0;
+  /// The largest HapticDevice::support_force_n; a larger one is shortened to it.
+  double max_support_n = 0.0;
+  /// Its positions come from encoders on an arm that a person holds, so they never stay the same to
+  /// the last bit while somebody presses (SafetyLimits::frozen_s). False for whatever a program or
+  /// a recording moves, and for the mouse, which a hand may hold still.
+  bool has_encoders = false;
   DeviceScale scale{};  ///< that `open_device` applied; drivers leave it alone
 };
 
@@ -115,12 +121,14 @@ class HapticDevice {
   [[nodiscard]] virtual DeviceStatus write(Vec3 force_n) noexcept = 0;
 
   /// The force that carries what the hand would otherwise hold, the handle's and the arm's weight,
-  /// N, in the frame of the samples. The servo calls it after `read`, on its thread, and adds it to
-  /// the computed force before the safety chain, so that every limit judges the sum. A driver must
-  /// not add any force to what `write` is given.
+  /// N, in the frame of the samples. The servo calls it after `read`, on its thread; the safety
+  /// chain limits it to DeviceInfo::max_support_n and adds it to the rendered force. A driver must
+  /// not add any force to what `write` is given. Where a maker's library does so by itself, the
+  /// driver checks that weight before force goes on, and `halt` and `fault` switch the motors off.
   [[nodiscard]] virtual Vec3 support_force_n(const DeviceSample& /*sample*/) noexcept { return {}; }
 
-  /// Zero force at once and until `rearm`, whatever `write` is given. Safe in a signal handler.
+  /// Zero force at once and until `rearm`, whatever `write` is given, and without the weight that a
+  /// maker's library adds. Safe in a signal handler.
   virtual void halt() noexcept = 0;
   /// Lets forces pass again after `halt`; a person decides it.
   virtual void rearm() noexcept = 0;

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
+#include "device/dhd/dhd_gravity.hpp"
 #include "device/dhd/dhd_loop.hpp"
 #include "device/dhd/dhd_models.hpp"
 #include "device/drivers.hpp"
@@ -16,6 +17,7 @@
 #include <locale>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 namespace touchtrial::device {
 namespace dhd {
@@ -25,8 +27,11 @@ namespace {
 constexpr double kMostMassChangeKg = 0.2;
 /// While the vendor's library moves the arm by itself: 32 ms.
 constexpr unsigned char kSlowestWatchdog = 255;
-/// A weight of more than this share of the peak force is nonsense.
+/// A weight of more than this share of the peak force is nonsense, where the model is not known.
 constexpr double kMostWeightShare = 0.5;
+
+/// The library's word for a type without a name.
+constexpr std::string_view kNoName = "unknown device";
 
 constexpr const char* kCalibrate =
     "waits for its calibration: put the end-effector at its rest position (omega: the pole into "
@@ -84,34 +89,40 @@ class Session {
     info.continuous_force_n =
         settings_.continuous_force_n.value_or(model_ ? model_->continuous_force_n : 0.0);
     if (model_) info.max_stiffness_n_per_mm = model_->stiffness_n_per_mm;
-    if (!model_ && !settings_.workspace_mm) refuse_unknown(info.model, "workspace_mm");
-    const Vec3 reach_mm =
-        0.5 * settings_.workspace_mm.value_or(model_ ? model_->workspace_mm : Vec3{});
+    const Vec3 size_mm = settings_.workspace_mm.value_or(model_ ? model_->workspace_mm : Vec3{});
+    if (size_mm == Vec3{}) refuse_unknown(info.model, "workspace_mm");
+    const Vec3 reach_mm = 0.5 * size_mm;
     info.workspace = Workspace{-1.0 * reach_mm, reach_mm, WorkspaceShape::ellipsoid};
     return info;
   }
-  /// \throws DeviceError if the settings' mass cannot be true
-  void check_mass() const {
-    const double mass_kg = settings_.effector_mass_kg;
-    const double change_kg = std::abs(mass_kg - own_mass_kg_.value_or(0.0));
-    if (mass_kg == 0.0 || change_kg <= kMostMassChangeKg) return;
-    const double push_n = std::round(10.0 * kStandardGravityMS2 * change_kg) / 10.0;
-    throw DeviceError(
-        "dhd: dhd.effector_mass_kg is " + number_text(mass_kg) + ", but the device " +
-        (own_mass_kg_ ? "says " + number_text(*own_mass_kg_) : "does not say its own") +
-        ", and the difference would push with " + number_text(push_n) +
-        " N; weigh the end-effector again: a change of more than " +
-        number_text(kMostMassChangeKg) + " kg is refused");
+  /// \return the most that arms and end-effector can weigh, N; nothing if they are not carried
+  [[nodiscard]] std::optional<double> most_weight_n(const DeviceInfo& info) const {
+    if (!settings_.gravity_compensation) return std::nullopt;
+    return model_ ? model_->max_weight_n : kMostWeightShare * info.max_force_n;
+  }
+  /// \throws DeviceError if the settings' mass, or the device's own, cannot be true
+  void check_mass(const DeviceInfo& info) const {
+    check_change_of_mass();
+    const std::optional<double> most_n = most_weight_n(info);
+    const double mass_kg =
+        settings_.effector_mass_kg > 0.0 ? settings_.effector_mass_kg : own_mass_kg_.value_or(0.0);
+    if (!most_n || (mass_kg >= 0.0 && kStandardGravityMS2 * mass_kg <= *most_n)) return;
+    throw DeviceError("dhd: the library would carry an end-effector of " + number_text(mass_kg) +
+                      " kg, but no device of this model (" + info.model + ") weighs more than " +
+                      number_text(*most_n) +
+                      " N with its arms; set dhd.effector_mass_kg to what the scales say, or "
+                      "dhd.gravity_compensation to false");
   }
   /// Name, serial number and so on, which need no settings.
   [[nodiscard]] DeviceInfo identity() const {
     DeviceInfo info;
     info.name = "dhd";
     info.max_rate_hz = kPollRateHz;
+    info.has_encoders = true;
     const char* name = api().get_system_name ? api().get_system_name(device_) : nullptr;
-    info.model = name != nullptr ? one_line(name)
-                 : model_        ? model_->name
-                                 : "Force Dimension device";
+    // The library has no name for some types that the table knows.
+    const bool is_named = name != nullptr && std::string_view(name) != kNoName;
+    info.model = is_named ? one_line(name) : model_ ? model_->name : "Force Dimension device";
     unsigned short serial = 0;
     if (api().get_serial_number && api().get_serial_number(&serial, device_) >= 0) {
       info.serial = std::to_string(serial);
@@ -130,15 +141,20 @@ class Session {
   }
 
   /// Sets mass, limits and watches, with force off.
-  /// \param limit_n  > 0
+  /// \param limit_n  of the rendered force, > 0
+  /// \param most_weight_n  as most_weight_n()
   /// \throws DeviceError naming what failed
-  void configure(double limit_n) {
+  void configure(double limit_n, std::optional<double> most_weight_n) {
     expect(api().enable_force(0, device_), "switching force off");
     set_mass();
-    switch_gravity_off();
+    expect(api().set_gravity_compensation(most_weight_n ? 1 : 0, device_),
+           "dhd.gravity_compensation");
     set_time_guard();
-    // A second line, which old firmware may not have.
-    if (api().set_max_force != nullptr) (void)api().set_max_force(limit_n, device_);
+    // A second line, which old firmware may not have. Version 3.17.5 limits the force that it is
+    // given, and adds the weight behind that; another version may limit the sum.
+    if (api().set_max_force != nullptr) {
+      (void)api().set_max_force(limit_n + most_weight_n.value_or(0.0), device_);
+    }
     keep_watchdog(kWatchdog);
     expect(api().set_force(0.0, 0.0, 0.0, device_), "zero force");
   }
@@ -154,19 +170,17 @@ class Session {
     if (set_watchdog(value) >= 0) watchdog_ = before;
   }
 
-  /// \return the weight to carry; nothing if the settings want none
   /// \throws DeviceError if what the library says of a calibrated device is no weight
-  [[nodiscard]] std::optional<Gravity> gravity(const DeviceInfo& info) const {
-    if (!settings_.gravity_compensation) return std::nullopt;
-    const double mass_kg =
-        settings_.effector_mass_kg > 0.0 ? settings_.effector_mass_kg : own_mass_kg_.value_or(0.0);
-    const Gravity weight(api(), device_, mass_kg, kMostWeightShare * info.max_force_n);
-    if (is_calibrated() && !weight.force_n()) {
-      throw DeviceError(
-          "dhd: the library's model of the weight gives no force that could be one; calibrate the "
-          "device again, or set dhd.gravity_compensation to false");
-    }
-    return weight;
+  void check_weight(double most_n) const {
+    if (!is_calibrated()) return;
+    const std::optional<Vec3> weight_n = added_weight_n(api(), device_);
+    if (!weight_n || is_plausible_weight(*weight_n, most_n)) return;
+    throw DeviceError("dhd: the library would add (" + number_text(weight_n->x) + ", " +
+                      number_text(weight_n->y) + ", " + number_text(weight_n->z) +
+                      ") N to every force for the weight of arms and end-effector, where at most " +
+                      number_text(most_n) +
+                      " N upwards can be true; calibrate the device again, or set "
+                      "dhd.gravity_compensation to false");
   }
 
  private:
@@ -203,6 +217,19 @@ class Session {
                                " (dhd.max_force_n, dhd.continuous_force_n, dhd.workspace_mm)"));
   }
 
+  void check_change_of_mass() const {
+    const double mass_kg = settings_.effector_mass_kg;
+    const double change_kg = std::abs(mass_kg - own_mass_kg_.value_or(0.0));
+    if (mass_kg == 0.0 || change_kg <= kMostMassChangeKg) return;
+    const double push_n = std::round(10.0 * kStandardGravityMS2 * change_kg) / 10.0;
+    throw DeviceError(
+        "dhd: dhd.effector_mass_kg is " + number_text(mass_kg) + ", but the device " +
+        (own_mass_kg_ ? "says " + number_text(*own_mass_kg_) : "does not say its own") +
+        ", and the difference would push with " + number_text(push_n) +
+        " N; weigh the end-effector again: a change of more than " +
+        number_text(kMostMassChangeKg) + " kg is refused");
+  }
+
   [[nodiscard]] std::optional<double> mass_of_device_kg() const {
     double mass_kg = 0.0;
     const bool known = api().get_effector_mass != nullptr &&
@@ -211,20 +238,9 @@ class Session {
   }
 
   void set_mass() {
-    // Where the library cannot take it, our own term does.
     if (settings_.effector_mass_kg == 0.0 || api().set_effector_mass == nullptr) return;
     expect(api().set_effector_mass(settings_.effector_mass_kg, device_), "dhd.effector_mass_kg");
     is_mass_changed_ = true;
-  }
-
-  void switch_gravity_off() const {
-    expect(api().set_gravity_compensation(0, device_), "switching the library's gravity off");
-    Status status{};
-    expect(api().get_status(status.data(), device_), "the status");
-    if (status[kGravity] == 0) return;
-    throw DeviceError(
-        "dhd: the library goes on adding its gravity compensation to every force, behind our "
-        "limits; install a newer version of Force Dimension's SDK");
   }
 
   void set_time_guard() const {
@@ -271,8 +287,7 @@ DeviceListing listing_of(DhdSettings settings, int index) {
     listing.serial = identity.serial;
     listing.where = session.library().file().string() + ", device " + std::to_string(index);
     if (!session.is_calibrated()) listing.missing.emplace_back(kCalibrate);
-    (void)session.info();
-    session.check_mass();
+    session.check_mass(session.info());
   } catch (const DeviceError& error) {
     listing.missing.emplace_back(error.what());
   }
@@ -331,9 +346,11 @@ std::string initialise_dhd(const DeviceSettings& settings) {
 struct DhdDevice::Running {
   Running(const DhdSettings& settings, double limit_n, std::chrono::nanoseconds (*now)())
       : session(settings), info(session.info()) {
-    session.check_mass();
-    session.configure(std::min(limit_n, info.max_force_n));
-    loop = std::make_unique<dhd::Loop>(session.api(), session.device(), session.gravity(info), now);
+    session.check_mass(info);
+    const std::optional<double> most_weight_n = session.most_weight_n(info);
+    session.configure(std::min(limit_n, info.max_force_n), most_weight_n);
+    if (most_weight_n) session.check_weight(*most_weight_n);
+    loop = std::make_unique<dhd::Loop>(session.api(), session.device(), most_weight_n, now);
   }
 
   dhd::Session session;
@@ -356,10 +373,6 @@ DeviceLink& DhdDevice::link() const noexcept {
 
 DeviceReadiness DhdDevice::readiness() const noexcept {
   return running_->loop->readiness();
-}
-
-Vec3 DhdDevice::support_force_n(const DeviceSample& /*sample*/) noexcept {
-  return running_->loop->support_force_n();
 }
 
 DeviceDriver dhd_driver() {

@@ -15,13 +15,13 @@ namespace touchtrial::device {
 /// library's own limit of force to the device's largest. Not verified on hardware.
 ///
 /// Force is off, with the brakes on, before the device is calibrated and after a halt or a fault.
-/// The library adds no gravity compensation: the weight that it models is `support_force_n`, which
-/// the servo adds before the safety chain. Samples are not ready while a person has switched force
-/// off at the device. A fault latches: open the device anew.
+/// While force is on, the library adds the weight of arms and end-effector to every force, also to
+/// none; an implausible weight is refused before. Samples are not ready while a person has switched
+/// force off at the device. A fault latches: open the device anew.
 class DhdDevice final : public LinkedDevice {
  public:
-  /// \param limit_n  > 0; the library holds this limit, or the device's largest force, behind the
-  ///   safety chain
+  /// \param limit_n  > 0; behind the safety chain the library holds this limit, or the device's
+  ///   largest force, and beyond it the most that the model can weigh
   /// \param now  the time of a reading, for velocities; a test may have another one
   /// \throws DeviceError with the remedy if there is no library, a function of it is missing, there
   ///   is no such device, it refuses a setting, or a setting cannot be true
@@ -33,7 +33,6 @@ class DhdDevice final : public LinkedDevice {
 
   [[nodiscard]] DeviceInfo info() const override;
   [[nodiscard]] DeviceReadiness readiness() const noexcept override;
-  [[nodiscard]] Vec3 support_force_n(const DeviceSample& sample) noexcept override;
 
  private:
   [[nodiscard]] DeviceLink& link() const noexcept override;

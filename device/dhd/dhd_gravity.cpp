@@ -53,6 +53,19 @@ std::optional<ArmJoints> joints_by_old_model(const Api& api, char device) noexce
   return joints;
 }
 
+/// By Cramer's rule.
+/// \param jacobian  rows are x, y and z, columns the joints
+std::optional<Vec3> force_of_torques(const double (&jacobian)[3][3], Vec3 torques_nm) noexcept {
+  // Columns of J, which are the rows of J^T.
+  const Vec3 a{jacobian[0][0], jacobian[1][0], jacobian[2][0]};
+  const Vec3 b{jacobian[0][1], jacobian[1][1], jacobian[2][1]};
+  const Vec3 c{jacobian[0][2], jacobian[1][2], jacobian[2][2]};
+  const double volume = dot(a, cross(b, c));
+  if (!(std::abs(volume) > 1e-9 * norm(a) * norm(b) * norm(c))) return std::nullopt;
+  return (1.0 / volume) *
+         (torques_nm.x * cross(b, c) + torques_nm.y * cross(c, a) + torques_nm.z * cross(a, b));
+}
+
 std::optional<Vec3> modelled_force_n(const Api& api, char device) noexcept {
   const std::optional<ArmJoints> joints =
       has_new_model(api) ? joints_by_new_model(api, device) : joints_by_old_model(api, device);
@@ -66,29 +79,17 @@ std::optional<Vec3> modelled_force_n(const Api& api, char device) noexcept {
 
 }  // namespace
 
-std::optional<Vec3> force_of_torques(const double (&jacobian)[3][3], Vec3 torques_nm) noexcept {
-  // Columns of J, which are the rows of J^T.
-  const Vec3 a{jacobian[0][0], jacobian[1][0], jacobian[2][0]};
-  const Vec3 b{jacobian[0][1], jacobian[1][1], jacobian[2][1]};
-  const Vec3 c{jacobian[0][2], jacobian[1][2], jacobian[2][2]};
-  const double volume = dot(a, cross(b, c));
-  if (!(std::abs(volume) > 1e-9 * norm(a) * norm(b) * norm(c))) return std::nullopt;
-  return (1.0 / volume) *
-         (torques_nm.x * cross(b, c) + torques_nm.y * cross(c, a) + torques_nm.z * cross(a, b));
+std::optional<Vec3> added_weight_n(const Api& api, char device) noexcept {
+  const bool tells =
+      api.delta_joint_angles_to_jacobian != nullptr && (has_new_model(api) || has_old_model(api));
+  if (!tells) return std::nullopt;
+  return as_expert(api, [&]() noexcept { return modelled_force_n(api, device); });
 }
 
-std::optional<Vec3> Gravity::force_n() const noexcept {
-  const bool has_model = api_.delta_joint_angles_to_jacobian != nullptr &&
-                         (has_new_model(api_) || has_old_model(api_));
-  const std::optional<Vec3> force_n =
-      has_model ? as_expert(api_, [&]() noexcept { return modelled_force_n(api_, device_); })
-                : Vec3{0.0, 0.0, mass_kg_ * kStandardGravityMS2};
-  if (!force_n || !is_finite(*force_n)) return std::nullopt;
-  const bool is_weight =
-      force_n->z >= -kSlackN &&
-      std::hypot(force_n->x, force_n->y) <= kSidewaysShare * std::abs(force_n->z) + kSlackN &&
-      norm(*force_n) <= most_n_;
-  return is_weight ? force_n : std::nullopt;
+bool is_plausible_weight(Vec3 force_n, double most_n) noexcept {
+  return force_n.z >= -kSlackN &&
+         std::hypot(force_n.x, force_n.y) <= kSidewaysShare * std::abs(force_n.z) + kSlackN &&
+         norm(force_n) <= most_n;
 }
 
 }  // namespace touchtrial::device::dhd

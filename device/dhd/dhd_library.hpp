@@ -13,10 +13,11 @@
 
 namespace touchtrial::device::dhd {
 
-/// Most functions return a number below 0 for an error, 0 for success, 2 if the motors gave less
-/// force than requested (no fault), or this one if the call came too soon and gave the same values
-/// again.
+/// Most functions return a number below 0 for an error, 0 for success, or one of these, which are
+/// success too: no exchange with the device was necessary, as the values of the last one are
+/// younger than the time guard; the motors gave less force than requested.
 constexpr int kTimeGuard = 1;
+constexpr int kMotorSaturated = 2;
 
 /// The status and places in it. Longer than any version's, so that a newer library stays inside.
 using Status = std::array<int, 32>;
@@ -24,7 +25,6 @@ constexpr std::size_t kConnected = 1;
 constexpr std::size_t kReset = 3;  ///< the device waits for its calibration
 constexpr std::size_t kForce = 5;  ///< force is switched on
 constexpr std::size_t kError = 9;
-constexpr std::size_t kGravity = 10;        ///< the library adds the weight to every force
 constexpr std::size_t kForceOffCause = 14;  ///< of the last time that force went off, however old
 
 /// Causes for which the device itself switches force off; the other causes are a person's act (its
@@ -50,7 +50,7 @@ struct Api {
   unsigned (*get_button_mask)(char);
   int (*get_status)(int*, char);
   int (*set_time_guard)(int, char);
-  int (*set_gravity_compensation)(int, char);
+  int (*set_gravity_compensation)(int, char);  ///< on: the library adds the weight to every force
   const char* (*error_get_last_str)();
 
   /// \name Null where the library does not have them

@@ -1,5 +1,6 @@
 #include "device/dhd/dhd_loop.hpp"
 
+#include "device/dhd/dhd_gravity.hpp"
 #include "device/platform/realtime.hpp"
 
 #include <algorithm>
@@ -9,7 +10,8 @@ namespace {
 
 constexpr std::chrono::nanoseconds kPeriod{static_cast<std::int64_t>(1e9 / kPollRateHz)};
 constexpr std::int64_t kTicksBetweenStatus = 40;
-constexpr std::int64_t kTicksBetweenWeights = 16;
+/// The library sheds the weight within 250 ms after its compensation was switched off: 0.3 s.
+constexpr std::int64_t kTicksToShedWeight = 1200;
 /// Force that is not on after so many ticks waits for a person: 0.25 s.
 constexpr std::int64_t kTicksToSwitchOn = 1000;
 constexpr int kZerosAtTheEnd = 5;
@@ -25,8 +27,8 @@ Vec3 to_dhd_frame(Vec3 device) noexcept {
 
 }  // namespace
 
-Loop::Loop(const Api& api, char device, const std::optional<Gravity>& gravity, Now now)
-    : api_(api), device_(device), gravity_(gravity), now_(now) {
+Loop::Loop(const Api& api, char device, std::optional<double> most_weight_n, Now now)
+    : api_(api), device_(device), most_weight_n_(most_weight_n), now_(now) {
   check_status();  // so that readiness() is true from the beginning
   thread_ = std::thread([this] { run(); });
 }
@@ -52,7 +54,6 @@ void Loop::tick() noexcept {
   if (tick_ >= status_at_) check_status();
   switch_force();
   take_sample();
-  if (tick_ % kTicksBetweenWeights == 0) weigh();
   const Vec3 force_n = link_.force_to_send(monotonic_now());
   send(may_push() ? force_n : Vec3{});
   ++tick_;
@@ -90,12 +91,18 @@ DeviceReadiness Loop::need() const noexcept {
 }
 
 /// Where there is to be no force there is none that could be set by anybody: after a halt or a
-/// fault, or while the device does not know where it is, force is off and the brakes are on.
+/// fault, or while the device does not know where it is, force is off and the brakes are on. A
+/// force of zero would not do: the library adds the weight to it.
 void Loop::switch_force() noexcept {
-  const bool may_be_on = calibrated_ && !link_.is_stopped();
+  const bool is_shed = most_weight_n_ || tick_ >= kTicksToShedWeight;
+  const bool may_be_on = calibrated_ && is_shed && !link_.is_stopped();
   if (may_be_on == switched_on_) return;
   if (!may_be_on) {
     switch_off();
+    return;
+  }
+  if (!is_weight_plausible()) {
+    link_.fail(DeviceFault::bad_data);
     return;
   }
   // The last force of every tick without force was zero.
@@ -115,6 +122,12 @@ void Loop::switch_off() noexcept {
   if (result < 0 && !closing_.load(std::memory_order_acquire)) fail_call();
 }
 
+bool Loop::is_weight_plausible() const noexcept {
+  if (!most_weight_n_) return true;
+  const std::optional<Vec3> weight_n = added_weight_n(api_, device_);
+  return !weight_n || is_plausible_weight(*weight_n, *most_weight_n_);
+}
+
 void Loop::take_sample() noexcept {
   Vec3 position_m;
   const int got = api_.get_position(&position_m.x, &position_m.y, &position_m.z, device_);
@@ -127,7 +140,8 @@ void Loop::take_sample() noexcept {
     link_.fail(DeviceFault::bad_data);
     return;
   }
-  if (got == kTimeGuard) return;  // nothing newer: the sequence number tells the servo
+  if (got == kTimeGuard && !exchanged_) return;  // the sequence number tells the servo
+  exchanged_ = false;
   // The calibration moves the origin, so positions before it say nothing about motion.
   if (!calibrated_) velocity_.forget();
   DeviceSample sample;
@@ -135,19 +149,16 @@ void Loop::take_sample() noexcept {
   sample.velocity_mm_s = velocity_.add(sample.position_mm, at);
   sample.buttons = api_.get_button_mask(device_);
   sample.ready = may_push();
+  sample.limited = saturated_;
   link_.publish(sample);
-}
-
-void Loop::weigh() noexcept {
-  if (!gravity_ || !calibrated_ || link_.is_stopped()) return;
-  const std::optional<Vec3> weight_n = gravity_->force_n();
-  if (!weight_n) link_.fail(DeviceFault::bad_data);
-  support_n_.set(weight_n ? to_device_frame(*weight_n) : Vec3{});
 }
 
 void Loop::send(Vec3 force_n) noexcept {
   const Vec3 force = to_dhd_frame(force_n);
-  if (api_.set_force(force.x, force.y, force.z, device_) < 0) fail_call();
+  const int result = api_.set_force(force.x, force.y, force.z, device_);
+  exchanged_ = exchanged_ || (result >= 0 && result != kTimeGuard);
+  saturated_ = result == kMotorSaturated;
+  if (result < 0) fail_call();
 }
 
 /// Reports a failed call: the device is gone, or the library has a reason of its own.

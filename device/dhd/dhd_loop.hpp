@@ -2,9 +2,7 @@
 #pragma once
 
 #include "device/device_link.hpp"
-#include "device/dhd/dhd_gravity.hpp"
 #include "device/dhd/dhd_library.hpp"
-#include "device/latest_value.hpp"
 #include "device/velocity_estimate.hpp"
 
 #include <atomic>
@@ -25,16 +23,22 @@ constexpr std::size_t kVelocityReadings = 9;
 /// Polls the device from its construction to its destruction, in real time where the system permits
 /// it. Force is on only while the device is calibrated, and neither halted nor failed; what it
 /// sends last are zeros, and then it switches force off.
+///
+/// A reading counts as new if the library exchanged data with the device since the one before, be
+/// it for the position or for the force: dhdSetForce brings the positions that dhdGetPosition then
+/// gives with the answer of the time guard. A device that rests gives the same values again and
+/// again, so their change says nothing. A thread that waits for the device makes no reading.
 class Loop {
  public:
   using Time = std::chrono::nanoseconds;
   using Now = Time (*)();
 
   /// \param api  must outlive this
-  /// \param device  must stay open as long, with the library's gravity compensation off
-  /// \param gravity  nothing: the device is not supported
+  /// \param device  must stay open as long
+  /// \param most_weight_n  that the library may add to a force, or force is not switched on;
+  ///   nothing: it adds none
   /// \param now  the time of a reading, for velocities
-  Loop(const Api& api, char device, const std::optional<Gravity>& gravity, Now now);
+  Loop(const Api& api, char device, std::optional<double> most_weight_n, Now now);
   ~Loop();
   Loop(const Loop&) = delete;
   Loop& operator=(const Loop&) = delete;
@@ -43,9 +47,6 @@ class Loop {
   [[nodiscard]] DeviceReadiness readiness() const noexcept {
     return readiness_.load(std::memory_order_acquire);
   }
-  /// Servo thread.
-  /// \return the newest weight, device frame, N; zero before the device is ready
-  [[nodiscard]] Vec3 support_force_n() noexcept { return support_n_.get(); }
 
  private:
   void run() noexcept;
@@ -55,23 +56,24 @@ class Loop {
   [[nodiscard]] DeviceReadiness need() const noexcept;
   void switch_force() noexcept;
   void switch_off() noexcept;
+  [[nodiscard]] bool is_weight_plausible() const noexcept;
   void take_sample() noexcept;
-  void weigh() noexcept;
   void send(Vec3 force_n) noexcept;
   void fail_call() noexcept;
   [[nodiscard]] bool may_push() const noexcept { return force_on_ && calibrated_; }
 
   const Api& api_;
   char device_;
-  std::optional<Gravity> gravity_;
+  std::optional<double> most_weight_n_;
   Now now_;
   DeviceLink link_;
-  LatestValue<Vec3> support_n_;
   VelocityEstimate<kVelocityReadings> velocity_;
   bool calibrated_ = false;
   bool switched_on_ = false;  ///< we asked for force, and have not switched it off since
   bool force_on_ = false;     ///< by the device's status
   bool was_on_ = false;       ///< since we asked
+  bool exchanged_ = true;     ///< data with the device since the last reading
+  bool saturated_ = false;    ///< motors, by the newest force
   std::int64_t tick_ = 0;
   std::int64_t switched_at_ = 0;
   std::int64_t status_at_ = 0;  ///< when it is due next

@@ -1,5 +1,6 @@
-/// \file What Force Dimension's library does not tell of a device: its size and strength, by the
-/// type that it does tell. Private to this folder.
+/// \file What Force Dimension's library does not tell of a device: its size, strength and greatest
+/// weight, by the type that it does tell. Sources: docs/devices/force-dimension.md; nothing was
+/// measured. Private to this folder.
 #pragma once
 
 #include "core/vec.hpp"
@@ -9,64 +10,58 @@
 
 namespace touchtrial::device::dhd {
 
-/// Where numbers of a model come from. Nothing was measured.
-enum class ModelSource {
-  manual,        ///< the maker's user manual
-  open_library,  ///< a public haptics library (CHAI3D) beside its driver for these devices
-};
-
+/// Numbers of 0 are not known: settings must give them.
 struct Model {
-  int type;  ///< dhdGetSystemType
   const char* name;
   /// Width, height and depth of the ellipsoid in the cylinder that the maker states: its axis
   /// points towards the person.
   Vec3 workspace_mm;
-  double force_n;  ///< peak, which the maker states as continuous; 0: not known
+  double force_n;  ///< peak, which the maker states as continuous
   double continuous_force_n;
-  double stiffness_n_per_mm;  ///< of a wall
-  ModelSource size_source;
-  ModelSource force_source;
+  /// Of a wall, by a public haptics library (CHAI3D): the manuals of omega and delta state 14.5
+  /// N/mm in closed loop, which no wall in a servo reaches.
+  double stiffness_n_per_mm;
+  /// More than arms and end-effector can weigh: one and a half times the most that the maker's
+  /// library 3.17.5 gave for this model, or for the heaviest of its family.
+  double max_weight_n;
 };
 
-/// Where sources differ, the smaller number stands. Stiffnesses are all the open library's: the
-/// manuals of omega and delta state 14.5 N/mm in closed loop, which no wall in a servo reaches.
-inline constexpr std::array<Model, 11> kModels = {{
-    // Manual of the omega.x, 1.7: a cylinder of 160 mm, 110 mm long; 12 N continuous.
-    {33, "omega.3", {160, 160, 110}, 12, 12, 5, ModelSource::manual, ModelSource::manual},
-    {34, "omega.6", {160, 160, 110}, 12, 12, 5, ModelSource::manual, ModelSource::manual},
-    {36, "omega.6", {160, 160, 110}, 12, 12, 5, ModelSource::manual, ModelSource::manual},
-    {35, "omega.7", {160, 160, 110}, 12, 12, 5, ModelSource::manual, ModelSource::manual},
-    {37, "omega.7", {160, 160, 110}, 12, 12, 5, ModelSource::manual, ModelSource::manual},
-    // Manual of the delta.x: 400 mm, 260 mm long; 20 N continuous.
-    {63, "delta.3", {400, 400, 260}, 20, 20, 5, ModelSource::manual, ModelSource::manual},
-    {64, "delta.6", {400, 400, 260}, 20, 20, 5, ModelSource::manual, ModelSource::manual},
-    // Manual of the sigma.7: 190 mm, 130 mm long; 20 N, of which the open library allows 12.
-    {104, "sigma.7", {190, 190, 130}, 12, 12, 4, ModelSource::manual, ModelSource::open_library},
-    {105, "sigma.7", {190, 190, 130}, 12, 12, 4, ModelSource::manual, ModelSource::open_library},
-    // The open library alone: within 90 mm; 12 N. Nothing says for how long.
-    {106,
-     "sigma.6+",
-     {180, 180, 180},
-     12,
-     0,
-     4,
-     ModelSource::open_library,
-     ModelSource::open_library},
-    {107,
-     "sigma.6+",
-     {180, 180, 180},
-     12,
-     0,
-     4,
-     ModelSource::open_library,
-     ModelSource::open_library},
-}};
+inline constexpr Model kOmega3 = {"omega.3", {160, 160, 110}, 12, 12, 5, 6.2};
+inline constexpr Model kOmega6 = {"omega.6", {160, 160, 110}, 12, 12, 5, 11};
+inline constexpr Model kOmega7 = {"omega.7", {160, 160, 110}, 12, 12, 5, 11};
+inline constexpr Model kDelta3 = {"delta.3", {400, 400, 260}, 20, 20, 5, 9};
+inline constexpr Model kDelta6 = {"delta.6", {400, 400, 260}, 20, 20, 5, 9};
+inline constexpr Model kSigma3 = {"sigma.3", {}, 0, 0, 0, 22.5};
+inline constexpr Model kSigma6 = {"sigma.6+", {180, 180, 180}, 12, 0, 4, 22.5};
+inline constexpr Model kSigma7 = {"sigma.7", {190, 190, 130}, 20, 20, 4, 22.5};
+inline constexpr Model kLambda3 = {"lambda.3", {}, 0, 0, 0, 27};
+inline constexpr Model kLambda6 = {"lambda.6", {}, 0, 0, 0, 27};
+inline constexpr Model kLambda7 = {"lambda.7", {240, 240, 170}, 20, 20, 8, 27};
 
-/// \return nothing for a type that the table does not have, for instance lambda, sigma.3, the
-///   stand-alone controllers and devices of one's own
+struct ModelOfType {
+  int type;  ///< dhdGetSystemType
+  const Model* model;
+};
+
+/// The types of the maker's header, then those that the open library alone takes for these models.
+inline constexpr auto kModelsOfTypes = std::to_array<ModelOfType>({
+    {33, &kOmega3},   {34, &kOmega6},   {36, &kOmega6},   {35, &kOmega7},   {37, &kOmega7},
+    {63, &kDelta3},   {64, &kDelta6},   {206, &kSigma3},  {106, &kSigma6},  {107, &kSigma6},
+    {104, &kSigma7},  {105, &kSigma7},  {203, &kLambda3}, {131, &kLambda6}, {132, &kLambda6},
+    {108, &kLambda7}, {109, &kLambda7},
+
+    {110, &kOmega3},  {111, &kDelta3},  {133, &kSigma3},  {102, &kSigma7},  {103, &kSigma7},
+    {209, &kSigma7},  {112, &kLambda7}, {113, &kLambda7}, {114, &kLambda7}, {117, &kLambda7},
+    {118, &kLambda7}, {119, &kLambda7}, {120, &kLambda7}, {121, &kLambda7}, {122, &kLambda7},
+    {123, &kLambda7}, {124, &kLambda7}, {125, &kLambda7}, {126, &kLambda7}, {127, &kLambda7},
+    {128, &kLambda7}, {129, &kLambda7}, {130, &kLambda7}, {210, &kLambda7}, {211, &kLambda7},
+});
+
+/// \return nothing for a type that the table does not have, for instance the stand-alone
+///   controllers and devices of one's own
 [[nodiscard]] constexpr std::optional<Model> model_of(int type) noexcept {
-  for (const Model& model : kModels) {
-    if (model.type == type) return model;
+  for (const ModelOfType& entry : kModelsOfTypes) {
+    if (entry.type == type) return *entry.model;
   }
   return std::nullopt;
 }

@@ -118,6 +118,8 @@ DeviceInfo FalconDevice::info() const {
     info.continuous_force_n = kForcePerMotorValueN * settings_.motor_continuous;
   }
   info.workspace = kFalconWorkspace;
+  info.max_support_n = FalconSettings::kMaxGravityBiasN;
+  info.has_encoders = true;
   return info;
 }
 

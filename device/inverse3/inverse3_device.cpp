@@ -358,6 +358,7 @@ void Inverse3Device::describe(const DeviceConfig& config) {
   info_.firmware = firmware_text(config, known_.version);
   info_.max_force_n = settings_.max_force_n;
   info_.max_rate_hz = kRateHz;
+  info_.has_encoders = true;
   const double radius_mm = config.type == "minverse" ? kMinverseRadiusMm : kInverse3RadiusMm;
   const Vec3 reach_mm = {radius_mm, radius_mm, radius_mm};
   info_.workspace = Workspace{-1.0 * reach_mm, reach_mm, WorkspaceShape::ellipsoid};

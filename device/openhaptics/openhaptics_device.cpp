@@ -181,6 +181,7 @@ class Session {
     info.max_stiffness_n_per_mm = positive_or(api_, kMaxStiffness, 0.0);
     info.max_damping_n_s_per_mm = positive_or(api_, kMaxDamping, 0.0);
     info.workspace = workspace_of(api_);
+    info.has_encoders = true;
     return info;
   }
 

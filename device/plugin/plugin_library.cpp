@@ -276,6 +276,7 @@ DeviceInfo OpenDevice::info() const {
   info.max_stiffness_n_per_mm = judge.in_range(
       "max_stiffness_n_per_mm", told.max_stiffness_n_per_mm, 0.0, kGreatestStiffnessNPerMm, true);
   info.workspace = workspace_in(told, judge);
+  info.has_encoders = true;
   return info;
 }
 

@@ -14,7 +14,8 @@
  *
  * Time: sample and force together take less than half of a period of max_rate_hz. They may wait for
  * the device for that long, but never longer: a driver with a slow link talks to it on a thread of
- * its own. After 10 ms without a new reading the host ends the run as a fault.
+ * its own. After 10 ms without a new reading the host ends the run as a fault, and after 0.3 s of new
+ * readings of one position, the same to the last bit, while it renders at least 1 N: a hand trembles.
  *
  * Safety: every force has passed the host's safety chain. A driver must not add to it, delay it, or
  * keep it: each call replaces the force of the one before. The host sends zero while the device is

@@ -6,9 +6,11 @@ namespace touchtrial::device {
 
 SafetyChain::SafetyChain(const SafetyLimits& limits, double tick_s) noexcept
     : may_engage_(is_sound(limits) && tick_s > 0.0 && std::isfinite(tick_s)),
+      max_support_n_(limits.max_support_n),
       gate_(limits.engage_force_n),
       velocity_(limits.max_speed_mm_s, tick_s),
       freshness_(limits.stale_s, tick_s),
+      frozen_(limits.frozen_s, tick_s),
       thermal_(limits, tick_s),
       ramp_(limits.ramp_up_s, tick_s),
       slew_(limits.max_slew_n_per_s, tick_s) {}
@@ -17,6 +19,7 @@ void SafetyChain::rearm() noexcept {
   fault_ = SafetyFault::none;
   gate_.close();
   slew_.drop();
+  sent_n_ = {};
 }
 
 }  // namespace touchtrial::device

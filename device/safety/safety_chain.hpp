@@ -21,13 +21,14 @@ enum class SafetyVerdict {
 /// Why a chain latched.
 enum class SafetyFault {
   none,
-  not_finite,      ///< a force, position or velocity is not a finite number
-  emergency_stop,  ///< a person, or a signal, asked for it
-  not_ready,       ///< the device lost its homing while force was on
-  overspeed,       ///< faster than a hand
-  stale_sample,    ///< the device gives no new readings
-  stalled,         ///< the servo itself stood still (watchdog)
-  device,          ///< the device reported a fault, see DeviceFault
+  not_finite,       ///< a force, position or velocity is not a finite number
+  emergency_stop,   ///< a person, or a signal, asked for it
+  not_ready,        ///< the device lost its homing while force was on
+  overspeed,        ///< faster than a hand
+  stale_sample,     ///< the device gives no new readings
+  frozen_encoders,  ///< its readings are new, but their position never changes under force
+  stalled,          ///< the servo itself stood still (watchdog)
+  device,           ///< the device reported a fault, see DeviceFault
 };
 
 struct SafeForce {
@@ -37,9 +38,9 @@ struct SafeForce {
 };
 
 /// In this order: finite check, latched fault, homed and armed, small-force gate on engaging,
-/// velocity trip and freshness of the readings, thermal budget, ramp-up, norm limit, slew limit. A
-/// fault skips the slew limit: the force is zero at once, and until `rearm`. Belongs to the servo
-/// thread.
+/// velocity trip, freshness of the readings and frozen encoders, thermal budget, ramp-up, norm
+/// limit, slew limit; then the support is added, up to its own limit. A fault skips the slew limit:
+/// the force is zero at once, and until `rearm`. Belongs to the servo thread.
 class SafetyChain {
  public:
   /// \param limits  unsound ones let no force pass
@@ -48,10 +49,10 @@ class SafetyChain {
 
   /// A device that is not ready before engaging gets zero, without a fault. No allocation, lock or
   /// exception; about 10 ns.
-  /// \param force_n  as rendered: the gate judges it alone
+  /// \param force_n  as rendered: gate, norm limit and slew limit judge it alone
   /// \param ticks  since the last call, more than 1 after an overrun; less counts as 1
-  /// \param support_n  HapticDevice::support_force_n, added to the rendered force: all limits judge
-  ///   the sum, and the ramp holds for both
+  /// \param support_n  HapticDevice::support_force_n: within SafetyLimits::max_support_n it is
+  ///   added to the rendered force. The gate and the ramp hold for both, and both warm the motors
   /// \return the force that may be sent for this tick
   [[nodiscard]] SafeForce check(Vec3 force_n, const DeviceSample& sample, std::int64_t ticks = 1,
                                 Vec3 support_n = {}) noexcept;
@@ -69,7 +70,7 @@ class SafetyChain {
   void begin_warm(double heat_n2, double rest_s) noexcept { thermal_.begin_warm(heat_n2, rest_s); }
   ///@}
   /// The force that the last `check` let pass, N.
-  [[nodiscard]] Vec3 sent_n() const noexcept { return slew_.sent_n(); }
+  [[nodiscard]] Vec3 sent_n() const noexcept { return sent_n_; }
 
  private:
   [[nodiscard]] bool is_engaged(double force_squared_n2, const DeviceSample& sample) noexcept;
@@ -82,13 +83,16 @@ class SafetyChain {
   }
 
   bool may_engage_;
+  double max_support_n_;
   SafetyFault fault_ = SafetyFault::none;
   EngageGate gate_;
   VelocityTrip velocity_;
   Freshness freshness_;
+  FrozenEncoders frozen_;
   ThermalBudget thermal_;
   RampUp ramp_;
-  SlewLimit slew_;
+  SlewLimit slew_;  ///< of the rendered force
+  Vec3 sent_n_;     ///< with the support
 };
 
 // Every simulated tick passes the chain, so its steps are compiled into the loop.
@@ -99,6 +103,7 @@ inline void SafetyChain::trip(SafetyFault fault) noexcept {
 
 inline SafeForce SafetyChain::stopped() noexcept {
   slew_.drop();
+  sent_n_ = {};
   return {{}, SafetyVerdict::fault};
 }
 
@@ -107,6 +112,7 @@ inline bool SafetyChain::is_engaged(double force_squared_n2, const DeviceSample&
   if (!may_engage_ || !sample.ready || !gate_.try_open(force_squared_n2)) return false;
   freshness_.start(sample.sequence);
   velocity_.start(sample);
+  frozen_.start(sample.position_mm);
   ramp_.start();
   return true;
 }
@@ -115,10 +121,12 @@ inline SafetyFault SafetyChain::fault_in(const DeviceSample& sample, double tick
   if (!sample.ready) return SafetyFault::not_ready;
   if (velocity_.is_exceeded(sample, ticks)) return SafetyFault::overspeed;
   if (freshness_.is_stale(sample.sequence, ticks)) return SafetyFault::stale_sample;
+  const double pressed_n2 = dot(slew_.sent_n(), slew_.sent_n());
+  if (frozen_.is_frozen(sample.position_mm, pressed_n2)) return SafetyFault::frozen_encoders;
   return SafetyFault::none;
 }
 
-/// Ramp, thermal budget, norm limit and slew limit.
+/// Ramp, thermal budget, norm limit and slew limit; then the support.
 inline SafeForce SafetyChain::limited(Vec3 force_n, double force_squared_n2,
                                       Vec3 support_n) noexcept {
   const double share = ramp_.next_share();
@@ -127,23 +135,22 @@ inline SafeForce SafetyChain::limited(Vec3 force_n, double force_squared_n2,
   // below would find the same.
   if (share == 1.0 && support_n == Vec3{} && force_squared_n2 <= limit_n * limit_n &&
       slew_.try_reach(force_n)) {
+    sent_n_ = force_n;
     return {force_n, SafetyVerdict::passed, force_n};
   }
-  const Vec3 carried_n = share * support_n;
-  const Vec3 ramped_n = sum_of(share * force_n, carried_n);
-  const Vec3 allowed_n = within_norm(ramped_n, limit_n);
-  const Vec3 safe_n = slew_.towards(allowed_n);
-  if (safe_n == sum_of(force_n, carried_n)) return {safe_n, SafetyVerdict::passed, force_n};
-  const double squared_n2 = dot(ramped_n, ramped_n);
-  const double kept = squared_n2 > 0.0 ? dot(allowed_n, ramped_n) / squared_n2 : 1.0;
-  return {safe_n, SafetyVerdict::limited, support_n == Vec3{} ? safe_n : safe_n - kept * carried_n};
+  const Vec3 carried_n = share * within_norm(support_n, max_support_n_);
+  const Vec3 limited_n = within_norm(share * force_n, thermal_.limit_n(norm(carried_n)));
+  const Vec3 rendered_n = slew_.towards(limited_n);
+  sent_n_ = sum_of(rendered_n, carried_n);
+  return {sent_n_, rendered_n == force_n ? SafetyVerdict::passed : SafetyVerdict::limited,
+          rendered_n};
 }
 
 inline SafeForce SafetyChain::check(Vec3 force_n, const DeviceSample& sample, std::int64_t ticks,
                                     Vec3 support_n) noexcept {
   const auto elapsed = static_cast<double>(std::max<std::int64_t>(ticks, 1));
   const double force_squared_n2 = dot(force_n, force_n);
-  thermal_.heat(dot(slew_.sent_n(), slew_.sent_n()), elapsed);
+  thermal_.heat(dot(sent_n_, sent_n_), elapsed);
   if (!is_finite_state(force_squared_n2 + dot(support_n, support_n), sample))
     trip(SafetyFault::not_finite);
   if (faulted()) return stopped();

@@ -4,6 +4,7 @@
 #include "device/haptic_device.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace touchtrial::device {
 
@@ -23,6 +24,10 @@ struct SafetyLimits {
   double engage_force_n = 0.5;       ///< forces pass only once the computed one was this small
   double ramp_up_s = 0.1;            ///< from engaging to full force, >= 0, finite
   double stale_s = 0.010;            ///< longest time without a new reading; then a fault; > 0
+  /// Longest time at one and the same position under at least FrozenEncoders::kPressedN; then a
+  /// fault; > 0. Where a weight may hang on the handle without a hand, infinity.
+  double frozen_s = 0.3;
+  double max_support_n = 0.0;  ///< of the support's norm, >= 0, finite
 };
 
 /// \return whether every limit is in its range; NaN is out of every range
@@ -32,11 +37,15 @@ struct SafetyLimits {
   const bool heat = limits.continuous_force_n >= 0.0 && limits.thermal_budget_s > 0.0;
   const bool engaging =
       limits.engage_force_n >= 0.0 && limits.ramp_up_s >= 0.0 && std::isfinite(limits.ramp_up_s);
-  return force && heat && engaging && limits.max_speed_mm_s > 0.0 && limits.stale_s > 0.0;
+  const bool support = limits.max_support_n >= 0.0 && std::isfinite(limits.max_support_n);
+  const bool readings =
+      limits.max_speed_mm_s > 0.0 && limits.stale_s > 0.0 && limits.frozen_s > 0.0;
+  return force && heat && engaging && support && readings;
 }
 
 /// \return the limits on this device: the smaller of the two peak forces, and of the two continuous
-///   forces. NaN stays NaN, so that no force passes.
+///   forces; the device's limit of its support; frozen_s of devices with encoders alone. NaN stays
+///   NaN, so that no force passes.
 [[nodiscard]] inline SafetyLimits limits_on(const DeviceInfo& device,
                                             SafetyLimits limits) noexcept {
   // Unlike std::min, NaN if either is.
@@ -49,6 +58,11 @@ struct SafetyLimits {
     limits.continuous_force_n = device.continuous_force_n;
   } else if (device.continuous_force_n != 0.0) {
     limits.continuous_force_n = smaller(limits.continuous_force_n, device.continuous_force_n);
+  }
+  limits.max_support_n = device.max_support_n;
+  // A value that is unsound stays so.
+  if (!device.has_encoders && limits.frozen_s > 0.0) {
+    limits.frozen_s = std::numeric_limits<double>::infinity();
   }
   return limits;
 }

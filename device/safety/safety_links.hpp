@@ -130,6 +130,41 @@ class Freshness {
   std::uint64_t sequence_ = 0;
 };
 
+/// Detects encoders that stop while the device runs: its readings are new, and their position is
+/// the same to the last bit. A hand that presses always trembles by more than a step of an encoder.
+/// It counts calls and not time, because the ticks that a servo missed brought no reading.
+class FrozenEncoders {
+ public:
+  /// A hand that bears less may have let go of the handle.
+  static constexpr double kPressedN = 1.0;
+
+  /// \param frozen_s  > 0; infinity: never
+  /// \param tick_s  of the servo, > 0
+  FrozenEncoders(double frozen_s, double tick_s) noexcept
+      : frozen_ticks_(std::max(1.0, std::ceil(frozen_s / tick_s - kTickRounding))) {}
+
+  /// Judges positions from this one on.
+  void start(Vec3 position_mm) noexcept {
+    position_mm_ = position_mm;
+    still_ticks_ = 0.0;
+  }
+
+  /// \param pressed_squared_n2  the square of the force on the hand, without the support
+  [[nodiscard]] bool is_frozen(Vec3 position_mm, double pressed_squared_n2) noexcept {
+    if (position_mm != position_mm_ || !(pressed_squared_n2 >= kPressedN * kPressedN)) {
+      start(position_mm);
+      return false;
+    }
+    still_ticks_ += 1.0;
+    return still_ticks_ >= frozen_ticks_;
+  }
+
+ private:
+  double frozen_ticks_;
+  double still_ticks_ = 0.0;
+  Vec3 position_mm_;
+};
+
 /// Lets forces grow to their full size after engaging: a factor that rises evenly from 0 to 1. It
 /// counts calls and not time, because the hand has not felt the ticks that a servo missed.
 class RampUp {

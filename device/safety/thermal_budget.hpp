@@ -44,12 +44,14 @@ class ThermalBudget {
       : ThermalBudget(limits.max_force_n, limits.continuous_force_n, limits.thermal_budget_s,
                       tick_s) {}
 
-  /// \return the limit of the force's norm for this tick, from the peak down to the continuous
-  ///   force
-  [[nodiscard]] double limit_n() const noexcept {
+  /// \param carried_n  force that the motors bear beside the one that is limited, >= 0
+  /// \return the limit of the force's norm for this tick: from the peak down to what the carried
+  ///   force leaves of the continuous one
+  [[nodiscard]] double limit_n(double carried_n = 0.0) const noexcept {
     if (heat_ <= kWarm * most_heat_) return peak_;
     const double cold = std::max(0.0, 1.0 - heat_ / most_heat_) / (1.0 - kWarm);
-    return continuous_ + std::min(cold, 1.0) * (peak_ - continuous_);
+    const double held_n = std::max(0.0, continuous_ - carried_n);
+    return held_n + std::min(cold, 1.0) * (peak_ - held_n);
   }
 
   /// Warms the motors by a force.

@@ -130,6 +130,8 @@ class ServoRun {
     {
       const RealtimeRegion region;
       end = run_ticks(pacing);
+      // Where a maker's library carries the weight, a force of zero leaves the motors on.
+      if (end == ServoEnd::fault) device_.halt();
       // The loop has ended; a lost device takes no zero either.
       static_cast<void>(device_.write({}));
       if (hooks_.heartbeat != nullptr) {
@@ -140,7 +142,6 @@ class ServoRun {
     report_.end = end.value_or(end_of_fade_);
     report_.fault = safety_.fault();
     report_.device_fault = device_.fault();
-    report_.force_limit_n = std::max(0.0, report_.force_limit_n - std::sqrt(most_support_n2_));
     pacing.report_to(report_);
     if (hooks_.lateness != nullptr) hooks_.lateness->add(pacing.lateness());
     return report_;
@@ -226,7 +227,6 @@ class ServoRun {
     if (force_.is_done()) fade_out(start.tick, ServoEnd::hand_stopped);
     const Vec3 carried_n = device_.support_force_n(sample);
     const Vec3 support_n = carried_n == Vec3{} ? carried_n : fade * carried_n;
-    most_support_n2_ = std::max(most_support_n2_, dot(support_n, support_n));
     SafeForce safe = safety_.check(rendered_n, sample, start.tick - last_tick_, support_n);
     last_tick_ = start.tick;
     if (sample.limited && safe.verdict == SafetyVerdict::passed) {
@@ -299,8 +299,7 @@ class ServoRun {
   std::int64_t fade_from_;
   std::int64_t fade_ticks_;
   double fade_share_ = 1.0;  ///< at which the fade begins
-  double most_support_n2_ = 0.0;
-  double share_ = 1.0;  ///< follows ServoParameters::force_share
+  double share_ = 1.0;       ///< follows ServoParameters::force_share
   double sent_squared_n2_ = 0.0;
   double sent_delivered_n2_ = 0.0;
   std::int64_t end_of_comfort_stop_ = 0;
@@ -376,6 +375,8 @@ std::string_view name_of(SafetyFault fault) noexcept {
       return "overspeed";
     case SafetyFault::stale_sample:
       return "stale_sample";
+    case SafetyFault::frozen_encoders:
+      return "frozen_encoders";
     case SafetyFault::stalled:
       return "stalled";
     case SafetyFault::device:

@@ -79,8 +79,7 @@ struct ServoReport {
   std::int64_t limited_ticks = 0;  ///< changed by the safety chain, or by the device's own limits
   std::int64_t contact_ticks = 0;  ///< with a force out of the plane
   std::int64_t overruns = 0;       ///< ticks left out because the loop stood still too long
-  /// In force: the smaller of the options' and the device's, less the largest support.
-  double force_limit_n = 0.0;
+  double force_limit_n = 0.0;      ///< in force: the smaller of the options' and the device's
   /// Measured from the first tick to the last; 0 with fewer than two ticks. In virtual time, that
   /// of the options.
   double rate_hz = 0.0;
@@ -133,8 +132,9 @@ struct ServoHooks {
 
 /// Runs the loop until it ends. Tick i is due i / rate_hz after the first. A loop that is so late
 /// that the next tick is due as well leaves out the ticks that it missed, so that they never come
-/// in a burst. Every force goes through the safety chain; the last one written is zero. No
-/// allocation, lock or exception inside the loop. Blocks: the calling thread becomes the servo's.
+/// in a burst. Every force goes through the safety chain; the last one written is zero, and after a
+/// fault the device is halted. No allocation, lock or exception inside the loop. Blocks: the
+/// calling thread becomes the servo's.
 /// \throws std::invalid_argument before the first tick if an option is out of its range
 [[nodiscard]] ServoReport run_servo(HapticDevice& device, ForceSource& force, SampleSink& sink,
                                     const ServoOptions& options, ServoClock& clock,

@@ -15,7 +15,9 @@ namespace touchtrial {
 class ScriptedDevice final : public device::HapticDevice {
  public:
   [[nodiscard]] device::DeviceInfo info() const override {
-    return {"scripted", "", max_force_n, true};
+    device::DeviceInfo info{"scripted", "", max_force_n, true};
+    info.max_support_n = 2.0;
+    return info;
   }
   [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
     sample.sequence = static_cast<std::uint64_t>(reads) + 1;
@@ -77,7 +79,11 @@ class LateClock final : public device::ServoClock {
 /// halted.
 class RestingDevice final : public device::HapticDevice {
  public:
-  [[nodiscard]] device::DeviceInfo info() const override { return {"resting", "", 3.3, true}; }
+  [[nodiscard]] device::DeviceInfo info() const override {
+    device::DeviceInfo info{"resting", "", 3.3, true};
+    info.has_encoders = has_encoders;
+    return info;
+  }
   [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
     sample = {{10.0, 10.0, -1.0}, {}, ++readings_};
     return device::DeviceStatus::ok;
@@ -91,6 +97,7 @@ class RestingDevice final : public device::HapticDevice {
 
   std::vector<Vec3> written;
   std::atomic<int> halts{0};
+  bool has_encoders = false;
 
  private:
   std::uint64_t readings_ = 0;

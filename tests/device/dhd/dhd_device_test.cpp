@@ -1,15 +1,18 @@
 #include "device/dhd/dhd_device.hpp"
 
 #include "core/errors.hpp"
+#include "device/dhd/dhd_gravity.hpp"
 #include "device/fakes/loaded_fake.hpp"
 #include "device/registry.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <string>
 
 namespace touchtrial {
 namespace {
@@ -20,7 +23,7 @@ using fakes::next_sample;
 using fakes::write_until;
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-constexpr double kGravityMS2 = 9.81;
+constexpr double kGravityMS2 = 9.80665;
 
 device::DhdSettings settings_of_fake() {
   device::DhdSettings settings;
@@ -101,41 +104,37 @@ TEST_CASE("dhd: mass, time guard, watchdog and largest force are set, and put ba
   fake->watchdog = 200;
   device::DhdSettings settings = settings_of_fake();
   settings.effector_mass_kg = GENERATE(0.0, 0.125);
+  settings.gravity_compensation = GENERATE(true, false);
   {
     const device::DhdDevice device = opened(fake, settings);
     CHECK(fake->effector_mass_kg == (settings.effector_mass_kg > 0.0 ? 0.125 : -1.0));
     CHECK(fake->time_guard_us == -1);
-    CHECK(fake->max_force_n == 12.0);
+    CHECK(fake->gravity_compensation == (settings.gravity_compensation ? 1 : 0));
+    // The weight has room beyond the model's 12 N.
+    CHECK(fake->max_force_n == (settings.gravity_compensation ? Approx(18.2) : Approx(12.0)));
     CHECK(fake->watchdog == 80);
   }
   CHECK(fake->effector_mass_kg == (settings.effector_mass_kg > 0.0 ? 0.1 : -1.0));
   CHECK(fake->watchdog == 200);
 }
 
-TEST_CASE("dhd: the library holds the lab's limit behind the safety chain") {
+TEST_CASE("dhd: the library holds the lab's limit behind the safety chain, beside the weight") {
   LoadedDhd fake;
+  fake->arm_mass_kg = 0.4;
+  fake->limits_sum = GENERATE(false, true);
   device::DeviceSettings settings;
   settings.dhd.library = TOUCHTRIAL_FAKE_DHD;
   settings.uses["dhd"].limits.max_force_n = 2.5;
   const auto device = device::open_device("dhd", settings);
-  CHECK(fake->max_force_n == 2.5);
-  CHECK(write_until(*device, {0.0, 4.0, 0.0}, [&] { return up_n(fake) == 2.5; }));
+  CHECK(fake->max_force_n == Approx(2.5 + 6.2));
+  const double whole_n = 2.5 + kGravityMS2 * 0.4;
+  CHECK(
+      write_until(*device, {0.0, 2.5, 0.0}, [&] { return std::abs(up_n(fake) - whole_n) < 1e-9; }));
+  CHECK(write_until(*device, {0.0, 40.0, 0.0}, [&] { return up_n(fake) > whole_n; }));
+  CHECK(up_n(fake) <= Approx(fake->limits_sum ? 8.7 : 8.7 + kGravityMS2 * 0.4));
 }
 
-TEST_CASE("dhd: a commanded zero is zero, whatever arms and end-effector weigh") {
-  LoadedDhd fake;
-  fake->arm_mass_kg = 0.2;
-  fake->own_mass_kg = 0.1;
-  device::DhdSettings settings = settings_of_fake();
-  settings.gravity_compensation = GENERATE(true, false);
-  device::DhdDevice device = opened(fake, settings);
-  (void)ready_sample(device);
-  const long begun = fake->polls;
-  REQUIRE(write_until(device, {}, [&] { return fake->polls > begun + 50; }));
-  CHECK(up_n(fake) == 0.0);
-}
-
-TEST_CASE("dhd: the support is the weight of arms and end-effector, straight up") {
+TEST_CASE("dhd: the library carries arms and end-effector, whatever force is commanded") {
   LoadedDhd fake;
   fake->arm_mass_kg = 0.2;
   fake->own_mass_kg = 0.1;
@@ -146,57 +145,53 @@ TEST_CASE("dhd: the support is the weight of arms and end-effector, straight up"
     settings.effector_mass_kg = 0.15;
     mass_kg = 0.35;
   }
-  SECTION("not wanted") {
-    settings.gravity_compensation = false;
-    mass_kg = 0.0;
-  }
   device::DhdDevice device = opened(fake, settings);
   const device::DeviceSample sample = ready_sample(device);
-  for (int i = 0; i < 10; ++i) (void)next_sample(device);
-  CHECK(norm(device.support_force_n(sample) - Vec3{0.0, kGravityMS2 * mass_kg, 0.0}) < 1e-9);
+  CHECK(std::abs(up_n(fake) - kGravityMS2 * mass_kg) < 1e-9);
+  CHECK(write_until(device, {0.0, 1.0, 0.0},
+                    [&] { return std::abs(up_n(fake) - kGravityMS2 * mass_kg - 1.0) < 1e-9; }));
+  // The servo adds none.
+  CHECK(device.support_force_n(sample) == Vec3{});
   CHECK(fake->misuses == 0);
 }
 
-TEST_CASE("dhd: the functions of newer libraries give the same support") {
-  const fakes::LoadedDrd fake;
-  fake->arm_mass_kg = 0.2;
-  fake->own_mass_kg = 0.1;
-  device::DhdSettings settings;
-  settings.library = TOUCHTRIAL_FAKE_DRD;
-  device::DhdDevice device(settings, kNoLimit, fake.exports().now);
-  const device::DeviceSample sample = ready_sample(device);
-  for (int i = 0; i < 10; ++i) (void)next_sample(device);
-  CHECK(norm(device.support_force_n(sample) - Vec3{0.0, kGravityMS2 * 0.3, 0.0}) < 1e-9);
-  CHECK(fake->misuses == 0);
+TEST_CASE("dhd: without compensation, force comes on once the library has shed the weight") {
+  LoadedDhd fake;
+  fake->arm_mass_kg = 0.3;
+  device::DhdSettings settings = settings_of_fake();
+  settings.gravity_compensation = false;
+  device::DhdDevice device = opened(fake, settings);
+  double most_n = 0.0;
+  REQUIRE(eventually([&] {
+    most_n = std::max(most_n, up_n(fake));
+    return fake.calls() == "open force_off force_on ";
+  }));
+  (void)ready_sample(device);
+  CHECK(most_n == 0.0);
+  CHECK(up_n(fake) == 0.0);
+  CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
 }
 
-TEST_CASE("dhd: a hand that lets go sinks while the support rises, and then hovers") {
+TEST_CASE("dhd: a wall carries the hand as well where the arm weighs 4 N") {
+  LoadedDhd fake;
+  fake->arm_mass_kg = 0.3;
+  fake->own_mass_kg = 0.12;
+  fake->hand.position_mm.set({0.0, 5.0, 3.0});
+  fake->hand.push_n.set({0.0, 0.0, -0.7});
+  device::DhdDevice device = opened(fake);
+  fakes::WallRun(device, fake.exports()).check_carries_hand();
+}
+
+TEST_CASE("dhd: a hand that lets go in the air stays there") {
   LoadedDhd fake;
   fake->arm_mass_kg = 0.2;
   fake->own_mass_kg = 0.1;
   device::DhdDevice device = opened(fake);
-  for (int i = 0; i < 20; ++i) (void)next_sample(device);
+  (void)ready_sample(device);
   fakes::SteppingClock clock(fake.exports());
-  // So high that it would not reach the wall even without any support.
-  fake->hand.rest_at({0.0, 0.0, 200.0});
-  REQUIRE(fake.exports().step(12));  // so that the velocity forgets this jump
-  device::PlacedDevice placed(device, {});
-  FlatWall wall;
-  KeptSamples kept;
-  const device::ServoReport report =
-      device::run_servo(placed, wall, kept, {.limit_ticks = 400, .fade_ticks = 0}, clock);
-  CHECK(report.end == device::ServoEnd::time_limit);
-  CHECK(report.contact_ticks == 0);
-  REQUIRE(kept.samples.size() == 400);
-  CHECK(kept.samples[50].position_mm.z < kept.samples[10].position_mm.z - 1.0);
-  // A stall of the machine lets forces lapse, but not most of them.
-  int hovering = 0;
-  for (std::size_t i = 150; i < 400; ++i) {
-    const Vec3 way_mm = kept.samples[i].position_mm - kept.samples[i - 1].position_mm;
-    hovering += norm(way_mm) < 1e-9 ? 1 : 0;
-    CHECK(kept.samples[i].force_n == Vec3{});
-  }
-  CHECK(hovering > 0);
+  fake->hand.rest_at({0.0, 0.0, 20.0});
+  REQUIRE(fake.exports().step(100));
+  CHECK(std::abs(fake->hand.position_mm.get().z - 20.0) < 1e-9);
 }
 
 TEST_CASE("dhd: a mass that cannot be true is refused before any force") {
@@ -216,27 +211,73 @@ TEST_CASE("dhd: a mass that cannot be true is refused before any force") {
   CHECK_THAT(listings[0].missing[0], holds_text("dhd.effector_mass_kg"));
 }
 
-TEST_CASE("dhd: a weight that cannot be one is refused, or a fault once it is known") {
+TEST_CASE("dhd: an end-effector that weighs more than the model with its arms is refused") {
   LoadedDhd fake;
-  fake->weight_is_nonsense = true;
-  SECTION("on opening") {
-    CHECK_THROWS_WITH(device::DhdDevice(settings_of_fake()),
-                      holds_text("dhd.gravity_compensation"));
-  }
-  SECTION("after the calibration") {
-    fake->calibrated = false;
-    device::DhdDevice device = opened(fake);
-    (void)next_sample(device);
-    CHECK(device.fault() == device::DeviceFault::none);
-    fake->calibrated = true;
-    CHECK(eventually([&] { return device.fault() == device::DeviceFault::bad_data; }));
-  }
+  fake->own_mass_kg = GENERATE(0.7, -0.1);
+  CHECK_THROWS_WITH(device::DhdDevice(settings_of_fake()),
+                    holds_text("dhd.effector_mass_kg") && holds_text("omega.3"));
+  CHECK(fake.calls() == "open force_off close ");
+  device::DhdSettings settings = settings_of_fake();
+  settings.gravity_compensation = false;
+  CHECK_NOTHROW(opened(fake, settings));
 }
 
-TEST_CASE("dhd: a library that goes on adding gravity by itself is not used") {
+TEST_CASE("dhd: a weight that cannot be one is refused, or a fault before force comes on") {
   LoadedDhd fake;
-  fake->keeps_gravity = true;
-  CHECK_THROWS_WITH(device::DhdDevice(settings_of_fake()), holds_text("behind our limits"));
+  SECTION("it points down and sideways") {
+    fake->weight_is_nonsense = true;
+  }
+  SECTION("it is too large for an omega.3") {
+    fake->arm_mass_kg = 0.7;
+  }
+  CHECK_THROWS_WITH(device::DhdDevice(settings_of_fake()), holds_text("dhd.gravity_compensation"));
+  fake->calibrated = false;
+  device::DhdDevice device = opened(fake);
+  (void)next_sample(device);
+  CHECK(device.fault() == device::DeviceFault::none);
+  fake->calibrated = true;
+  REQUIRE(eventually([&] { return device.fault() == device::DeviceFault::bad_data; }));
+  CHECK(fake.calls().find("force_on") == std::string::npos);
+  CHECK(fake->misuses == 0);
+}
+
+TEST_CASE("dhd: a weight is finite, points up, and is no larger than the model's") {
+  using device::dhd::is_plausible_weight;
+  CHECK(is_plausible_weight({}, 6.2));
+  CHECK(is_plausible_weight({-0.9, 0.6, 4.1}, 6.2));  // on a base that is not level
+  CHECK_FALSE(is_plausible_weight({0.0, 0.0, 6.3}, 6.2));
+  CHECK_FALSE(is_plausible_weight({0.0, 2.0, 4.1}, 6.2));
+  CHECK_FALSE(is_plausible_weight({0.0, 0.0, -0.3}, 6.2));
+  const double bad =
+      GENERATE(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity());
+  CHECK_FALSE(is_plausible_weight({0.0, 0.0, bad}, 6.2));
+  CHECK_FALSE(is_plausible_weight({bad, 0.0, 4.1}, 6.2));
+}
+
+TEST_CASE("dhd: the functions of newer libraries tell the weight too") {
+  const fakes::LoadedDrd fake;
+  device::DhdSettings settings;
+  settings.library = TOUCHTRIAL_FAKE_DRD;
+  fake->arm_mass_kg = 0.3;
+  CHECK(device::DhdDevice(settings).fault() == device::DeviceFault::none);
+  fake->arm_mass_kg = 0.7;
+  CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("dhd.gravity_compensation"));
+  CHECK(fake->misuses == 0);
+}
+
+TEST_CASE("dhd: heavy models are carried too, within a limit of their own") {
+  LoadedDhd fake;
+  const auto [type, weight_n] = GENERATE(table<int, double>(
+      {{33, 4.2}, {110, 4.2}, {35, 7.3}, {63, 6.0}, {111, 6.0}, {104, 15.0}, {109, 17.8}}));
+  fake->system_type = type;
+  fake->arm_mass_kg = weight_n / kGravityMS2;
+  {
+    device::DhdDevice device = opened(fake);
+    (void)ready_sample(device);
+    CHECK(up_n(fake) == Approx(weight_n));
+  }
+  fake->arm_mass_kg = 2.0 * weight_n / kGravityMS2;
+  CHECK_THROWS_AS(device::DhdDevice(settings_of_fake()), DeviceError);
 }
 
 TEST_CASE("dhd: a setting that the device refuses is named, and the device closed") {
@@ -307,12 +348,16 @@ TEST_CASE(
   settings.max_force_n = 4.0;
   settings.workspace_mm = Vec3{100.0, 100.0, 100.0};
   CHECK(device::DhdDevice(settings).info().model == "Force Dimension device");
+  {
+    device::DhdDevice device(settings);
+    (void)ready_sample(device);
+  }
+  // Without a model of the arms only the end-effector's mass can be judged: half of the peak force.
   settings.effector_mass_kg = 0.15;
-  device::DhdDevice device(settings);
-  (void)ready_sample(device);
-  for (int i = 0; i < 10; ++i) (void)next_sample(device);
-  // Without a model of the arms only the end-effector's mass is known.
-  CHECK(device.support_force_n({}).y == Approx(0.15 * kGravityMS2).epsilon(1e-3));
+  CHECK(device::DhdDevice(settings).info().max_force_n == 4.0);
+  settings.max_force_n = 2.0;
+  settings.effector_mass_kg = 0.19;
+  CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("dhd.effector_mass_kg"));
   settings.library = TOUCHTRIAL_PARTIAL_DHD;
   CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("has no function dhdEnableForce"));
   settings.library = "/nowhere/libdhd.so";
@@ -518,11 +563,26 @@ TEST_CASE("dhd: a device that is lost in the middle of a run ends it with a faul
   CHECK(device.fault() == device::DeviceFault::link_lost);
 }
 
-TEST_CASE("dhd: the time guard's answer is neither a new reading nor a fault") {
+TEST_CASE("dhd: what a force brought from the device is new, though the time guard answers") {
   LoadedDhd fake;
   device::DhdDevice device = opened(fake);
   (void)ready_sample(device);
-  fake->too_soon = true;
+  fakes::SteppingClock clock(fake.exports());
+  device::DeviceSample before;
+  REQUIRE(device.read(before) == device::DeviceStatus::ok);
+  fake->hand.push_n.set({0.008, 0.0, 0.0});
+  REQUIRE(fake.exports().step(100));
+  device::DeviceSample after;
+  REQUIRE(device.read(after) == device::DeviceStatus::ok);
+  CHECK(after.sequence >= before.sequence + 99);
+  CHECK(after.position_mm.z > before.position_mm.z + 0.09);
+}
+
+TEST_CASE("dhd: no reading is new while the library exchanges nothing with the device") {
+  LoadedDhd fake;
+  device::DhdDevice device = opened(fake);
+  (void)ready_sample(device);
+  fake->exchanges = false;
   const long begun = fake->polls;
   REQUIRE(eventually([&] { return fake->polls > begun + 10; }));
   device::DeviceSample sample;
@@ -531,16 +591,67 @@ TEST_CASE("dhd: the time guard's answer is neither a new reading nor a fault") {
   REQUIRE(eventually([&] { return fake->polls > begun + 60; }));
   CHECK(device.read(sample) == device::DeviceStatus::ok);
   CHECK(sample.sequence == last);
-  fake->too_soon = false;
+  fake->exchanges = true;
   CHECK(next_sample(device).sequence > last);
 }
 
-TEST_CASE("dhd: saturated motors are not a fault") {
+TEST_CASE("dhd: a run ends as stale when the library exchanges nothing any more") {
+  LoadedDhd fake;
+  device::DhdDevice device = opened(fake);
+  fakes::WallRun wall(device, fake.exports());
+  REQUIRE(wall.run(50).end == device::ServoEnd::time_limit);
+  fake->exchanges = false;
+  const device::ServoReport report = wall.run(50);
+  CHECK(report.end == device::ServoEnd::fault);
+  CHECK(report.fault == device::SafetyFault::stale_sample);
+}
+
+/// A wall at which the fake's encoders stop after half a second.
+class FreezingWall final : public device::ForceSource {
+ public:
+  explicit FreezingWall(const LoadedDhd& fake) : fake_(fake) {}
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
+    if (++calls_ == 500) fake_->encoders_stop = true;
+    return wall_.force_n(sample);
+  }
+
+ private:
+  const LoadedDhd& fake_;
+  FlatWall wall_;
+  int calls_ = 0;
+};
+
+TEST_CASE("dhd: encoders that stop under a force end the run, with force off and the brakes on") {
+  LoadedDhd fake;
+  fake->arm_mass_kg = 0.4;
+  fake->hand.position_mm.set({0.0, 0.0, 1.0});
+  device::DhdDevice device = opened(fake);
+  (void)ready_sample(device);
+  fake->hand.push_n.set({0.0, 0.0, -1.5});
+  fakes::SteppingClock clock(fake.exports());
+  device::PlacedDevice placed(device, {});
+  FreezingWall wall(fake);
+  KeptSamples kept;
+  const device::ServoReport report =
+      device::run_servo(placed, wall, kept, {.limit_ticks = 2000}, clock);
+  CHECK(report.end == device::ServoEnd::fault);
+  CHECK(report.fault == device::SafetyFault::frozen_encoders);
+  CHECK(report.ticks >= 800);
+  CHECK(kept.samples.back().force_n.z > 1.0);
+  REQUIRE(fake.exports().step(2));
+  CHECK(fake->brakes);
+  CHECK(fake->force_n.get() == Vec3{});
+}
+
+TEST_CASE("dhd: saturated motors are not a fault, and the servo is told of them") {
   LoadedDhd fake;
   fake->saturated = true;
   device::DhdDevice device = opened(fake);
   REQUIRE(eventually([&] { return fake->polls > 100; }));
   CHECK(device.fault() == device::DeviceFault::none);
+  CHECK(next_sample(device).limited);
+  fake->saturated = false;
+  CHECK_FALSE(next_sample(device).limited);
 }
 
 TEST_CASE("dhd: halting switches force off and the brakes on, until it is re-armed") {
@@ -552,7 +663,7 @@ TEST_CASE("dhd: halting switches force off and the brakes on, until it is re-arm
   REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->brakes.load(); }));
   const long begun = fake->polls;
   REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->polls > begun + 20; }));
-  CHECK(fake->force_n.get() == Vec3{});
+  CHECK(fake->force_n.get() == Vec3{});  // nor the weight
   CHECK(fake->zero_forces_last > 10);
   CHECK(device.readiness() == device::DeviceReadiness::ready);
   device.rearm();
@@ -615,7 +726,7 @@ TEST_CASE("the list of dhd says that a device waits for its calibration, and how
 
 TEST_CASE("the list of dhd says that the settings must give the size of an unknown model") {
   const fakes::LoadedDhd fake;
-  fake->system_type = 203;
+  fake->system_type = GENERATE(203, 206, 91);
   const std::vector<device::DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
   REQUIRE(listings.size() == 1);
   REQUIRE(listings[0].missing.size() == 1);

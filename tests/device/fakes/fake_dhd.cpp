@@ -6,6 +6,7 @@
 //   [D]  the vendor's programming manual, as the public Python bindings for 3.14 to 3.16 repeat it
 //   [M]  the vendor's user manuals of omega.x, delta.x and sigma.7
 //   [S]  the vendor's sample programs
+//   [L]  the vendor's library 3.17.5, observed without a device
 #include "device/fakes/fake_dhd.hpp"
 
 #include <algorithm>
@@ -18,7 +19,9 @@ namespace {
 
 constexpr int kFailed = -1;  // [D]: "0 on success, -1 otherwise"
 constexpr double kMmPerM = 1000.0;
-constexpr double kGravityMS2 = 9.81;
+constexpr double kGravityMS2 = 9.80665;
+constexpr auto kTimeGuard = std::chrono::milliseconds(2);      // [L]: that of -1
+constexpr auto kGravityRamp = std::chrono::milliseconds(250);  // [L]
 
 // [H]: the errors that dhdErrorGetLast tells, of which the driver sees the words alone.
 constexpr int kErrorTimeout = 7;
@@ -45,6 +48,9 @@ struct Inside {
   std::atomic<bool> expert{false};
   std::atomic<int> last_error{0};
   std::atomic<long> forces{0};
+  std::atomic<long> gravity_off_at{0};  ///< number of the force
+  Vec3 read_mm;                         ///< by the last exchange, on the driver's thread
+  long read_at = -1'000'000;            ///< number of the force
   long readings = 0;
 };
 Inside& inside() {
@@ -96,6 +102,14 @@ double modelled_weight_n() {
   return kGravityMS2 * (state->arm_mass_kg + mass_kg());
 }
 
+// [L]: force and torques of the compensation fade within 250 ms after it was switched off, though
+// the status says so at once.
+double gravity_share() {
+  if (state->gravity_compensation != 0) return 1.0;
+  const std::chrono::milliseconds gone(inside().forces - inside().gravity_off_at);
+  return std::max(0.0, 1.0 - static_cast<double>(gone.count()) / kGravityRamp.count());
+}
+
 /// What they do weigh.
 double true_weight_n() {
   return kGravityMS2 * (state->arm_mass_kg + state->own_mass_kg);
@@ -129,16 +143,30 @@ std::chrono::nanoseconds now() {
   return std::chrono::milliseconds(inside().forces.load());
 }
 
+/// Takes the position from the device.
+void exchange() {
+  if (!state->encoders_stop) inside().read_mm = state->hand.position_mm.get();
+  inside().read_at = inside().forces;
+}
+
 void reset() {
   inside().calls.clear();
   inside().force_on = false;
   inside().readings = 0;
+  inside().read_at = -1'000'000;
+  inside().gravity_off_at = -1'000'000;
   state->~FakeDhd();
   new (state) FakeDhd;
 }
 
 std::string calls() {
   return inside().calls.text();
+}
+
+Vec3 within_max_force(Vec3 force_n) {
+  const double most_n = state->max_force_n;
+  const double norm_n = norm(force_n);
+  return most_n >= 0.0 && norm_n > most_n ? (most_n / norm_n) * force_n : force_n;
 }
 
 void give_m(Vec3 mm, double* x, double* y, double* z) {
@@ -156,7 +184,8 @@ constexpr std::array<double, 3> kAngles = {0.3, -0.1, 0.2};
 // the gravity compensation are added to them.
 void give_gravity_torques(double* torques) {
   const Vec3 force_n =
-      state->weight_is_nonsense ? Vec3{5.0, 0.0, -3.0} : Vec3{0.0, 0.0, modelled_weight_n()};
+      gravity_share() *
+      (state->weight_is_nonsense ? Vec3{5.0, 0.0, -3.0} : Vec3{0.0, 0.0, modelled_weight_n()});
   for (int j = 0; j < 3; ++j) {
     torques[j] =
         kJacobian[0][j] * force_n.x + kJacobian[1][j] * force_n.y + kJacobian[2][j] * force_n.z;
@@ -223,15 +252,18 @@ int dhdClose(char device) {
 }
 
 // [D] Axes: x towards the person, y to the right, z up, metres. [M] has the same in its figures.
+// [D] TimeGuard: returns 1 if communication was unnecessary. [L]: the values are those of the last
+// exchange, and a force is an exchange, so that they are fresh.
 int dhdGetPosition(double* x, double* y, double* z, char device) {
   if (!inside().pace.begin_step()) return kFailed;
   ++state->polls;
   if (!answers(device) || state->position_fails) return kFailed;
-  give_m(state->hand.position_mm.get(), x, y, z);
-  // [D] TimeGuard: returns 1 if communication was unnecessary.
-  if (state->too_soon) return 1;
+  const std::chrono::milliseconds age(inside().forces - inside().read_at);
+  const bool is_guarded = state->time_guard_us != 0 && age < kTimeGuard;
+  if (state->exchanges && !is_guarded) exchange();
+  give_m(inside().read_mm, x, y, z);
   ++inside().readings;
-  return 0;
+  return is_guarded || !state->exchanges ? 1 : 0;
 }
 
 // [D] getLinearVelocity: needs two positions within the estimator's window, 20 ms; without them it
@@ -246,23 +278,24 @@ int dhdGetLinearVelocity(double* x, double* y, double* z, char device) {
 // [D] Gravity Compensation: computed on the host, so it only acts whenever a force is sent; the
 // weights of arms and end-effector are taken into account, and a vertical force is added to the
 // user's command. It is on by default.
-// [D] setMaxForce: a limit to the magnitude of what setForce applies; negative: none.
+// [D] setMaxForce: a limit to the magnitude of what setForce applies; negative: none. [L]: of what
+// it is given, before the weight is added; `limits_sum` is another reading of [D].
 int dhdSetForce(double x, double y, double z, char device) {
   const touchtrial::Vec3 asked_n{x, y, z};
   touchtrial::Vec3 force_n;
   if (mode() == Mode::force) {
-    const double norm_n = norm(asked_n);
-    const double most_n = state->max_force_n;
-    const double share = most_n >= 0.0 && norm_n > most_n ? most_n / norm_n : 1.0;
-    force_n = share * asked_n;
-    if (state->gravity_compensation != 0) force_n.z += modelled_weight_n();
+    const touchtrial::Vec3 weight_n{0.0, 0.0, gravity_share() * modelled_weight_n()};
+    force_n = state->limits_sum ? within_max_force(asked_n + weight_n)
+                                : within_max_force(asked_n) + weight_n;
   }
   state->force_n.set(force_n);
   state->zero_forces_last = asked_n == touchtrial::Vec3{} ? state->zero_forces_last + 1 : 0;
+  if (state->exchanges) exchange();
   state->hand.step(force_n - touchtrial::Vec3{0.0, 0.0, true_weight_n()});
   ++inside().forces;
   inside().pace.end_step();
   if (!answers(device)) return kFailed;
+  if (!state->exchanges) return 1;
   // [D]: 2 if a motor cannot give what was asked for.
   return state->saturated ? 2 : 0;
 }
@@ -328,7 +361,8 @@ int dhdSetTimeGuard(int us, char device) {
 
 int dhdSetGravityCompensation(int on, char device) {
   if (!is_open(device)) return kFailed;
-  if (!state->keeps_gravity) state->gravity_compensation = on;
+  if (state->gravity_compensation != 0 && on == 0) inside().gravity_off_at = inside().forces.load();
+  state->gravity_compensation = on;
   return 0;
 }
 

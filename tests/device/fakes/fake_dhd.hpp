@@ -19,10 +19,11 @@ struct FakeDhd {
   std::atomic<bool> wants_button{false};  ///< force comes on only by the device's own button
   std::atomic<bool> device_error{false};
   std::atomic<bool> position_fails{false};  ///< although the device is connected
-  std::atomic<bool> too_soon{false};        ///< the time guard answers every position
+  std::atomic<bool> exchanges{true};        ///< false: every answer is that of the time guard
+  std::atomic<bool> encoders_stop{false};   ///< exchanges go on, with the same position
   std::atomic<bool> saturated{false};
   std::atomic<bool> refuses_mass{false};
-  std::atomic<bool> keeps_gravity{false};  ///< gravity compensation cannot be switched off
+  std::atomic<bool> limits_sum{false};  ///< the largest force holds for force and weight together
   std::atomic<bool> auto_init_fails{false};
   std::atomic<bool> weight_is_nonsense{false};  ///< by the library's model
   std::atomic<unsigned> buttons{0};

@@ -77,26 +77,30 @@ device::SafetyLimits hostile_limits(RandomStream& random) {
   limits.continuous_force_n = random.below(2) == 0 ? 0.0 : random.uniform(0.1, 2.0);
   limits.thermal_budget_s = random.uniform(0.01, 20.0);
   limits.ramp_up_s = random.uniform(0.0, 0.05);
+  limits.max_support_n = random.uniform(0.0, 4.0);
   if (random.below(10) != 0) return limits;
   double device::SafetyLimits::*const members[] = {
       &device::SafetyLimits::max_force_n,      &device::SafetyLimits::continuous_force_n,
       &device::SafetyLimits::thermal_budget_s, &device::SafetyLimits::max_slew_n_per_s,
       &device::SafetyLimits::max_speed_mm_s,   &device::SafetyLimits::engage_force_n,
-      &device::SafetyLimits::ramp_up_s,        &device::SafetyLimits::stale_s};
-  limits.*members[random.below(8)] = random.below(2) == 0 ? kNaN : -1.0;
+      &device::SafetyLimits::ramp_up_s,        &device::SafetyLimits::stale_s,
+      &device::SafetyLimits::frozen_s,         &device::SafetyLimits::max_support_n};
+  limits.*members[random.below(10)] = random.below(2) == 0 ? kNaN : -1.0;
   return limits;
 }
 
 /// Checks every force against the chain's promises, and names the first broken one.
 class Judge {
  public:
-  Judge(const device::SafetyLimits& limits, double tick_s) : limits_(limits), tick_s_(tick_s) {}
+  /// \param support_n  the most that a force may have beside its rendered part
+  Judge(const device::SafetyLimits& limits, double tick_s, double support_n)
+      : limits_(limits), tick_s_(tick_s), support_n_(support_n) {}
 
   void see(Vec3 force_n, bool is_fault) {
-    const double slew_n = limits_.max_slew_n_per_s * tick_s_;
+    const double slew_n = limits_.max_slew_n_per_s * tick_s_ + 2.0 * support_n_;
     if (!is_finite(force_n)) broken("not finite");
     if (!device::is_sound(limits_) && force_n != Vec3{}) broken("force under unsound limits");
-    if (device::is_sound(limits_) && norm(force_n) > limits_.max_force_n * kRounding)
+    if (device::is_sound(limits_) && norm(force_n) > (limits_.max_force_n + support_n_) * kRounding)
       broken("norm");
     if (is_fault && force_n != Vec3{}) broken("force under a fault");
     const bool drops = is_fault && force_n == Vec3{};
@@ -116,6 +120,7 @@ class Judge {
   static constexpr double kRounding = 1.0 + 1e-9;
   const device::SafetyLimits limits_;
   double tick_s_;
+  double support_n_;
   Vec3 last_n_;
   std::int64_t forces_ = 0;
 };
@@ -131,7 +136,7 @@ class ChainRun {
   ChainRun(std::uint64_t seed, double rate_hz)
       : random_(seed, "hostile chain"),
         limits_(hostile_limits(random_)),
-        judge_(limits_, 1.0 / rate_hz),
+        judge_(limits_, 1.0 / rate_hz, 0.0),
         chain_(limits_, 1.0 / rate_hz),
         readings_(random_),
         has_support_(seed % 2 == 1),
@@ -157,7 +162,10 @@ class ChainRun {
     const bool was_faulted = chain_.faulted() || !is_finite(support_n);
     const device::SafeForce safe = chain_.check(force_n, sample, ticks, support_n);
     const bool is_fault = safe.verdict == device::SafetyVerdict::fault;
-    judge_.see(safe.force_n, is_fault);
+    judge_.see(safe.rendered_n, is_fault);
+    const double carried_n = norm(safe.force_n - safe.rendered_n);
+    if (!(carried_n <= 1e-9 + std::max(0.0, limits_.max_support_n))) judge_.broken("support");
+    if (is_fault && safe.force_n != Vec3{}) judge_.broken("support under a fault");
     hold(force_n, sample, safe.force_n, is_fault, was_faulted);
   }
 
@@ -211,7 +219,10 @@ class HostileDevice final : public device::HapticDevice {
       : random_(random), readings_(random), max_force_n_(max_force_n), has_support_(has_support) {}
 
   [[nodiscard]] device::DeviceInfo info() const override {
-    return {"hostile", "", max_force_n_, true};
+    device::DeviceInfo info{"hostile", "", max_force_n_, true};
+    info.max_support_n = kMostSupportN;
+    info.has_encoders = true;
+    return info;
   }
   [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
     sample = readings_.next();
@@ -226,10 +237,12 @@ class HostileDevice final : public device::HapticDevice {
     return random_.below(300) == 0 ? hostile_force_n(random_)
                                    : Vec3{0.0, random_.uniform(-3.0, 3.0), 1.0};
   }
-  void halt() noexcept override {}
+  void halt() noexcept override { halted = true; }
   void rearm() noexcept override {}
 
+  static constexpr double kMostSupportN = 2.0;
   std::vector<Vec3> written;
+  bool halted = false;
 
  private:
   RandomStream& random_;
@@ -309,13 +322,15 @@ TEST_CASE(
     hooks.control = &control;
     const device::ServoReport report =
         device::run_servo(device, force, sink, options, clock, hooks);
-    Judge judge(device::limits_on(device.info(), options.limits), 1.0 / options.rate_hz);
+    Judge judge(device::limits_on(device.info(), options.limits), 1.0 / options.rate_hz,
+                HostileDevice::kMostSupportN);
     for (std::size_t i = 0; i + 1 < device.written.size(); ++i) judge.see(device.written[i], false);
     forces += judge.forces();
     INFO(judge.first_broken);
     CHECK(judge.first_broken.empty());
     CHECK(device.written.back() == Vec3{});
     CHECK((report.end == device::ServoEnd::fault) == (report.fault != device::SafetyFault::none));
+    CHECK(device.halted == (report.end == device::ServoEnd::fault));
     CHECK(report.ticks == sink.count);
   }
   CHECK(forces > 20'000);

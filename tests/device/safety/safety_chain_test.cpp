@@ -41,11 +41,12 @@ TEST_CASE("a limit that is not a positive number lets no force pass") {
         Vec3{});
 }
 
-/// A faultless device: it rests, and numbers its readings.
+/// A faultless device: it rests in a hand, which trembles, and numbers its readings.
 class Readings {
  public:
   device::DeviceSample next() {
     ++sample.sequence;
+    sample.position_mm.z = sample.sequence % 2 == 0 ? -1.0 : -1.01;
     return sample;
   }
   device::DeviceSample sample{{1.0, 2.0, -1.0}, {}};
@@ -119,6 +120,13 @@ TEST_CASE("while force is on, each of these is a fault: zero at once, latched") 
     }
     fault = device::SafetyFault::stale_sample;
   }
+  SECTION("a position that never changes") {
+    for (int tick = 0; tick < 300; ++tick) {
+      REQUIRE(safety.check({0.0, 0.0, 3.0}, bad).verdict == device::SafetyVerdict::passed);
+      ++bad.sequence;
+    }
+    fault = device::SafetyFault::frozen_encoders;
+  }
   SECTION("one that was seen elsewhere") {
     safety.trip(device::SafetyFault::emergency_stop);
     fault = device::SafetyFault::emergency_stop;
@@ -176,8 +184,18 @@ TEST_CASE("an overrun counts with the time that it took") {
   CHECK(safety.check({}, device.next()).verdict == device::SafetyVerdict::fault);
 }
 
+TEST_CASE("a position that never changes is no fault where the support alone is large") {
+  device::SafetyChain safety({.max_support_n = 5.0});
+  device::DeviceSample sample;
+  for (int tick = 0; tick < 2000; ++tick) {
+    ++sample.sequence;
+    REQUIRE_FALSE(safety.check({0.0, 0.0, 0.4}, sample, 1, {0.0, 4.0, 0.0}).verdict ==
+                  device::SafetyVerdict::fault);
+  }
+}
+
 TEST_CASE("the gate judges the rendered force, and no support comes before it opens") {
-  device::SafetyChain safety({});
+  device::SafetyChain safety({.max_support_n = 1.5});
   Readings device;
   const Vec3 support_n{0.0, 0.0, 1.2};
   for (int tick = 0; tick < 20; ++tick) {
@@ -196,36 +214,63 @@ TEST_CASE("the gate judges the rendered force, and no support comes before it op
   CHECK(both.rendered_n == Vec3{0.4, 0.0, 0.0});
 }
 
-TEST_CASE("norm, slew and thermal limits hold for the rendered force and the support together") {
-  SECTION("norm: both are shortened alike") {
-    device::SafetyChain safety(norm_limit_alone(2.5));
+TEST_CASE("norm and slew limits hold for the rendered force alone, and the support has its own") {
+  device::SafetyLimits limits = norm_limit_alone(2.5);
+  limits.max_support_n = 4.0;
+  SECTION("norm: a weight takes nothing from a press and a texture") {
+    device::SafetyChain safety(limits);
+    const device::SafeForce safe = safety.check({0.05, 0.0, 0.7}, {}, 1, {0.0, 4.0, 0.0});
+    CHECK(safe.verdict == device::SafetyVerdict::passed);
+    CHECK(safe.force_n == Vec3{0.05, 4.0, 0.7});
+    CHECK(safe.rendered_n == Vec3{0.05, 0.0, 0.7});
+  }
+  SECTION("norm: the rendered force is shortened, the support is not") {
+    device::SafetyChain safety(limits);
     const device::SafeForce safe = safety.check({3.0, 0.0, 0.0}, {}, 1, {0.0, 0.0, 4.0});
     CHECK(safe.verdict == device::SafetyVerdict::limited);
-    CHECK(norm(safe.force_n - Vec3{1.5, 0.0, 2.0}) < 1e-12);
-    CHECK(norm(safe.rendered_n - Vec3{1.5, 0.0, 0.0}) < 1e-12);
+    CHECK(safe.force_n == Vec3{2.5, 0.0, 4.0});
+    CHECK(safe.rendered_n == Vec3{2.5, 0.0, 0.0});
   }
-  SECTION("slew: a support that jumps is followed by 0.2 N a tick") {
-    device::SafetyChain safety({.max_slew_n_per_s = 200.0});
+  SECTION("norm: the support is shortened to its own limit") {
+    device::SafetyChain safety(limits);
+    const device::SafeForce safe = safety.check({1.0, 0.0, 0.0}, {}, 1, {0.0, 3.0, 9.0});
+    CHECK(norm(safe.force_n - safe.rendered_n) == Approx(4.0));
+    CHECK(safe.rendered_n == Vec3{1.0, 0.0, 0.0});
+  }
+  SECTION("norm: a device without one gets none") {
+    device::SafetyChain safety(norm_limit_alone(2.5));
+    CHECK(safety.check({1.0, 0.0, 0.0}, {}, 1, {0.0, 0.0, 1.0}).force_n == Vec3{1.0, 0.0, 0.0});
+  }
+  SECTION("slew: beside a support the rendered force is followed by 0.2 N a tick") {
+    device::SafetyChain safety({.max_slew_n_per_s = 200.0, .max_support_n = 4.0});
     Readings device;
     static_cast<void>(engage(safety, device, {}));
     for (int tick = 1; tick <= 5; ++tick) {
-      REQUIRE(safety.check({}, device.next(), 1, {0.0, 0.0, 1.0}).force_n.z == Approx(0.2 * tick));
+      const device::SafeForce safe =
+          safety.check({0.0, 0.0, 1.0}, device.next(), 1, {0.0, 3.0, 0.0});
+      REQUIRE(safe.rendered_n.z == Approx(0.2 * tick));
+      REQUIRE(safe.force_n.y == 3.0);
     }
-  }
-  SECTION("heat: motors that carry 3 N for a minute get no more than they can hold") {
-    device::SafetyChain safety(
-        {.max_force_n = 3.0, .continuous_force_n = 1.0, .thermal_budget_s = 1.0});
-    Readings device;
-    static_cast<void>(engage(safety, device, {}));
-    for (int tick = 0; tick < 60'000; ++tick) {
-      static_cast<void>(safety.check({}, device.next(), 1, {0.0, 0.0, 3.0}));
-    }
-    CHECK(safety.sent_n().z == Approx(1.0).epsilon(0.05));
   }
 }
 
+TEST_CASE("motors that carry a support keep less for the rendered force once they are warm") {
+  device::SafetyChain safety({.max_force_n = 3.0,
+                              .continuous_force_n = 1.0,
+                              .thermal_budget_s = 1.0,
+                              .max_support_n = 0.4});
+  Readings device;
+  static_cast<void>(engage(safety, device, {}));
+  device::SafeForce safe;
+  for (int tick = 0; tick < 60'000; ++tick) {
+    safe = safety.check({0.0, 0.0, 3.0}, device.next(), 1, {0.0, 0.0, 0.4});
+  }
+  CHECK(safe.force_n.z == Approx(1.0).epsilon(0.05));
+  CHECK(safe.rendered_n.z == Approx(0.6).epsilon(0.1));
+}
+
 TEST_CASE("a support that is not finite is a fault, and a fault takes the support away") {
-  device::SafetyChain safety({});
+  device::SafetyChain safety({.max_support_n = 1.0});
   Readings device;
   static_cast<void>(engage(safety, device, {}));
   for (int tick = 0; tick < 20; ++tick) {
@@ -268,27 +313,36 @@ class LinkByLink {
   explicit LinkByLink(const device::SafetyLimits& limits)
       : thermal_(limits, 0.001),
         ramp_(limits.ramp_up_s, 0.001),
-        slew_(limits.max_slew_n_per_s, 0.001) {
+        slew_(limits.max_slew_n_per_s, 0.001),
+        max_support_n_(limits.max_support_n) {
     ramp_.start();
   }
 
+  /// \return of the rendered force
   Vec3 next(Vec3 force_n, Vec3 support_n) {
-    thermal_.heat(dot(slew_.sent_n(), slew_.sent_n()), 1.0);
+    thermal_.heat(dot(sent_n_, sent_n_), 1.0);
     const double share = ramp_.next_share();
-    const Vec3 sum_n = share * (force_n + support_n);
-    return slew_.towards(device::within_norm(sum_n, thermal_.limit_n()));
+    const Vec3 carried_n = share * device::within_norm(support_n, max_support_n_);
+    const double limit_n = thermal_.limit_n(norm(carried_n));
+    const Vec3 rendered_n = slew_.towards(device::within_norm(share * force_n, limit_n));
+    sent_n_ = rendered_n + carried_n;
+    return rendered_n;
   }
+  [[nodiscard]] Vec3 sent_n() const { return sent_n_; }
 
  private:
   device::ThermalBudget thermal_;
   device::RampUp ramp_;
   device::SlewLimit slew_;
+  double max_support_n_;
+  Vec3 sent_n_;
 };
 
 TEST_CASE("a chain sends what its links give one after the other, however the force jumps") {
   device::SafetyLimits limits;
   limits.continuous_force_n = GENERATE(0.0, 1.5);
   limits.thermal_budget_s = 1.0;
+  limits.max_support_n = 0.1;
   const bool supported = GENERATE(false, true);
   device::SafetyChain safety(limits);
   LinkByLink links(limits);
@@ -303,9 +357,10 @@ TEST_CASE("a chain sends what its links give one after the other, however the fo
     if (tick == 0) force_n = {};
     const Vec3 support_n = supported && tick % 3 != 0 ? Vec3{0.0, 0.125, 0.0} : Vec3{};
     const device::SafeForce safe = safety.check(force_n, device.next(), 1, support_n);
-    const Vec3 expected_n = links.next(force_n, support_n);
-    REQUIRE(norm(safe.force_n - expected_n) <= 1e-12);
-    const bool is_whole = safe.force_n == force_n + support_n;
+    const Vec3 rendered_n = links.next(force_n, support_n);
+    REQUIRE(norm(safe.rendered_n - rendered_n) <= 1e-12);
+    REQUIRE(norm(safe.force_n - links.sent_n()) <= 1e-12);
+    const bool is_whole = safe.rendered_n == force_n;
     REQUIRE((safe.verdict == device::SafetyVerdict::passed) == is_whole);
     (is_whole ? passed : limited) += 1;
   }

@@ -27,7 +27,8 @@ TEST_CASE("a limit out of its range is unsound, whichever it is") {
       GENERATE(&device::SafetyLimits::max_force_n, &device::SafetyLimits::continuous_force_n,
                &device::SafetyLimits::thermal_budget_s, &device::SafetyLimits::max_slew_n_per_s,
                &device::SafetyLimits::max_speed_mm_s, &device::SafetyLimits::engage_force_n,
-               &device::SafetyLimits::ramp_up_s, &device::SafetyLimits::stale_s);
+               &device::SafetyLimits::ramp_up_s, &device::SafetyLimits::stale_s,
+               &device::SafetyLimits::frozen_s, &device::SafetyLimits::max_support_n);
   const double value = GENERATE(-1.0, kNaN, -kInfinity);
   device::SafetyLimits limits;
   limits.*limit = value;
@@ -37,10 +38,12 @@ TEST_CASE("a limit out of its range is unsound, whichever it is") {
 TEST_CASE("force and ramp must be finite, the limits that switch a link off need not") {
   CHECK_FALSE(device::is_sound({.max_force_n = kInfinity, .max_slew_n_per_s = kInfinity}));
   CHECK_FALSE(device::is_sound({.ramp_up_s = kInfinity}));
+  CHECK_FALSE(device::is_sound({.max_support_n = kInfinity}));
   CHECK(device::is_sound({.max_slew_n_per_s = kInfinity,
                           .max_speed_mm_s = kInfinity,
                           .engage_force_n = kInfinity,
-                          .stale_s = kInfinity}));
+                          .stale_s = kInfinity,
+                          .frozen_s = kInfinity}));
 }
 
 TEST_CASE("a slew limit that cannot let go in time is unsound") {
@@ -59,6 +62,22 @@ TEST_CASE("on a device the smaller limits hold") {
         0.5);
   CHECK(device::limits_on(device_of(8.0, 0.0), {.continuous_force_n = 0.5}).continuous_force_n ==
         0.5);
+}
+
+TEST_CASE("encoders that freeze are looked for on devices that have them, and there alone") {
+  device::DeviceInfo info = device_of(3.3, 0.0);
+  CHECK(device::limits_on(info, {}).frozen_s == kInfinity);
+  CHECK(std::isnan(device::limits_on(info, {.frozen_s = kNaN}).frozen_s));
+  info.has_encoders = true;
+  CHECK(device::limits_on(info, {}).frozen_s == 0.3);
+  CHECK(device::limits_on(info, {.frozen_s = kInfinity}).frozen_s == kInfinity);
+}
+
+TEST_CASE("the limit of a support is the device's") {
+  device::DeviceInfo info = device_of(3.3, 0.0);
+  CHECK(device::limits_on(info, {.max_support_n = 2.0}).max_support_n == 0.0);
+  info.max_support_n = 1.0;
+  CHECK(device::limits_on(info, {}).max_support_n == 1.0);
 }
 
 TEST_CASE("a device that does not know its own force limit gets no force") {

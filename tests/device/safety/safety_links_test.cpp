@@ -254,6 +254,56 @@ TEST_CASE("without a continuous force, or with one above the peak, there is no b
   CHECK(budget.heat_n2() == 0.0);
 }
 
+TEST_CASE(
+    "what the motors carry besides leaves the less, the warmer they are, and a cold one all") {
+  device::ThermalBudget budget(3.0, 1.0, 1.0, 0.001);
+  CHECK(budget.limit_n(0.4) == 3.0);
+  budget.heat(9.0, 1e9);
+  CHECK(budget.limit_n(0.4) == Approx(0.6));
+  CHECK(budget.limit_n(1.5) == 0.0);
+}
+
+/// \return at which look a position that never changes is frozen, counted from 1; 0: not within
+///   10,000
+int frozen_at(device::FrozenEncoders encoders, double pressed_n) {
+  encoders.start({1.0, 2.0, -1.0});
+  for (int look = 1; look <= 10'000; ++look) {
+    if (encoders.is_frozen({1.0, 2.0, -1.0}, pressed_n * pressed_n)) return look;
+  }
+  return 0;
+}
+
+TEST_CASE("encoders that stand still under a newton for the allowed time are frozen, at any rate") {
+  CHECK(frozen_at({0.3, 0.001}, 1.0) == 300);
+  CHECK(frozen_at({0.3, 0.0001}, 2.0) == 3000);
+  CHECK(frozen_at({std::numeric_limits<double>::infinity(), 0.001}, 2.0) == 0);
+}
+
+TEST_CASE("a hand that bears less than a newton may stand still") {
+  CHECK(frozen_at({0.3, 0.001}, 0.99) == 0);
+  CHECK(frozen_at({0.3, 0.001}, std::numeric_limits<double>::quiet_NaN()) == 0);
+}
+
+TEST_CASE("the least motion of one coordinate, and a moment without force, begin anew") {
+  device::FrozenEncoders encoders(0.01, 0.001);
+  Vec3 position_mm{1.0, 2.0, -1.0};
+  const double pressed_n2 = 4.0;
+  encoders.start(position_mm);
+  for (int look = 0; look < 9; ++look) REQUIRE_FALSE(encoders.is_frozen(position_mm, pressed_n2));
+  SECTION("motion") {
+    position_mm.y = std::nextafter(2.0, 3.0);
+    REQUIRE_FALSE(encoders.is_frozen(position_mm, pressed_n2));
+  }
+  SECTION("no force") {
+    REQUIRE_FALSE(encoders.is_frozen(position_mm, 0.0));
+  }
+  SECTION("a new run") {
+    encoders.start(position_mm);
+  }
+  for (int look = 0; look < 9; ++look) REQUIRE_FALSE(encoders.is_frozen(position_mm, pressed_n2));
+  CHECK(encoders.is_frozen(position_mm, pressed_n2));
+}
+
 TEST_CASE("forces grow evenly from nothing to their full size") {
   device::RampUp ramp(0.1, 0.001);
   ramp.start();

@@ -172,11 +172,27 @@ TEST_CASE("a device's support is sent with every force, fades with it, and is no
   CHECK(report.end == device::ServoEnd::time_limit);
   CHECK(report.contact_ticks == 0);
   CHECK(report.limited_ticks == 0);
-  CHECK(report.force_limit_n == Approx(3.3 - 1.0));  // what is left for the texture
+  CHECK(report.force_limit_n == 3.3);  // all of it is left for the texture
   const std::vector<Vec3> expected = {{0, 0, 1},   {0, 0, 1},    {0, 0, 1}, {0, 0, 0.75},
                                       {0, 0, 0.5}, {0, 0, 0.25}, {0, 0, 0}, {0, 0, 0}};
   CHECK(device.written == expected);
   for (const device::ServoSample& sample : kept.samples) CHECK(sample.force_n == Vec3{});
+}
+
+TEST_CASE("a device with encoders that rests to the last bit under a newton ends the run, halted") {
+  RestingDevice device;
+  const double force_n = GENERATE(0.9, 1.1);
+  device.has_encoders = GENERATE(false, true);
+  ConstantForce force({0.0, 0.0, force_n});
+  KeptSamples kept;
+  const device::ServoReport report = device::run_servo_in_virtual_time(
+      device, force, kept, {.limit_ticks = 2000, .limits = norm_limit_alone()});
+  const bool freezes = device.has_encoders && force_n > 1.0;
+  CHECK(report.end == (freezes ? device::ServoEnd::fault : device::ServoEnd::time_limit));
+  CHECK(report.fault ==
+        (freezes ? device::SafetyFault::frozen_encoders : device::SafetyFault::none));
+  CHECK(device.halts == (freezes ? 1 : 0));
+  if (freezes) CHECK(report.ticks == 300);
 }
 
 TEST_CASE("a lost device ends the loop with a fault") {
