@@ -332,9 +332,7 @@ std::unique_ptr<const analysis::Results> with_levels(
 simulation::SubjectModel subject_for(const std::filesystem::path& path, const design::Study& study,
                                      const std::string& on) {
   simulation::SubjectModel subject =
-      path.empty()
-          ? simulation::parse_subject_model(default_subject_json(), "the default subject model")
-          : simulation::load_subject_model(path);
+      path.empty() ? simulation::default_subject() : simulation::load_subject_model(path);
   subject.check_labels(study);
   if (!on.empty()) {
     subject.device = device::device_model(on);

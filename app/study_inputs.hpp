@@ -139,10 +139,6 @@ void prepare_simulated_pack(const design::StudyKey& key);
 /// \throws StoreError if another key is at `path`
 void refuse_other_key(const std::filesystem::path& path, const design::StudyKey& key);
 
-/// config/subjects/default.json as it was when the program was built, so that the program does not
-/// depend on the folder in which it starts.
-[[nodiscard]] std::string_view default_subject_json() noexcept;
-
 /// \param path  a subject model; empty: the built-in one
 /// \param on  model of the device that it holds, a name or a file; empty: the study's, or ideal
 /// \throws as load_subject_model, SubjectModel::check_labels, device::device_model and

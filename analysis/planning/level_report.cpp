@@ -25,12 +25,11 @@ constexpr const char* kBlank = "blank plane";
 
 constexpr const char* kTitle = "Strength of the stimuli";
 constexpr const char* kWhatItIs =
-    "Decibels above the published threshold for vibrations of a held stylus, or above the blank "
-    "plane "
-    "where that is stronger, from one curve to the other: the conservative one (tan_1994) and the "
-    "sensitive one (israr_2006). The blank plane is above the threshold alone. Vibrations are "
-    "those "
-    "of the tip of a modelled device in a simulated hand.";
+    "Decibels by which a stimulus's gain lies above the one at which a simulated person tells it "
+    "from the blank plane in 79 % of three intervals, from one published curve of thresholds to "
+    "the other: the conservative one (tan_1994) and the sensitive one (israr_2006). The blank "
+    "plane itself: power above the curve. Vibrations are those of the tip of a modelled device in "
+    "a simulated hand.";
 constexpr const char* kWhoseItIs =
     "The curves are other people's, passive and steady; active movement raises thresholds. Whether "
     "people feel by them is open until human data that were not fitted are predicted.";
@@ -91,15 +90,14 @@ void add_rows(analysis::Table& table, const design::Study& study, const Stimulus
   row(kBlank, levels.blank);
 }
 
-/// The greatest factor on gains that a stimulus needs by a curve.
-double gain_needed(const StimulusLevels& levels, const std::string& device) {
-  double most = 0.0;
+/// The factor on gains by which every stimulus has the wanted level by both curves.
+std::string gain_needed(const StimulusLevels& levels, const std::string& device) {
+  double low_db = 1e9;
   for (const PlaneLevels& own : levels.levels) {
-    for (const StimulusLevel& level : own) {
-      if (level.device == device) most = std::max(most, level.gain_for_10_db);
-    }
+    low_db = std::min(low_db, simulation::range_on(own, device).low_db);
   }
-  return most;
+  if (low_db <= simulation::kNoLevelDb) return "none";
+  return fmt::format("x {:.2f}", std::pow(10.0, (simulation::kMinLevelDb - low_db) / 20.0));
 }
 
 analysis::Table table_in_all(const design::Study& study, const StimulusLevels& levels) {
@@ -112,7 +110,7 @@ analysis::Table table_in_all(const design::Study& study, const StimulusLevels& l
            [&](const PlaneLevels& own, std::size_t i) { return range_cell(own, devices[i]); });
   std::vector<analysis::Cell> gains{"gain for 10 dB"};
   for (const std::string& device : devices) {
-    gains.emplace_back(fmt::format("x {:.2f}", gain_needed(levels, device)));
+    gains.emplace_back(gain_needed(levels, device));
   }
   table.rows.push_back(std::move(gains));
   table.notes = {
@@ -125,7 +123,9 @@ analysis::Table table_in_all(const design::Study& study, const StimulusLevels& l
 
 analysis::Table table_by_bands(const design::Study& study, const StimulusLevels& levels) {
   analysis::Table table{
-      "levels-by-band", "The same by frequency, dB", {{"stimulus", analysis::Align::left}}};
+      "levels-by-band",
+      "Power by frequency above the curve, or the blank plane where that is stronger, dB",
+      {{"stimulus", analysis::Align::left}}};
   for (const LevelBand& band : simulation::kLevelBands) {
     table.columns.push_back({fmt::format("{:g} to {:g} Hz", band.from_hz, band.to_hz)});
   }
@@ -181,8 +181,6 @@ Json json_of(const PlaneLevels& levels) {
     list.push_back({{"device", level.device},
                     {"curve", engine::name_of(level.curve)},
                     {"db", level.db},
-                    {"gain_for_10_db",
-                     level.gain_for_10_db > 0.0 ? Json(level.gain_for_10_db) : Json(nullptr)},
                     {"bands", std::move(bands)}});
   }
   return list;
@@ -302,7 +300,7 @@ std::vector<std::string> level_warnings(const design::Study& study, const Stimul
     int weak = 0;
     for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
       const LevelRange range = simulation::range_on(levels.levels[i], device);
-      if (range.low_db >= simulation::kLeastLevelDb) continue;
+      if (range.low_db >= simulation::kMinLevelDb) continue;
       ++weak;
       if (range.low_db >= weakest.low_db) continue;
       weakest = range;
@@ -317,7 +315,7 @@ std::vector<std::string> level_warnings(const design::Study& study, const Stimul
   return {fmt::format(
       "stimuli may stand less than {:g} dB above threshold or blank plane on {}; the weakest, {}: "
       "people may not feel them; raise the gains or take another device{}",
-      simulation::kLeastLevelDb, weak_on, words,
+      simulation::kMinLevelDb, weak_on, words,
       study.device.empty() ? "; name yours by /rendering/device" : "")};
 }
 

@@ -58,6 +58,11 @@ const engine::RenderingModel& StimulusSource::model(const std::string& code) con
   return stimulus(code).model;
 }
 
+engine::RenderingModel StimulusSource::model_at(const std::string& code, double factor) const {
+  const Stimulus& found = stimulus(code);
+  return {found.field, rendering_, engine::scaled(found.gains, factor)};
+}
+
 StimulusSource::Mix StimulusSource::mix_of(const design::Interval& interval) noexcept {
   if (!interval.other || interval.share == 0.0) return {interval.stimulus, interval.stimulus, 0.0};
   return {interval.stimulus, *interval.other, interval.share};

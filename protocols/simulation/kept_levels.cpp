@@ -27,8 +27,7 @@ std::string identity_of(const design::StudyKey& key, const engine::Pack& pack,
 json json_of(const PlaneLevels& plane) {
   json levels = json::array();
   for (const StimulusLevel& level : plane) {
-    levels.push_back({level.device, static_cast<int>(level.curve), level.db, level.bands_db,
-                      level.gain_for_10_db});
+    levels.push_back({level.device, static_cast<int>(level.curve), level.db, level.bands_db});
   }
   return levels;
 }
@@ -39,8 +38,7 @@ PlaneLevels plane_in(const json& levels) {
     plane.push_back({.device = level.at(0).get<std::string>(),
                      .curve = engine::kThresholdCurves.at(level.at(1).get<std::size_t>()),
                      .db = level.at(2).get<double>(),
-                     .bands_db = level.at(3).get<decltype(StimulusLevel::bands_db)>(),
-                     .gain_for_10_db = level.at(4).get<double>()});
+                     .bands_db = level.at(3).get<decltype(StimulusLevel::bands_db)>()});
   }
   return plane;
 }

@@ -2,41 +2,88 @@
 
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "engine/perception/texture_sense.hpp"
 #include "engine/perception/threshold_weights.hpp"
 #include "protocols/session/exploration.hpp"
 #include "protocols/simulation/felt_exploration.hpp"
+#include "protocols/simulation/felt_floor.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <numeric>
 #include <optional>
+#include <span>
+#include <utility>
 
 namespace touchtrial::simulation {
 namespace {
 
-/// Explorations of each plane.
-constexpr int kPasses = 2;
+/// Of each plane, each as long as an interval of the default detection study.
+constexpr std::size_t kExplorations = 8;
+constexpr double kIntervalS = 2.5;
+/// Gains farther from the pack's than this are not tried.
+constexpr double kTrustedDb = 40.0;
 
 using Powers = std::array<double, engine::kSenseBins + 1>;
 using BandPowers = std::array<double, kLevelBands.size()>;
+constexpr std::size_t kCurves = engine::kThresholdCurves.size();
 
 class NoSamples final : public device::SampleSink {
  public:
   void record(const device::ServoSample&) noexcept override {}
 };
 
-/// Mean powers of the tip's acceleration in one exploration.
-/// \param hand  before its first tick
-Powers stroked(const engine::RenderingModel& model, const PlaneGeometry& plane,
-               const SubjectModel& subject, const device::ServoOptions& servo,
-               device::SimulatedHand hand) {
-  HandSense sense(subject);
-  sense.begin(hand, plane);
-  session::ModelForce force(model);
-  NoSamples sink;
-  static_cast<void>(device::run_servo_in_virtual_time(hand, force, sink, servo));
-  return sense.mean_powers();
+/// What one exploration feels like by each curve.
+class CurveSenses final : public device::TipSense {
+ public:
+  explicit CurveSenses(const PlaneGeometry& plane) {
+    for (std::size_t curve = 0; curve < kCurves; ++curve) {
+      senses_[curve] = engine::TextureSense({.curve = engine::kThresholdCurves[curve]});
+      senses_[curve].reset(plane);
+    }
+  }
+  void feel(const Vec3& position_mm, const Vec3& force_n,
+            const Vec3& acceleration_m_s2) noexcept override {
+    for (engine::TextureSense& sense : senses_) sense.feel(position_mm, force_n, acceleration_m_s2);
+  }
+  [[nodiscard]] const engine::TextureSense& by(std::size_t curve) const { return senses_[curve]; }
+
+ private:
+  std::array<engine::TextureSense, kCurves> senses_;
+};
+
+/// Features by exploration.
+using Explored = std::array<engine::FeltFeatures, kExplorations>;
+
+/// The same by curve.
+struct Felt {
+  std::array<Explored, kCurves> features{};
+  Powers powers{};  ///< mean over explorations
+};
+
+using Hands = std::vector<device::SimulatedHand>;
+
+/// \param hands  before their first tick, one for each exploration
+Felt stroked(const engine::RenderingModel& model, const PlaneGeometry& plane,
+             const device::ServoOptions& servo, const Hands& hands) {
+  Felt felt;
+  for (std::size_t i = 0; i < kExplorations; ++i) {
+    device::SimulatedHand hand = hands[i];
+    CurveSenses senses(plane);
+    hand.feel_by(senses);
+    session::ModelForce force(model);
+    NoSamples sink;
+    static_cast<void>(device::run_servo_in_virtual_time(hand, force, sink, servo));
+    for (std::size_t curve = 0; curve < kCurves; ++curve) {
+      felt.features[curve][i] = senses.by(curve).features();
+    }
+    const Powers powers = senses.by(0).mean_powers();
+    for (std::size_t k = 0; k < powers.size(); ++k) felt.powers[k] += powers[k] / kExplorations;
+  }
+  return felt;
 }
 
 const std::vector<double>& weights_of(engine::ThresholdCurve curve) {
@@ -59,34 +106,119 @@ BandPowers in_bands(const Powers& powers, engine::ThresholdCurve curve) {
 }
 
 double decibels(double power) noexcept {
-  constexpr double kNothing = 1e-10;  // -100 dB
-  return 10.0 * std::log10(std::max(power, kNothing));
+  return 10.0 * std::log10(std::max(power, std::pow(10.0, kNoLevelDb / 10.0)));
 }
 
-double sum_of(const BandPowers& bands) noexcept {
-  double sum = 0.0;
-  for (const double band : bands) sum += band;
-  return sum;
-}
-
-/// The factor on the texture's part that makes the sum stand 10 dB above the blank or threshold.
-double gain_for_10_db(double felt, double blank) noexcept {
-  const double texture = felt - blank;
-  if (!(texture > 0.0)) return 0.0;
-  return std::sqrt((10.0 * std::max(1.0, blank) - blank) / texture);
-}
-
-/// \param blank  null for the blank plane itself
-StimulusLevel level_of(const std::string& device, engine::ThresholdCurve curve,
-                       const BandPowers& felt, const BandPowers* blank) {
-  StimulusLevel level{.device = device, .curve = curve};
-  const auto beside = [&](double power) { return std::max(1.0, power); };
-  const double blank_sum = blank != nullptr ? sum_of(*blank) : 0.0;
-  level.db = decibels(sum_of(felt) / beside(blank_sum));
-  for (std::size_t band = 0; band < felt.size(); ++band) {
-    level.bands_db[band] = decibels(felt[band] / beside(blank != nullptr ? (*blank)[band] : 0.0));
+/// The median person of a subject model, who tells a texture from the blank plane by every feature
+/// as far as the whole texture changes it. Intervals differ by the person's noise, and by what
+/// happens to be stroked.
+class Detector {
+ public:
+  Detector(const SubjectModel& subject, const Explored& blank, const Explored& whole)
+      : noise_{subject.feature_noise, subject.common_noise},
+        floor_(floor_of(noise_, 0.0)),
+        blank_(powers_of(blank)) {
+    add(0.0, whole);
+    for (std::size_t i = 0; i < kExplorations; ++i) {
+      const engine::FeltFeatures higher = perceived(i, 1.0);
+      const engine::FeltFeatures lower = perceived(i, 0.0);
+      for (std::size_t k = 0; k < weights_.size(); ++k) {
+        weights_[k] += (higher[k] - lower[k]) / kExplorations;
+      }
+    }
+    const double sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+    const double squares =
+        std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 0.0);
+    own_variance_ = noise_.own * noise_.own * squares + noise_.common * noise_.common * sum * sum;
+    blank_strength_ = strength(0.0);
   }
-  if (blank != nullptr) level.gain_for_10_db = gain_for_10_db(sum_of(felt), blank_sum);
+
+  /// Takes how a gain feels, from which others are extrapolated.
+  void add(double gain_db, const Explored& felt) {
+    texture_ = powers_of(felt);
+    for (std::size_t i = 0; i < kExplorations; ++i) {
+      for (std::size_t k = 0; k < texture_[i].size(); ++k) {
+        texture_[i][k] = (texture_[i][k] - blank_[i][k]) / power_of(gain_db);
+      }
+    }
+  }
+  /// \return the gain at which the texture is told from the blank plane, dB; nothing if none is
+  [[nodiscard]] std::optional<double> threshold_db() const {
+    double below_db = kMinGainDb;
+    double above_db = kMaxGainDb;
+    if (!is_told(above_db)) return std::nullopt;
+    while (above_db - below_db > kStepDb) {
+      const double middle_db = 0.5 * (below_db + above_db);
+      (is_told(middle_db) ? above_db : below_db) = middle_db;
+    }
+    return above_db;
+  }
+
+ private:
+  static constexpr double kMinGainDb = -60.0;
+  static constexpr double kMaxGainDb = 60.0;
+  static constexpr double kStepDb = 1e-3;
+
+  /// The sum of weighted features: its mean over explorations, and the variance between them.
+  struct Strength {
+    double mean = 0.0;
+    double variance = 0.0;
+  };
+
+  static double power_of(double gain_db) { return std::pow(10.0, gain_db / 10.0); }
+  static Explored powers_of(Explored explored) {
+    for (engine::FeltFeatures& features : explored) {
+      for (double& feature : features) feature = std::exp(2.0 * feature);
+    }
+    return explored;
+  }
+  /// \param power  of the gain
+  [[nodiscard]] engine::FeltFeatures perceived(std::size_t exploration, double power) const {
+    engine::FeltFeatures felt{};
+    for (std::size_t k = 0; k < felt.size(); ++k) {
+      const double sum = blank_[exploration][k] + power * texture_[exploration][k];
+      felt[k] = 0.5 * std::log(floor_.share * std::max(0.0, sum) + floor_.floor);
+    }
+    return felt;
+  }
+  [[nodiscard]] Strength strength(double power) const {
+    std::array<double, kExplorations> sums{};
+    Strength found;
+    for (std::size_t i = 0; i < kExplorations; ++i) {
+      const engine::FeltFeatures felt = perceived(i, power);
+      sums[i] = std::inner_product(weights_.begin(), weights_.end(), felt.begin(), 0.0);
+      found.mean += sums[i] / kExplorations;
+    }
+    for (const double sum : sums) {
+      found.variance += (sum - found.mean) * (sum - found.mean) / (kExplorations - 1);
+    }
+    return found;
+  }
+  [[nodiscard]] bool is_told(double gain_db) const {
+    const Strength textured = strength(power_of(gain_db));
+    const double variance = own_variance_ + 0.5 * (textured.variance + blank_strength_.variance);
+    return textured.mean - blank_strength_.mean >= kThresholdDPrime * std::sqrt(variance) &&
+           variance > 0.0;
+  }
+
+  engine::FeltNoise noise_;
+  FeltFloor floor_;
+  Explored blank_;      // powers
+  Explored texture_{};  // what the whole texture adds to them
+  engine::FeltFeatures weights_{};
+  double own_variance_ = 0.0;
+  Strength blank_strength_;
+};
+
+StimulusLevel level_of(const std::string& device, engine::ThresholdCurve curve, const Felt& felt,
+                       const Felt* blank) {
+  StimulusLevel level{.device = device, .curve = curve};
+  const BandPowers bands = in_bands(felt.powers, curve);
+  const BandPowers beside = blank != nullptr ? in_bands(blank->powers, curve) : BandPowers{};
+  for (std::size_t band = 0; band < bands.size(); ++band) {
+    level.bands_db[band] = decibels(bands[band] / std::max(1.0, beside[band]));
+  }
+  level.db = decibels(std::accumulate(bands.begin(), bands.end(), 0.0));
   return level;
 }
 
@@ -112,59 +244,64 @@ StimulusLevels levels_of(const design::StudyCodes& key, const session::StimulusS
                          std::uint64_t seed) {
   const LabelledFields fields(key, source);
   StimulusLevels result;
-  std::vector<const engine::RenderingModel*> planes;
-  for (const LabelledField& field : fields.all()) {
-    result.stimuli.push_back(field.stimulus);
-    planes.push_back(field.model);
-  }
-  planes.push_back(&source.flat());
+  for (const LabelledField& field : fields.all()) result.stimuli.push_back(field.stimulus);
   const device::ServoOptions servo =
       session::trial_servo_options(key.study, device::kServoRateHz, {});
-  std::vector<SubjectModel> subjects(devices.size());
-  for (std::size_t d = 0; d < devices.size(); ++d) {
-    subjects[d].sense = engine::ThresholdCurve::israr_2006;  // so that accelerations are felt
-    subjects[d].device = devices[d];
-  }
-  // By device and pass: the same path on every plane. Meanwhile the weights of each curve, which
-  // are worked out once in a program's life, while whoever else asks for them waits.
-  constexpr std::size_t kCurves = engine::kThresholdCurves.size();
-  std::vector<std::optional<device::SimulatedHand>> hands(devices.size() * kPasses);
-  in_parallel(jobs, kCurves + hands.size(), [&](std::size_t i) {
+  // By device: a hand for each exploration, on the same paths for every plane. Meanwhile the
+  // weights of each curve, which are worked out once in a program's life, while whoever else asks
+  // waits.
+  SubjectModel subject = default_subject();
+  subject.sense = engine::ThresholdCurve::israr_2006;  // so that accelerations are felt
+  subject.explore_s = kIntervalS + device::SimulatedHand::kPushBuildUpS;
+  std::vector<Hands> hands(devices.size());
+  in_parallel(jobs, kCurves + devices.size(), [&](std::size_t i) {
     if (i < kCurves) {
       static_cast<void>(weights_of(engine::kThresholdCurves[i]));
       return;
     }
-    const std::size_t hand = i - kCurves;
-    RandomStream random(seed, "levels: path", hand % kPasses);
-    hands[hand].emplace(make_exploring_hand(subjects[hand / kPasses], fields.plane(), random));
-    hands[hand]->foresee();
-  });
-  std::vector<Powers> powers(devices.size() * planes.size() * kPasses);
-  in_parallel(jobs, powers.size(), [&](std::size_t i) {
-    const std::size_t pass = i % kPasses;
-    const std::size_t plane = i / kPasses % planes.size();
-    const std::size_t device = i / kPasses / planes.size();
-    powers[i] = stroked(*planes[plane], fields.plane(), subjects[device], servo,
-                        *hands[device * kPasses + pass]);
-  });
-  const auto mean_of = [&](std::size_t device, std::size_t plane) {
-    Powers mean{};
-    for (std::size_t pass = 0; pass < kPasses; ++pass) {
-      const Powers& own = powers[(device * planes.size() + plane) * kPasses + pass];
-      for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += own[k] / kPasses;
+    SubjectModel holder = subject;
+    holder.device = devices[i - kCurves];
+    for (std::size_t path = 0; path < kExplorations; ++path) {
+      RandomStream random(seed, "levels: path", path);
+      hands[i - kCurves].push_back(make_exploring_hand(holder, fields.plane(), random));
+      hands[i - kCurves].back().foresee();
     }
-    return mean;
-  };
-  result.levels.resize(result.stimuli.size());
-  for (std::size_t d = 0; d < devices.size(); ++d) {
-    const Powers none = mean_of(d, planes.size() - 1);
-    for (const engine::ThresholdCurve curve : engine::kThresholdCurves) {
-      const BandPowers blank = in_bands(none, curve);
-      result.blank.push_back(level_of(devices[d].name, curve, blank, nullptr));
-      for (std::size_t i = 0; i < result.stimuli.size(); ++i) {
-        result.levels[i].push_back(
-            level_of(devices[d].name, curve, in_bands(mean_of(d, i), curve), &blank));
+  });
+  std::vector<Felt> blanks(devices.size());
+  in_parallel(jobs, devices.size(), [&](std::size_t d) {
+    blanks[d] = stroked(source.flat(), fields.plane(), servo, hands[d]);
+  });
+  const std::size_t planes = result.stimuli.size();
+  std::vector<PlaneLevels> levels(devices.size() * planes);
+  in_parallel(jobs, levels.size(), [&](std::size_t i) {
+    const std::size_t d = i / planes;
+    const std::string& code = key.code_of(result.stimuli[i % planes]);
+    const auto felt_at = [&](double gain_db) {
+      return stroked(source.model_at(code, std::pow(10.0, gain_db / 20.0)), fields.plane(), servo,
+                     hands[d]);
+    };
+    const Felt whole = felt_at(0.0);
+    for (std::size_t curve = 0; curve < kCurves; ++curve) {
+      StimulusLevel level =
+          level_of(devices[d].name, engine::kThresholdCurves[curve], whole, &blanks[d]);
+      Detector person(subject, blanks[d].features[curve], whole.features[curve]);
+      std::optional<double> threshold_db = person.threshold_db();
+      if (threshold_db && std::abs(*threshold_db) < kTrustedDb) {
+        // A hand with friction and mass is not linear: once more, near the threshold.
+        person.add(*threshold_db, felt_at(*threshold_db).features[curve]);
+        threshold_db = person.threshold_db();
       }
+      level.db = threshold_db ? -*threshold_db : kNoLevelDb;
+      levels[i].push_back(std::move(level));
+    }
+  });
+  result.levels.resize(planes);
+  for (std::size_t d = 0; d < devices.size(); ++d) {
+    for (const engine::ThresholdCurve curve : engine::kThresholdCurves) {
+      result.blank.push_back(level_of(devices[d].name, curve, blanks[d], nullptr));
+    }
+    for (std::size_t i = 0; i < planes; ++i) {
+      std::ranges::move(levels[d * planes + i], std::back_inserter(result.levels[i]));
     }
   }
   return result;

@@ -27,18 +27,19 @@ inline constexpr std::array<LevelBand, 7> kLevelBands{{{0.0, 10.0},
                                                        {160.0, 320.0},
                                                        {320.0, 500.0}}};
 
-/// What a hand feels of one plane on one device by one curve. Powers are multiples of that of a
-/// vibration at the threshold.
+/// What a hand feels of one plane on one device by one curve.
 struct StimulusLevel {
   std::string device;  ///< name of the model
   engine::ThresholdCurve curve{};
-  /// Above the greater of threshold and blank plane; of the blank plane above the threshold, dB.
+  /// By how many decibels the stimulus's gain lies above the one at which the median person of the
+  /// default subject model tells it from the blank plane in 79.4 % of three intervals; kNoLevelDb
+  /// where no gain helps. Of the blank plane: its power above that of a vibration at the threshold.
   double db = 0.0;
-  std::array<double, kLevelBands.size()> bands_db{};  ///< the same, each band by itself
-  /// By how much the stimulus's gain would have to be multiplied for 10 dB; 0 for the blank plane
-  /// and where no gain helps.
-  double gain_for_10_db = 0.0;
+  /// Power above the greater of threshold and blank plane, dB, in each band by itself; of the blank
+  /// plane above the threshold.
+  std::array<double, kLevelBands.size()> bands_db{};
 };
+inline constexpr double kNoLevelDb = -100.0;
 
 /// By device, and for each device by curve in the order of engine::kThresholdCurves.
 using PlaneLevels = std::vector<StimulusLevel>;
@@ -50,7 +51,7 @@ struct StimulusLevels {
 };
 
 /// Below this a stimulus is warned of.
-inline constexpr double kLeastLevelDb = 10.0;
+inline constexpr double kMinLevelDb = 10.0;
 
 /// The model that a study names: the program's own, or a file's, relative to the study's folder.
 /// \pre the study names one

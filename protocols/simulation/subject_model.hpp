@@ -93,6 +93,9 @@ struct SubjectModel {
 [[nodiscard]] std::string_view name_of_sense(
     const std::optional<engine::ThresholdCurve>& sense) noexcept;
 
+/// \return config/subjects/default.json as it was when the program was built
+[[nodiscard]] SubjectModel default_subject();
+
 /// Reads a subject file strictly: refuses unknown keys, wrong types and impossible values. Missing
 /// keys have the defaults above.
 /// \throws StudyError with the file, the JSON pointer, and the nearest known key or value

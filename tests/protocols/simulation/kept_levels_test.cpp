@@ -20,7 +20,6 @@ void check_same(const simulation::PlaneLevels& one, const simulation::PlaneLevel
     CHECK(one[i].curve == other[i].curve);
     CHECK(one[i].db == other[i].db);
     CHECK(one[i].bands_db == other[i].bands_db);
-    CHECK(one[i].gain_for_10_db == other[i].gain_for_10_db);
   }
 }
 

@@ -35,8 +35,6 @@ TEST_CASE("law 9: twice the gain is 6.02 dB more by either curve") {
   for (std::size_t curve = 0; curve < 2; ++curve) {
     CHECK(twice.levels[0][curve].db - single.levels[0][curve].db == Approx(6.02).margin(0.2));
     CHECK(twice.levels[1][curve].db == single.levels[1][curve].db);
-    const double needed = single.levels[0][curve].gain_for_10_db;
-    CHECK(20.0 * std::log10(needed) == Approx(10.0 - single.levels[0][curve].db).margin(0.1));
   }
 }
 
@@ -46,8 +44,7 @@ TEST_CASE("a plane without texture is as strong as the blank one") {
     REQUIRE(stimulus.size() == 4);
     for (std::size_t i = 0; i < stimulus.size(); ++i) {
       CHECK(stimulus[i].device == (i < 2 ? "ideal" : "touch"));
-      CHECK(stimulus[i].db == Approx(std::min(found.blank[i].db, 0.0)).margin(1e-9));
-      CHECK(stimulus[i].gain_for_10_db == 0.0);
+      CHECK(stimulus[i].db == simulation::kNoLevelDb);
     }
   }
   // No device, no texture: nothing; encoder steps and friction are felt where there are any.
