@@ -238,6 +238,7 @@ std::string prepare_json(const design::PrepareReport& report, const design::Pack
                    {"remark", remark_on(plane)}}},
                  {"stimuli", stimuli},
                  {"blank", {{"levels", Json::parse(planning::levels_json(levels.blank))}}},
+                 {"provisional", levels.provisional},
                  {"differences", Json::parse(planning::differences_json(study, levels))},
                  {"skipped", skipped},
                  {"warnings", report.warnings}};

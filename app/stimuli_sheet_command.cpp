@@ -87,7 +87,8 @@ void add_levels(design::StudyKey key, const fs::path& pack, analysis::StimulusSh
       const auto keyed = std::ranges::find(key.stimuli, card.code, &design::KeyedStimulus::code);
       const auto place = std::ranges::find(levels.stimuli, keyed->stimulus);
       const auto at = static_cast<std::size_t>(place - levels.stimuli.begin());
-      card.level = planning::range_words(levels.levels[at]) + " dB (blank " + blank + ")";
+      card.level = planning::range_words(levels.levels[at]) + " dB" +
+                   (levels.provisional ? ", provisional" : "") + " (blank " + blank + ")";
     }
   }
 }

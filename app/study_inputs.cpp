@@ -3,6 +3,7 @@
 #include "analysis/planning/level_report.hpp"
 #include "analysis/sealed_sessions.hpp"
 #include "app/console.hpp"
+#include "app/pilot_thresholds.hpp"
 #include "app/shipped_files.hpp"
 #include "app/texts/study_texts.hpp"
 #include "core/cipher.hpp"
@@ -270,14 +271,43 @@ std::filesystem::path notes_folder() {
   return cache.empty() ? cache : cache / "notes";
 }
 
-int cores() {
-  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+/// The gains of a study that states its level.
+design::LevelStage level_stage(const design::StudyKey& key) {
+  if (!key.study.level) return {};
+  const device::DeviceModel device = simulation::device_of(key.study);
+  const simulation::LevelCurve curve = curve_of(key.study, device);
+  const std::string identity = device::device_model_json(device) +
+                               std::string(engine::name_of(curve.curve)) +
+                               number_text(curve.pilots_db.value_or(0.0));
+  return {identity, [=, &key](std::span<const engine::FieldView> fields) {
+            simulation::LevelledGains found =
+                simulation::gains_at_level(key, fields, device, curve, cores());
+            return std::pair(std::move(found.gains), std::move(found.remarks));
+          }};
+}
+
+/// Levels by the pilots of the laboratory, if the study names some and they can be read.
+simulation::StimulusLevels by_pilots(simulation::StimulusLevels levels,
+                                     const design::Study& study) {
+  if (!study.level) return levels;
+  try {
+    const simulation::LevelCurve curve = curve_of(study, simulation::device_of(study));
+    if (curve.pilots_db) simulation::apply(curve, levels);
+  } catch (const Error& error) {
+    spdlog::warn("levels are by published curves: {}", error.what());
+  }
+  return levels;
 }
 
 }  // namespace
 
+int cores() {
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
 design::PrepareReport prepare_here(const design::StudyKey& key, design::PrepareOptions options) {
   options.notes = notes_folder();
+  options.level = level_stage(key);
   return design::prepare_pack(key, key.pack_folder, progress_bar("preparing"), options);
 }
 
@@ -309,12 +339,15 @@ std::optional<design::StudyKey> open_key_of(const design::Study& study,
 simulation::StimulusLevels levels_of_pack(const design::StudyCodes& key) {
   const engine::Pack pack(key.pack_folder);
   const session::StimulusSource source(pack, key.study.rendering);
-  return simulation::levels_of(key, source, simulation::level_devices(key.study), cores());
+  return by_pilots(
+      simulation::levels_of(key, source, simulation::level_devices(key.study), cores()), key.study);
 }
 
 simulation::StimulusLevels levels_as_prepared(const design::StudyKey& key) {
-  return simulation::kept_levels_of(key, engine::Pack(key.pack_folder),
-                                    simulation::level_devices(key.study), cores(), notes_folder());
+  return by_pilots(
+      simulation::kept_levels_of(key, engine::Pack(key.pack_folder),
+                                 simulation::level_devices(key.study), cores(), notes_folder()),
+      key.study);
 }
 
 std::unique_ptr<const analysis::Results> with_levels(

@@ -103,6 +103,9 @@ void save_station_files(const design::StudyKey& key, const design::PackPlace& pl
 [[nodiscard]] design::StudyKey simulated_key(const design::Study& study,
                                              const std::filesystem::path& study_file);
 
+/// \return how many threads work on levels: one for each core
+[[nodiscard]] int cores();
+
 /// design::prepare_pack into the key's pack_folder, with a progress bar and notes in the user's
 /// cache.
 [[nodiscard]] design::PrepareReport prepare_here(const design::StudyKey& key,

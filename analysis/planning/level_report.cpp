@@ -1,12 +1,16 @@
 #include "analysis/planning/level_report.hpp"
 
 #include "core/strict_json.hpp"
+#include "protocols/design/protocol.hpp"
+#include "protocols/simulation/felt_floor.hpp"
+#include "protocols/simulation/subject_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
+#include <boost/math/distributions/normal.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -30,7 +34,13 @@ constexpr const char* kWhatItIs =
     "the other: the conservative one (tan_1994) and the sensitive one (israr_2006). The blank "
     "plane itself: power above the curve. Vibrations are those of the tip of a modelled device in "
     "a simulated hand.";
+constexpr const char* kWhatPilotsSay =
+    "Decibels by which a stimulus's gain lies above the one at which people of this laboratory, on "
+    "its device, would tell it from the blank plane in 79 % of three intervals: the thresholds of "
+    "its detection study (/rendering/gains/curve), carried to these stimuli by a modelled device "
+    "in a simulated hand. The blank plane itself: power above the curve.";
 constexpr const char* kWhoseItIs =
+    "Provisional: until a detection study of pilots takes the curve's place (docs/perception.md). "
     "The curves are other people's, passive and steady; active movement raises thresholds. Whether "
     "people feel by them is open until human data that were not fitted are predicted.";
 
@@ -102,7 +112,8 @@ std::string gain_needed(const StimulusLevels& levels, const std::string& device)
 
 analysis::Table table_in_all(const design::Study& study, const StimulusLevels& levels) {
   analysis::Table table{"levels",
-                        "Levels re published passive thresholds, dB",
+                        levels.provisional ? "Provisional levels above the threshold, dB"
+                                           : "Levels above the laboratory's threshold, dB",
                         {{"stimulus", analysis::Align::left}}};
   const std::vector<std::string> devices = devices_of(levels);
   for (const std::string& device : devices) table.columns.push_back({device});
@@ -113,11 +124,10 @@ analysis::Table table_in_all(const design::Study& study, const StimulusLevels& l
     gains.emplace_back(gain_needed(levels, device));
   }
   table.rows.push_back(std::move(gains));
-  table.notes = {
-      {kWhatItIs},
-      {"With the gains times the number in the last row, every stimulus would stand 10 dB up "
-       "by both curves, as far as motors and stability allow."},
-      {kWhoseItIs}};
+  table.notes = {{levels.provisional ? kWhatItIs : kWhatPilotsSay},
+                 {"With the gains times the number in the last row, every stimulus would stand 10 "
+                  "dB up, as far as motors and stability allow."}};
+  if (levels.provisional) table.notes.push_back({kWhoseItIs});
   return table;
 }
 
@@ -169,6 +179,98 @@ std::string nearest_words(const design::Study& study, const StimulusLevels& leve
   return words;
 }
 
+/// The median simulated person's impression of a level: its strength, and the noise of that.
+struct StrengthSense {
+  double floor;
+  double noise;
+
+  StrengthSense() {
+    const simulation::SubjectModel person = simulation::default_subject();
+    const engine::FeltNoise own{person.feature_noise, person.common_noise};
+    floor = simulation::floor_of(own, 0.0).floor;
+    noise = simulation::strength_noise(own);
+  }
+  [[nodiscard]] double strength(double level_db) const {
+    return 0.5 * std::log(std::pow(10.0, level_db / 10.0) + floor);
+  }
+};
+
+/// A stimulus as somebody sees it who judges by strength alone.
+struct Strong {
+  double strength;
+  int class_index;
+};
+
+/// \return the share of right answers by the nearest strength
+double right_by_strength(std::vector<Strong> stimuli, double noise) {
+  std::ranges::stable_sort(stimuli, {}, &Strong::strength);
+  const boost::math::normal normal;
+  double right = 0.0;
+  for (const Strong& shown : stimuli) {
+    const auto below = [&](std::size_t edge) {
+      if (edge == 0) return 0.0;
+      if (edge == stimuli.size()) return 1.0;
+      const double middle = 0.5 * (stimuli[edge - 1].strength + stimuli[edge].strength);
+      return boost::math::cdf(normal, (middle - shown.strength) / noise);
+    };
+    for (std::size_t i = 0; i < stimuli.size(); ++i) {
+      if (stimuli[i].class_index == shown.class_index) right += below(i + 1) - below(i);
+    }
+  }
+  return right / static_cast<double>(stimuli.size());
+}
+
+/// What level alone gives away, by device, curve and method.
+struct LevelAlone {
+  std::string device;
+  engine::ThresholdCurve curve;
+  int method;
+  double right;
+};
+
+std::vector<LevelAlone> by_level_alone(const design::Study& study, const StimulusLevels& levels) {
+  std::vector<LevelAlone> found;
+  if (study.classes.size() < 2 || study.protocol->interval_plan(study)) return found;
+  const StrengthSense sense;
+  for (std::size_t place = 0; place < levels.blank.size(); ++place) {
+    for (int method = 0; method < study.presented_methods(); ++method) {
+      std::vector<Strong> stimuli;
+      for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
+        if (levels.stimuli[i].method != method) continue;
+        stimuli.push_back(
+            {sense.strength(levels.levels[i][place].db), levels.stimuli[i].class_index});
+      }
+      if (stimuli.empty()) continue;
+      found.push_back({levels.blank[place].device, levels.blank[place].curve, method,
+                       right_by_strength(std::move(stimuli), sense.noise)});
+    }
+  }
+  return found;
+}
+
+std::string level_alone_words(const design::Study& study, const StimulusLevels& levels) {
+  const std::vector<LevelAlone> all = by_level_alone(study, levels);
+  std::string words;
+  for (const std::string& device : devices_of(levels)) {
+    double low = 1.0;
+    double high = 0.0;
+    for (const LevelAlone& one : all) {
+      if (one.device != device) continue;
+      low = std::min(low, one.right);
+      high = std::max(high, one.right);
+    }
+    if (high < low) continue;
+    words += fmt::format("{}{}: {:.0f} to {:.0f} %", words.empty() ? "" : "; ", device, 100.0 * low,
+                         100.0 * high);
+  }
+  if (words.empty()) return words;
+  return fmt::format(
+      "A simulated person who judged by strength alone, and not by pattern, would be right in so "
+      "many answers (chance {:.0f} %), over curves and methods: {}. \"equalise\": \"level\" takes "
+      "that away.",
+      100.0 / static_cast<double>(study.classes.size()), words);
+}
+
 Json json_of(const PlaneLevels& levels) {
   Json list = Json::array();
   for (const StimulusLevel& level : levels) {
@@ -203,6 +305,17 @@ Json json_of_differences(const design::Study& study, const StimulusLevels& level
   return list;
 }
 
+Json json_by_level_alone(const design::Study& study, const StimulusLevels& levels) {
+  Json list = Json::array();
+  for (const LevelAlone& one : by_level_alone(study, levels)) {
+    list.push_back({{"device", one.device},
+                    {"curve", engine::name_of(one.curve)},
+                    {"method", study.methods[static_cast<std::size_t>(one.method)].label},
+                    {"right", one.right}});
+  }
+  return list;
+}
+
 Json json_of_all(const design::Study& study, const StimulusLevels& levels) {
   Json stimuli = Json::array();
   for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
@@ -212,9 +325,11 @@ Json json_of_all(const design::Study& study, const StimulusLevels& levels) {
                        {"method", study.methods[index.method].label},
                        {"levels", json_of(levels.levels[i])}});
   }
-  return {{"stimuli", std::move(stimuli)},
+  return {{"provisional", levels.provisional},
+          {"stimuli", std::move(stimuli)},
           {"blank", json_of(levels.blank)},
-          {"differences", json_of_differences(study, levels)}};
+          {"differences", json_of_differences(study, levels)},
+          {"by_level_alone", json_by_level_alone(study, levels)}};
 }
 
 /// Results with another section.
@@ -275,7 +390,10 @@ analysis::Section levels_section(const design::Study& study, const StimulusLevel
   }
   if (!nearest.empty()) {
     section.blocks.emplace_back(
-        analysis::Cited{"Least difference of level between two classes: " + nearest + "."});
+        analysis::Cited{"Smallest difference of level between two classes: " + nearest + "."});
+  }
+  if (std::string words = level_alone_words(study, levels); !words.empty()) {
+    section.blocks.emplace_back(analysis::Cited{std::move(words)});
   }
   return section;
 }
@@ -293,30 +411,26 @@ std::string all_levels_json(const design::Study& study, const StimulusLevels& le
 }
 
 std::vector<std::string> level_warnings(const design::Study& study, const StimulusLevels& levels) {
-  std::string weak_on;
-  LevelRange weakest{1e9, 1e9};
-  std::string words;
-  for (const std::string& device : devices_of(levels)) {
-    int weak = 0;
-    for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
-      const LevelRange range = simulation::range_on(levels.levels[i], device);
-      if (range.low_db >= simulation::kMinLevelDb) continue;
-      ++weak;
-      if (range.low_db >= weakest.low_db) continue;
-      weakest = range;
-      words = fmt::format("{} on {}, {} dB", name_of_stimulus(study, levels.stimuli[i]), device,
-                          range_cell(range.low_db, range.high_db));
-    }
-    if (weak == 0) continue;
-    weak_on += fmt::format("{}{} ({} of {})", weak_on.empty() ? "" : ", ", device, weak,
-                           levels.stimuli.size());
+  // A level that the study states is held by its gains, and thresholds are there to be found.
+  if (study.device.empty() || study.level || study.protocol->interval_plan(study)) return {};
+  const std::string device = devices_of(levels).front();
+  std::size_t weak = 0;
+  std::size_t weakest = 0;
+  const auto high_db = [&](std::size_t i) {
+    return simulation::range_on(levels.levels[i], device).high_db;
+  };
+  for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
+    if (high_db(i) < simulation::kMinLevelDb) ++weak;
+    if (high_db(i) < high_db(weakest)) weakest = i;
   }
-  if (weak_on.empty()) return {};
+  if (weak == 0) return {};
   return {fmt::format(
-      "stimuli may stand less than {:g} dB above threshold or blank plane on {}; the weakest, {}: "
-      "people may not feel them; raise the gains or take another device{}",
-      simulation::kMinLevelDb, weak_on, words,
-      study.device.empty() ? "; name yours by /rendering/device" : "")};
+      "/rendering/{}: {} of {} stimuli stand less than {:g} dB above the threshold on {} by either "
+      "curve, {} {} dB: people may not feel them; {}",
+      study.rendering.gains ? "gains" : "pitch_mm", weak, levels.stimuli.size(),
+      simulation::kMinLevelDb, device, name_of_stimulus(study, levels.stimuli[weakest]),
+      range_cell(levels.levels[weakest], device),
+      study.rendering.gains ? "raise them" : "double it, with crops of half the side")};
 }
 
 std::string range_words(const PlaneLevels& levels) {

@@ -13,7 +13,7 @@
 namespace touchtrial::planning {
 
 /// One table of stimuli by device, with the ranges over the curves; for one device a second one by
-/// bands; and how far the stimuli are apart.
+/// bands; how far the stimuli are apart; and what level alone gives away.
 [[nodiscard]] analysis::Section levels_section(const design::Study& study,
                                                const simulation::StimulusLevels& levels);
 
@@ -27,7 +27,8 @@ namespace touchtrial::planning {
 [[nodiscard]] std::string all_levels_json(const design::Study& study,
                                           const simulation::StimulusLevels& levels);
 
-/// One line if stimuli may be too weak on a device.
+/// One line, with its key, if stimuli are too weak on the study's device by either curve. None for
+/// a study without a device, one that states its level, and one that looks for thresholds.
 [[nodiscard]] std::vector<std::string> level_warnings(const design::Study& study,
                                                       const simulation::StimulusLevels& levels);
 

@@ -47,8 +47,9 @@ inline constexpr std::array kGains = {NamedGain{"tangential_n", &Gains::tangenti
   return true;
 }
 
-/// Whether stimuli keep their differences in strength.
-enum class Equalise { none, rms };
+/// Whether stimuli keep their differences in strength. `level` is left to whoever knows levels, and
+/// `none` to choose_gains.
+enum class Equalise { none, rms, level };
 
 /// Load at which the stiffness and the lateral forces of `surface` are stated, N: a typical load of
 /// a hand that explores a texture.

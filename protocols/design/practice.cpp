@@ -79,7 +79,7 @@ std::vector<engine::Gains> practice_gains(const std::vector<engine::TextureField
   std::vector<engine::FieldView> views;
   for (const engine::TextureField& field : fields) views.push_back(field.view());
   std::vector<engine::Gains> gains = engine::choose_gains(views, rendering).of_field;
-  if (rendering.gains || rendering.equalise != engine::Equalise::none) return gains;
+  if (rendering.gains || rendering.equalise == engine::Equalise::rms) return gains;
   for (engine::Gains& of_field : gains) of_field = weaker(of_field, of_pack);
   return gains;
 }

@@ -16,11 +16,14 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 
 namespace touchtrial::design {
 namespace {
@@ -348,6 +351,7 @@ class Preparation {
     FieldHasher hasher;
     hasher.add(ByteView(key_.seal));
     for (const engine::PackEntry& entry : entries_) hasher.add(ByteView(entry.checksum));
+    hasher.add(options_.level.identity);
     return hasher.finish();
   }
 
@@ -374,11 +378,16 @@ class Preparation {
     }
     measured_.of = of;
     engine::StageTimer timer(study_log());
-    measured_.gains = engine::choose_gains(views, key_.study.rendering);
-    timer.done("gains",
-               key_.study.rendering.gains ? "explicit, and compared with the stiffness budget"
-                                          : "from the stiffness of all stimuli together",
-               views.size() * sizeof(engine::Gains));
+    const char* why = "from the stiffness of all stimuli together";
+    if (key_.study.level) {
+      if (!options_.level.gains) throw std::logic_error("prepare_pack: nobody knows levels");
+      std::tie(measured_.gains, measured_.remarks) = options_.level.gains(views);
+      why = "from the level that the study states";
+    } else {
+      measured_.gains = engine::choose_gains(views, key_.study.rendering);
+      if (key_.study.rendering.gains) why = "explicit, and compared with the stiffness budget";
+    }
+    timer.done("gains", why, views.size() * sizeof(engine::Gains));
     measured_.flat.resize(views.size());
     if (options_.statistics) measured_.statistics.resize(views.size());
     const auto measure_one = [&](std::size_t i) { describe(i, views[i]); };
@@ -458,6 +467,7 @@ class Preparation {
     }
     report_.skipped = skipped_work(key_.study, pixels_of_study);
     report_.warnings = rendering_warnings(key_.study.rendering, measured_.gains);
+    std::ranges::copy(measured_.remarks, std::back_inserter(report_.warnings));
     if (const std::string draft = draft_notice(key_.study.session.language); !draft.empty()) {
       report_.warnings.push_back(
           draft + ": have its speakers check every screen, and say so where you report the study");

@@ -5,6 +5,7 @@
 #include "core/plane_geometry.hpp"
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/field_statistics.hpp"
+#include "engine/rendering/gains.hpp"
 #include "engine/stage_log.hpp"
 #include "protocols/design/study_key.hpp"
 
@@ -12,7 +13,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::design {
@@ -72,6 +75,16 @@ struct PrepareReport {
 
 inline constexpr std::int64_t kLargeImagePixels = std::int64_t{1} << 22;
 
+/// The gains of a study that states its level, which who knows devices and hands works out.
+struct LevelStage {
+  std::string identity;  ///< of all that decides the gains beside study and fields
+  /// \param fields  of StudyCodes::stimuli
+  /// \return the gains, and what the person who prepares the study must be told
+  std::function<std::pair<engine::StudyGains, std::vector<std::string>>(
+      std::span<const engine::FieldView> fields)>
+      gains;
+};
+
 /// What prepare_pack does besides building the pack.
 struct PrepareOptions {
   bool statistics = true;  ///< fill in PreparedStimulus::statistics; two Fourier transforms each
@@ -82,6 +95,7 @@ struct PrepareOptions {
   /// an unchanged picture and an intact field are known by size and times, and what follows from
   /// unchanged fields need not be computed again; without them, by their content.
   std::filesystem::path notes{};
+  LevelStage level{};  ///< needed if the study has a level
   /// Files that changed later than this before they were noted are known by their content.
   std::chrono::nanoseconds settled_after = kSettledAfter;
 };

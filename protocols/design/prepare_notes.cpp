@@ -57,6 +57,7 @@ json json_of(const MeasuredFields& measured) {
   return {{"of", to_hex(measured.of)},
           {"gains", gains},
           {"over_budget", measured.gains.over_budget},
+          {"remarks", measured.remarks},
           {"flat", measured.flat},
           {"statistics", statistics}};
 }
@@ -72,6 +73,7 @@ MeasuredFields measured_in(const json& value) {
     }
   }
   measured.gains.over_budget = value.at("over_budget").get<bool>();
+  measured.remarks = value.at("remarks").get<std::vector<std::string>>();
   measured.flat = value.at("flat").get<std::vector<std::uint8_t>>();
   for (const json& one : value.at("statistics")) measured.statistics.push_back(statistics_in(one));
   return measured;

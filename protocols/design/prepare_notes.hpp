@@ -33,6 +33,7 @@ struct FieldNote {
 struct MeasuredFields {
   Digest of{};  ///< of the fields and the study
   engine::StudyGains gains;
+  std::vector<std::string> remarks;                 ///< on gains by level
   std::vector<std::uint8_t> flat;                   ///< whether nothing of a field can be felt
   std::vector<engine::FieldStatistics> statistics;  ///< empty if nobody asked for them
 };

@@ -160,7 +160,10 @@ Study read_study(const JsonValue& place) {
   study.classes = read_classes(root.at("classes"), study.protocol->least_classes());
   study.methods = read_methods(root.at("methods"));
   if (const auto member = root.find("rendering")) {
-    study.rendering = read_rendering(*member, study.device);
+    ReadRendering read = read_rendering(*member);
+    study.rendering = read.options;
+    study.device = std::move(read.device);
+    study.level = std::move(read.level);
   }
   if (const auto member = root.find("trials")) study.trials = read_trials(*member);
   if (const auto member = root.find("practice")) study.practice = read_practice(*member);

@@ -92,6 +92,15 @@ struct TrialOptions {
   friend bool operator==(const TrialOptions&, const TrialOptions&) = default;
 };
 
+/// How strong the weakest stimulus is to be; with Equalise::level, every one.
+struct WantedLevel {
+  static constexpr double kMaxDb = 40.0;
+  double db = 0.0;    ///< above the detection threshold on the study's device, 0 .. kMaxDb
+  std::string curve;  ///< name of a curve of thresholds, or a database of pilots; not empty
+
+  friend bool operator==(const WantedLevel&, const WantedLevel&) = default;
+};
+
 /// A study as read from its file.
 struct Study {
   std::string name;
@@ -101,6 +110,7 @@ struct Study {
   std::vector<StudyMethod> methods;                ///< >= 1, labels unique
   engine::RenderingOptions rendering;
   std::string device;  ///< model of the device that the forces are for, or its file; may be empty
+  std::optional<WantedLevel> level;  ///< from which the gains follow; nothing: from `rendering`
   TrialOptions trials;
   PracticePlan practice;
   SessionPlan session;

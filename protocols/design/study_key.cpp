@@ -242,6 +242,7 @@ nlohmann::json parts_of(const Study& study) {
           {"methods", methods},
           {"rendering", to_json(study.rendering)},
           {"device", study.device},
+          {"level", study.level ? nlohmann::json{study.level->db, study.level->curve} : nullptr},
           {"trials", to_json(study.trials)},
           {"practice", to_json(study.practice)},
           {"session", to_json(study.session)},

@@ -1,4 +1,5 @@
 /// \file The study file's "rendering".
+#include "engine/perception/vibration_threshold.hpp"
 #include "protocols/design/study_options.hpp"
 #include "protocols/design/study_sections.hpp"
 
@@ -7,6 +8,30 @@
 
 namespace touchtrial::design {
 namespace {
+
+/// Text without control characters, of a sane length.
+bool is_plain(const std::string& text, std::string_view ending = {}) {
+  constexpr std::size_t kLongest = 200;
+  return text.size() > ending.size() && text.size() <= kLongest && text.ends_with(ending) &&
+         std::ranges::none_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7F; });
+}
+
+/// A name or a path; whether there is such a file is said where one is needed.
+std::string read_curve(const JsonValue& place) {
+  const std::string& curve = place.text();
+  const bool is_name = std::ranges::any_of(
+      engine::kThresholdCurves, [&](auto known) { return curve == engine::name_of(known); });
+  if (!is_name && !is_plain(curve, ".db")) {
+    place.refuse("must be israr_2006, tan_1994, or the database of a detection study, NAME.db");
+  }
+  return curve;
+}
+
+WantedLevel read_level(const JsonValue& place) {
+  const JsonObject object = place.object({"level_db", "curve"});
+  return {.db = object.at("level_db").number({.low = 0.0, .high = WantedLevel::kMaxDb}),
+          .curve = read_curve(object.at("curve"))};
+}
 
 engine::Gains read_explicit_gains(const JsonValue& place, engine::ModelKind model) {
   const NumberRange range{.low = 0.0, .high = 10.0};
@@ -18,11 +43,19 @@ engine::Gains read_explicit_gains(const JsonValue& place, engine::ModelKind mode
           .normal_n = object.at("normal_n").number(range)};
 }
 
-std::optional<engine::Gains> read_gains(const JsonValue& place, engine::ModelKind model) {
+void read_gains(const JsonValue& place, ReadRendering& read) {
   constexpr std::array kNames = {Named<int>{"budget", 0}};
-  if (!place.is_text()) return read_explicit_gains(place, model);
-  static_cast<void>(place.choice(kNames));
-  return std::nullopt;
+  if (place.is_text()) {
+    static_cast<void>(place.choice(kNames));
+    return;
+  }
+  const JsonObject all =
+      place.object({"level_db", "curve", "tangential_n", "normal_n", "height_mm"});
+  if (all.find("level_db") || all.find("curve")) {
+    read.level = read_level(place);
+  } else {
+    read.options.gains = read_explicit_gains(place, read.options.model);
+  }
 }
 
 int read_neighbourhood(const JsonValue& place) {
@@ -65,24 +98,26 @@ nlohmann::json gains_json(const engine::RenderingOptions& rendering) {
 
 /// A name or a path; whether there is such a model is said where one is needed.
 std::string read_device(const JsonValue& place) {
-  constexpr std::size_t kLongest = 200;
   const std::string& device = place.text();
-  const bool plain =
-      std::ranges::none_of(device, [](unsigned char c) { return c < 0x20 || c == 0x7F; });
-  if (device.empty() || device.size() > kLongest || !plain) {
+  if (!is_plain(device)) {
     place.refuse("must be a model's name, as touchtrial device models lists them, or a file's");
   }
   return device;
 }
 
-void read_texture(const JsonObject& object, engine::RenderingOptions& options) {
+void read_texture(const JsonObject& object, ReadRendering& read) {
+  engine::RenderingOptions& options = read.options;
   read_number(object, "filter_mm", {.low = 0.0, .high = 10.0}, options.filter_mm);
   read_number(object, "texture_stiffness_n_per_mm", {.low = 0.0, .high = 100.0, .open_low = true},
               options.texture_stiffness_n_per_mm);
   read_number(object, "reference_grey", {.low = 0.0, .high = 255.0}, options.reference_grey);
-  if (const auto member = object.find("gains")) options.gains = read_gains(*member, options.model);
-  if (const auto member = object.find("equalise"))
+  if (const auto member = object.find("gains")) read_gains(*member, read);
+  if (const auto member = object.find("equalise")) {
     options.equalise = member->choice(kEqualiseNames);
+    if (options.equalise == engine::Equalise::level && !read.level) {
+      member->refuse("is level, but /gains states none; give gains level_db and curve, or rms");
+    }
+  }
   if (const auto member = object.find("neighbourhood")) {
     options.neighbourhood = read_neighbourhood(*member);
   }
@@ -90,23 +125,29 @@ void read_texture(const JsonObject& object, engine::RenderingOptions& options) {
 
 }  // namespace
 
-engine::RenderingOptions read_rendering(const JsonValue& place, std::string& device) {
+ReadRendering read_rendering(const JsonValue& place) {
   const JsonObject object =
       place.object({"model", "pitch_mm", "stiffness_n_per_mm", "damping_n_s_per_mm", "filter_mm",
                     "texture_stiffness_n_per_mm", "gains", "equalise", "reference_grey", "friction",
                     "neighbourhood", "max_force_n", "device"});
-  engine::RenderingOptions options;
+  ReadRendering read;
+  engine::RenderingOptions& options = read.options;
   if (const auto model = object.find("model")) options.model = model->choice(kModelNames);
   read_friction(object, options);
   read_wall(object, options);
-  read_texture(object, options);
-  if (const auto member = object.find("device")) device = read_device(*member);
-  return options;
+  read_texture(object, read);
+  if (const auto member = object.find("device")) read.device = read_device(*member);
+  if (read.level && read.device.empty()) {
+    place.refuse_below("/gains", "states a level, which needs the device: add \"device\"");
+  }
+  return read;
 }
 
 engine::RenderingOptions parse_rendering(std::string_view text, const std::string& source) {
-  std::string device;
-  return read_rendering(parse_strict_json(text, source), device);
+  const JsonValue place = parse_strict_json(text, source);
+  const ReadRendering read = read_rendering(place);
+  if (read.level) place.refuse_below("/gains", "states a level, which only a study has");
+  return read.options;
 }
 
 std::string written_rendering(const engine::RenderingOptions& rendering) {

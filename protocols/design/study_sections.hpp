@@ -47,7 +47,8 @@ inline constexpr std::array kModelNames = {
 
 inline constexpr std::array kEqualiseNames = {
     Named<engine::Equalise>{"none", engine::Equalise::none},
-    Named<engine::Equalise>{"rms", engine::Equalise::rms}};
+    Named<engine::Equalise>{"rms", engine::Equalise::rms},
+    Named<engine::Equalise>{"level", engine::Equalise::level}};
 
 inline constexpr std::array kEstimandNames = {
     Named<Estimand>{"mean-accuracy", Estimand::mean_accuracy},
@@ -125,8 +126,12 @@ void refuse_same_label(const JsonValue& place, const std::string& label, const s
 [[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place, int fewest,
                                                    std::size_t most_images = kMaxImagesOfClass);
 [[nodiscard]] std::vector<StudyMethod> read_methods(const JsonValue& place);
-/// \param device  receives Study::device, if there is one
-[[nodiscard]] engine::RenderingOptions read_rendering(const JsonValue& place, std::string& device);
+struct ReadRendering {
+  engine::RenderingOptions options;
+  std::string device;                ///< Study::device
+  std::optional<WantedLevel> level;  ///< Study::level
+};
+[[nodiscard]] ReadRendering read_rendering(const JsonValue& place);
 [[nodiscard]] TrialOptions read_trials(const JsonValue& place);
 [[nodiscard]] PracticePlan read_practice(const JsonValue& place);
 [[nodiscard]] SessionPlan read_session(const JsonValue& place);

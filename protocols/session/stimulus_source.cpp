@@ -58,9 +58,9 @@ const engine::RenderingModel& StimulusSource::model(const std::string& code) con
   return stimulus(code).model;
 }
 
-engine::RenderingModel StimulusSource::model_at(const std::string& code, double factor) const {
+engine::FieldWithGains StimulusSource::field(const std::string& code) const {
   const Stimulus& found = stimulus(code);
-  return {found.field, rendering_, engine::scaled(found.gains, factor)};
+  return {found.field, found.gains};
 }
 
 StimulusSource::Mix StimulusSource::mix_of(const design::Interval& interval) noexcept {

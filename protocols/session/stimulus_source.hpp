@@ -28,9 +28,9 @@ class StimulusSource {
   /// \throws FileError if the pack has no such code
   [[nodiscard]] const engine::RenderingModel& model(const std::string& code) const;
 
-  /// The same field with all its gains times a factor, >= 0.
+  /// A field with its gains, which refers to this.
   /// \throws FileError if the pack has no such code
-  [[nodiscard]] engine::RenderingModel model_at(const std::string& code, double factor) const;
+  [[nodiscard]] engine::FieldWithGains field(const std::string& code) const;
 
   /// The plane of an interval. Its wall lies where that of the blank one does: a texture's mean
   /// height is taken out. Gains are applied to forces, which are linear in them up to limits and as

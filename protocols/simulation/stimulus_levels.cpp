@@ -239,20 +239,22 @@ std::vector<device::DeviceModel> level_devices(const design::Study& study) {
   return {device_of(study)};
 }
 
-StimulusLevels levels_of(const design::StudyCodes& key, const session::StimulusSource& source,
-                         const std::vector<device::DeviceModel>& devices, int jobs,
-                         std::uint64_t seed) {
-  const LabelledFields fields(key, source);
-  StimulusLevels result;
-  for (const LabelledField& field : fields.all()) result.stimuli.push_back(field.stimulus);
-  const device::ServoOptions servo =
-      session::trial_servo_options(key.study, device::kServoRateHz, {});
-  // By device: a hand for each exploration, on the same paths for every plane. Meanwhile the
-  // weights of each curve, which are worked out once in a program's life, while whoever else asks
-  // waits.
+FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
+                             const design::Study& study,
+                             const std::vector<device::DeviceModel>& devices, int jobs,
+                             std::uint64_t seed) {
+  PlaneGeometry plane = fields.front().field.geometry;
+  for (const engine::FieldWithGains& each : fields) {
+    plane.height_px = std::min(plane.height_px, each.field.geometry.height_px);
+    plane.width_px = std::min(plane.width_px, each.field.geometry.width_px);
+  }
+  const device::ServoOptions servo = session::trial_servo_options(study, device::kServoRateHz, {});
   SubjectModel subject = default_subject();
   subject.sense = engine::ThresholdCurve::israr_2006;  // so that accelerations are felt
   subject.explore_s = kIntervalS + device::SimulatedHand::kPushBuildUpS;
+  // By device: a hand for each exploration, on the same paths for every plane. Meanwhile the
+  // weights of each curve, which are worked out once in a program's life, while whoever else asks
+  // for them waits.
   std::vector<Hands> hands(devices.size());
   in_parallel(jobs, kCurves + devices.size(), [&](std::size_t i) {
     if (i < kCurves) {
@@ -263,22 +265,23 @@ StimulusLevels levels_of(const design::StudyCodes& key, const session::StimulusS
     holder.device = devices[i - kCurves];
     for (std::size_t path = 0; path < kExplorations; ++path) {
       RandomStream random(seed, "levels: path", path);
-      hands[i - kCurves].push_back(make_exploring_hand(holder, fields.plane(), random));
+      hands[i - kCurves].push_back(make_exploring_hand(holder, plane, random));
       hands[i - kCurves].back().foresee();
     }
   });
+  const auto felt_on = [&](std::size_t device, std::size_t field, double factor) {
+    const engine::FieldWithGains& stroked_field = fields[field];
+    return stroked(
+        {stroked_field.field, study.rendering, engine::scaled(stroked_field.gains, factor)}, plane,
+        servo, hands[device]);
+  };
   std::vector<Felt> blanks(devices.size());
-  in_parallel(jobs, devices.size(), [&](std::size_t d) {
-    blanks[d] = stroked(source.flat(), fields.plane(), servo, hands[d]);
-  });
-  const std::size_t planes = result.stimuli.size();
-  std::vector<PlaneLevels> levels(devices.size() * planes);
+  in_parallel(jobs, devices.size(), [&](std::size_t d) { blanks[d] = felt_on(d, 0, 0.0); });
+  std::vector<PlaneLevels> levels(devices.size() * fields.size());
   in_parallel(jobs, levels.size(), [&](std::size_t i) {
-    const std::size_t d = i / planes;
-    const std::string& code = key.code_of(result.stimuli[i % planes]);
+    const std::size_t d = i / fields.size();
     const auto felt_at = [&](double gain_db) {
-      return stroked(source.model_at(code, std::pow(10.0, gain_db / 20.0)), fields.plane(), servo,
-                     hands[d]);
+      return felt_on(d, i % fields.size(), std::pow(10.0, gain_db / 20.0));
     };
     const Felt whole = felt_at(0.0);
     for (std::size_t curve = 0; curve < kCurves; ++curve) {
@@ -295,15 +298,31 @@ StimulusLevels levels_of(const design::StudyCodes& key, const session::StimulusS
       levels[i].push_back(std::move(level));
     }
   });
-  result.levels.resize(planes);
+  FieldLevels result;
+  result.levels.resize(fields.size());
   for (std::size_t d = 0; d < devices.size(); ++d) {
     for (const engine::ThresholdCurve curve : engine::kThresholdCurves) {
       result.blank.push_back(level_of(devices[d].name, curve, blanks[d], nullptr));
     }
-    for (std::size_t i = 0; i < planes; ++i) {
-      std::ranges::move(levels[d * planes + i], std::back_inserter(result.levels[i]));
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      std::ranges::move(levels[d * fields.size() + i], std::back_inserter(result.levels[i]));
     }
   }
+  return result;
+}
+
+StimulusLevels levels_of(const design::StudyCodes& key, const session::StimulusSource& source,
+                         const std::vector<device::DeviceModel>& devices, int jobs,
+                         std::uint64_t seed) {
+  StimulusLevels result;
+  std::vector<engine::FieldWithGains> fields;
+  for (const LabelledField& labelled : LabelledFields(key, source).all()) {
+    result.stimuli.push_back(labelled.stimulus);
+    fields.push_back(source.field(key.code_of(labelled.stimulus)));
+  }
+  FieldLevels found = levels_of_fields(fields, key.study, devices, jobs, seed);
+  result.levels = std::move(found.levels);
+  result.blank = std::move(found.blank);
   return result;
 }
 

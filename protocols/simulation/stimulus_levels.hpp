@@ -4,11 +4,13 @@
 
 #include "device/model/device_model.hpp"
 #include "engine/perception/vibration_threshold.hpp"
+#include "engine/rendering/texture_field.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/session/stimulus_source.hpp"
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +50,8 @@ struct StimulusLevels {
   std::vector<design::StimulusIndex> stimuli;  ///< by class, exemplar and method
   std::vector<PlaneLevels> levels;             ///< of each stimulus
   PlaneLevels blank;                           ///< of the same wall without a texture
+  /// By curves of other people; false: by thresholds that the laboratory measured on its device.
+  bool provisional = true;
 };
 
 /// Below this a stimulus is warned of.
@@ -63,10 +67,22 @@ inline constexpr double kMinLevelDb = 10.0;
 /// \throws as device_of
 [[nodiscard]] std::vector<device::DeviceModel> level_devices(const design::Study& study);
 
-/// A hand of the default subject model strokes every stimulus and the blank plane on each device:
-/// the same paths on all. A function of its arguments, but for `jobs`. Cost: some 5 ms of one
-/// thread for each plane and device.
+struct FieldLevels {
+  std::vector<PlaneLevels> levels;  ///< of each field
+  PlaneLevels blank;                ///< of the same wall without a texture
+};
+
+/// A hand of the default subject model strokes every field and the blank plane on each device: the
+/// same paths on all. A function of its arguments, but for `jobs`. Cost: some 15 ms of one thread
+/// for each plane and device.
+/// \param fields  at least one, of the study's rendering model
 /// \param jobs  threads, >= 1
+[[nodiscard]] FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
+                                           const design::Study& study,
+                                           const std::vector<device::DeviceModel>& devices,
+                                           int jobs, std::uint64_t seed = 1);
+
+/// The same for a pack.
 /// \throws FileError if the pack lacks a stimulus
 [[nodiscard]] StimulusLevels levels_of(const design::StudyCodes& key,
                                        const session::StimulusSource& source,

@@ -343,6 +343,11 @@ void check_section(const JsonValue& file, const Study& study) {
                                     mixtures, kMostValues));
     }
   }
+  if (study.level) {
+    file.refuse_below("/rendering/gains",
+                      "states a level, which a threshold study is there to find; give \"budget\", "
+                      "the largest gains");
+  }
   if (study.rendering.reference_grey != 128.0) {
     file.refuse_below("/rendering/reference_grey",
                       "must be 128: with another one the wall of a texture lies elsewhere than the "

@@ -1,0 +1,119 @@
+#include "app/pilot_thresholds.hpp"
+
+#include "analysis/results.hpp"
+#include "app/study_inputs.hpp"
+#include "core/errors.hpp"
+#include "engine/pack/pack.hpp"
+#include "protocols/collect/collect.hpp"
+#include "protocols/session/stimulus_source.hpp"
+#include "protocols/simulation/stimulus_levels.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::app {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kMinPilots = 3;
+/// Right answers at the threshold that levels count from (d' = 1.62) among two and three intervals.
+constexpr double kRightOfTwo = 0.8744;
+constexpr double kRightOfThree = 0.794;
+
+[[noreturn]] void refuse(const design::Study& study, const std::string& what) {
+  throw StudyError(
+      one_line(study.source + ": /rendering/gains/curve: " + study.level->curve + ": " + what));
+}
+
+/// The report of the pilots' study, as `report --json` prints it.
+Json report_of(const design::Study& study, const store::StudyStore& store,
+               const design::StudyKey& key) {
+  if (!store.state().unblinded) refuse(study, "is not unblinded; close and unblind it");
+  const analysis::Outcomes outcomes = outcomes_of(store, key);
+  Json report = Json::parse(analysis::analysis_of(outcomes.design).results(outcomes, {})->json());
+  if (report.value("task", "") != "detection" || report.value("along", "") != "gain" ||
+      report.value("question", "") != "which-interval") {
+    refuse(study, "is no detection study along gain that asks which interval");
+  }
+  return report;
+}
+
+/// The threshold of a track, at the share of right answers that levels count from, dB.
+double threshold_db(const Json& track, double guess) {
+  const Json& found = track.at("posterior");
+  const double right = guess > 0.4 ? kRightOfTwo : kRightOfThree;
+  // Along the track's Weibull function.
+  const double more = std::log10(-std::log((1.0 - right) / (1.0 - guess)));
+  return found.at("threshold").get<double>() + 20.0 * more / found.at("slope").get<double>();
+}
+
+/// The mean threshold of each stimulus that has one.
+std::vector<std::pair<std::string, double>> means_by_standard(const design::Study& study,
+                                                              const Json& report) {
+  std::vector<std::pair<std::string, double>> means;
+  for (const Json& standard : report.at("standards")) {
+    double sum = 0.0;
+    std::size_t found = 0;
+    std::size_t censored = 0;
+    for (const Json& track : report.at("tracks")) {
+      if (track.at("standard") != standard.at("standard")) continue;
+      if (track.at("posterior").at("threshold").is_null()) {
+        ++censored;
+        continue;
+      }
+      sum += threshold_db(track, report.at("guess").get<double>());
+      ++found;
+    }
+    if (found < kMinPilots || censored > found) {
+      refuse(study,
+             fmt::format("has {} thresholds of {} and {} that lie beyond its levels; it "
+                         "needs {} or more, and fewer beyond",
+                         found, standard.at("standard").get<std::string>(), censored, kMinPilots));
+    }
+    means.emplace_back(standard.at("class").get<std::string>(), sum / static_cast<double>(found));
+  }
+  if (means.empty()) refuse(study, "has no threshold yet");
+  return means;
+}
+
+double pilots_db(const design::Study& study, const device::DeviceModel& device) {
+  const std::filesystem::path database = study.folder / study.level->curve;
+  const store::StudyStore store = collect::open_study(database.string());
+  const design::StudyKey key = key_of_database(store, database, {});
+  const auto means = means_by_standard(study, report_of(study, store, key));
+  const engine::Pack pack(key.pack_folder);
+  const session::StimulusSource source(pack, key.study.rendering);
+  const simulation::StimulusLevels levels = simulation::levels_of(key, source, {device}, cores());
+  double sum = 0.0;
+  for (const auto& [label, measured_db] : means) {
+    const auto stimulus = std::ranges::find(levels.stimuli, label, [&](const auto& index) {
+      return key.study.classes[static_cast<std::size_t>(index.class_index)].label;
+    });
+    if (stimulus == levels.stimuli.end()) refuse(study, "has no field of " + label);
+    const auto place = static_cast<std::size_t>(stimulus - levels.stimuli.begin());
+    // The level of the whole gain is what the threshold lies below it.
+    sum += measured_db + levels.levels[place].front().db;
+  }
+  return sum / static_cast<double>(means.size());
+}
+
+}  // namespace
+
+simulation::LevelCurve curve_of(const design::Study& study, const device::DeviceModel& device) {
+  for (const engine::ThresholdCurve curve : engine::kThresholdCurves) {
+    if (study.level.value().curve == engine::name_of(curve)) return {curve, {}};
+  }
+  return {engine::ThresholdCurve::israr_2006, pilots_db(study, device)};
+}
+
+}  // namespace touchtrial::app

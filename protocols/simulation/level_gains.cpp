@@ -1,0 +1,190 @@
+#include "protocols/simulation/level_gains.hpp"
+
+#include "engine/rendering/field_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace touchtrial::simulation {
+namespace {
+
+using Fields = std::vector<engine::FieldWithGains>;
+
+/// A stimulus that is this near its level has it, dB.
+constexpr double kNearDb = 0.05;
+/// Hands are not quite linear: gains are corrected by the level that they gave.
+constexpr int kMaxTries = 4;
+
+/// The budget of a study's textures on its device, N/mm.
+double stiffness_bound(const engine::RenderingOptions& rendering,
+                       const device::DeviceModel& device) {
+  const double bound = std::min(rendering.texture_stiffness_n_per_mm, kCleanStiffnessNPerMm);
+  return device.max_stiffness_n_per_mm > 0.0 ? std::min(bound, device.max_stiffness_n_per_mm)
+                                             : bound;
+}
+
+/// The lateral force, as a root mean square, that a device's motors hold beside a press.
+double motor_bound_n(const device::DeviceModel& device) {
+  if (!(device.continuous_force_n > engine::kStatedLoadN)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return std::sqrt(device.continuous_force_n * device.continuous_force_n -
+                   engine::kStatedLoadN * engine::kStatedLoadN);
+}
+
+/// The largest gains that stiffness and motors allow.
+Fields largest(std::span<const engine::FieldView> views, engine::RenderingOptions rendering,
+               const device::DeviceModel& device, double stiffness_n_per_mm) {
+  rendering.texture_stiffness_n_per_mm = stiffness_n_per_mm;
+  const engine::StudyGains gains = engine::choose_gains(views, rendering);
+  Fields fields;
+  double strongest_n = 0.0;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    fields.push_back({views[i], gains.of_field[i]});
+    strongest_n =
+        std::max(strongest_n,
+                 engine::field_statistics(views[i], gains.of_field[i], rendering).tangential_rms_n);
+  }
+  const double factor = std::min(1.0, motor_bound_n(device) / strongest_n);
+  if (strongest_n > 0.0) {
+    for (engine::FieldWithGains& field : fields) field.gains = engine::scaled(field.gains, factor);
+  }
+  return fields;
+}
+
+/// Works out levels of one study's fields on its device.
+class LevelMeter {
+ public:
+  LevelMeter(const design::Study& study, const device::DeviceModel& device, const LevelCurve& curve,
+             int jobs)
+      : study_(study), devices_{device}, curve_(curve), jobs_(jobs) {}
+
+  /// \return of each field; kNoLevelDb for a flat one
+  [[nodiscard]] std::vector<double> levels(const Fields& fields) const {
+    std::vector<double> found;
+    for (const PlaneLevels& plane : levels_of_fields(fields, study_, devices_, jobs_).levels) {
+      const auto level = std::ranges::find(plane, curve_.curve, &StimulusLevel::curve);
+      found.push_back(level->db == kNoLevelDb ? kNoLevelDb : curve_.level(level->db));
+    }
+    return found;
+  }
+
+ private:
+  const design::Study& study_;
+  std::vector<device::DeviceModel> devices_;
+  LevelCurve curve_;
+  int jobs_;
+};
+
+/// \return the place of the weakest stimulus; nothing if all are flat
+std::optional<std::size_t> weakest(const std::vector<double>& levels) {
+  std::optional<std::size_t> place;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    if (levels[i] == kNoLevelDb) continue;
+    if (!place || levels[i] < levels[*place]) place = i;
+  }
+  return place;
+}
+
+/// What to change for a level that is out of reach, and what that would give.
+std::string levers(const design::Study& study, std::span<const engine::FieldView> views,
+                   const device::DeviceModel& device, const LevelMeter& meter) {
+  std::string text;
+  const auto name = [&](const std::string& change, const Fields& fields) {
+    const std::vector<double> levels = meter.levels(fields);
+    const auto place = weakest(levels);
+    if (!place) return;
+    text += fmt::format("{}{} gives {:.1f} dB", text.empty() ? "" : ", ", change, levels[*place]);
+  };
+  engine::RenderingOptions stiffest = study.rendering;
+  stiffest.texture_stiffness_n_per_mm = kCleanStiffnessNPerMm;
+  const double bound = stiffness_bound(study.rendering, device);
+  const double clean = stiffness_bound(stiffest, device);
+  if (clean > bound) {
+    name(fmt::format("/rendering/texture_stiffness_n_per_mm {:g}", clean),
+         largest(views, study.rendering, device, clean));
+  }
+  constexpr double kWider = 2.0;
+  std::vector<engine::FieldView> wider(views.begin(), views.end());
+  for (engine::FieldView& view : wider) view.geometry.pitch_mm *= kWider;
+  name(fmt::format("/rendering/pitch_mm {:g} with crops of half the side",
+                   kWider * study.rendering.pitch_mm),
+       largest(wider, study.rendering, device, bound));
+  return text;
+}
+
+std::string name_of(const design::Study& study, const design::StimulusIndex& stimulus) {
+  const design::StudyClass& shown = study.classes[static_cast<std::size_t>(stimulus.class_index)];
+  std::string name = shown.label;
+  if (shown.images.size() > 1) name += fmt::format(" {}", stimulus.exemplar + 1);
+  if (study.presented_methods() > 1) {
+    name += ", " + study.methods[static_cast<std::size_t>(stimulus.method)].label;
+  }
+  return name;
+}
+
+}  // namespace
+
+void apply(const LevelCurve& curve, StimulusLevels& levels) {
+  for (PlaneLevels& plane : levels.levels) {
+    for (StimulusLevel& level : plane) {
+      const auto own = std::ranges::find_if(plane, [&](const StimulusLevel& other) {
+        return other.device == level.device && other.curve == curve.curve;
+      });
+      if (level.curve != curve.curve) level.db = own->db;
+    }
+    for (StimulusLevel& level : plane) {
+      if (level.db != kNoLevelDb) level.db = curve.level(level.db);
+    }
+  }
+  levels.provisional = false;
+}
+
+LevelledGains gains_at_level(const design::StudyCodes& key,
+                             std::span<const engine::FieldView> fields,
+                             const device::DeviceModel& device, const LevelCurve& curve, int jobs) {
+  const design::Study& study = key.study;
+  const double wanted_db = study.level.value().db;
+  const double bound = stiffness_bound(study.rendering, device);
+  const LevelMeter meter(study, device, curve, jobs);
+  const Fields most = largest(fields, study.rendering, device, bound);
+  const std::vector<double> of_most = meter.levels(most);
+  LevelledGains result;
+  Fields chosen = most;
+  std::vector<double> factors(fields.size(), 1.0);
+  std::vector<double> levels = of_most;
+  const auto place = weakest(of_most);
+  const bool all_alike = study.rendering.equalise == engine::Equalise::level;
+  const double target_db = place ? std::min(wanted_db, of_most[*place]) : wanted_db;
+  for (int attempt = 0; place && attempt < kMaxTries; ++attempt) {
+    const double weakest_db = levels[*weakest(levels)];
+    double farthest_db = 0.0;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      if (levels[i] == kNoLevelDb) continue;
+      const double more_db = target_db - (all_alike ? levels[i] : weakest_db);
+      factors[i] = std::min(1.0, factors[i] * std::pow(10.0, more_db / 20.0));
+      chosen[i].gains = engine::scaled(most[i].gains, factors[i]);
+      farthest_db = std::max(farthest_db, std::abs(more_db));
+    }
+    if (farthest_db < kNearDb) break;
+    levels = meter.levels(chosen);
+  }
+  for (const engine::FieldWithGains& field : chosen) {
+    result.gains.of_field.push_back(field.gains);
+  }
+  if (place && of_most[*place] < wanted_db - kNearDb) {
+    result.remarks.push_back(fmt::format(
+        "/rendering/gains/level_db: {:g} dB by {} is out of reach on {}: {} has {:.1f} dB at "
+        "{:g} N/mm; {}",
+        wanted_db, study.level->curve, device.name, name_of(study, key.stimuli[*place].stimulus),
+        of_most[*place], bound, levers(study, fields, device, meter)));
+  }
+  return result;
+}
+
+}  // namespace touchtrial::simulation
