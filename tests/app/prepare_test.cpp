@@ -2,6 +2,7 @@
 #include "app/study_folder.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -183,4 +184,69 @@ TEST_CASE("prepare prints the gain of the study's model, even if it is zero") {
   const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
   CHECK(result.exit_code == 0);
   CHECK(result.output.find("gain: height 0 mm per grey level") != std::string::npos);
+}
+
+TEST_CASE("gains follow from the level that a study states, and say where it is out of reach") {
+  const StudyFolder study;
+  json wanted = study_of("classification");
+  const auto prepared = [&](const json& rendering) {
+    wanted["rendering"] = rendering;
+    replace_file(study.path() / "cloths.json", wanted.dump());
+    const ProgramResult result = study.run({"prepare", study.in("cloths.json"), "--json"});
+    INFO(result.errors);
+    REQUIRE(result.exit_code == 0);
+    return json::parse(result.output);
+  };
+  const json budget = prepared({{"device", "ideal"}});
+  const json low =
+      prepared({{"device", "ideal"}, {"gains", {{"level_db", 0}, {"curve", "israr_2006"}}}});
+  CHECK(low["stimuli"][0]["gains"]["tangential_n"] < budget["stimuli"][0]["gains"]["tangential_n"]);
+  CHECK(low["provisional"] == true);
+  double weakest_db = 100.0;
+  for (const json& stimulus : low["stimuli"]) {
+    weakest_db = std::min(weakest_db, stimulus["levels"][0]["db"].get<double>());
+  }
+  CHECK(weakest_db == Approx(0.0).margin(0.2));
+  const json out_of_reach =
+      prepared({{"device", "falcon"}, {"gains", {{"level_db", 40}, {"curve", "tan_1994"}}}});
+  CHECK(out_of_reach["stimuli"][0]["gains"] == budget["stimuli"][0]["gains"]);
+  CHECK_THAT(out_of_reach["warnings"].dump(), holds_text("/rendering/gains/level_db"));
+  // The line is said again by a run that has nothing to do.
+  CHECK(prepared(wanted["rendering"])["warnings"] == out_of_reach["warnings"]);
+}
+
+TEST_CASE("thresholds of pilots take the curve's place, and a file that is none is refused") {
+  const StudyFolder study;
+  json pilots = study_of("classification");
+  pilots["study"] = "pilots";
+  pilots["protocol"] = "threshold";
+  pilots["classes"] = {pilots["classes"][0]};
+  pilots["trials"] = {{"explore_limit_s", 15}};
+  pilots["threshold"] = {{"task", "detection"},
+                         {"question", "which-interval"},
+                         {"along", "gain"},
+                         {"intervals", 2},
+                         {"procedure", "quest-plus"},
+                         {"trials", 40},
+                         {"levels", {{"from", -40}, {"to", 0}, {"step", 2}}}};
+  replace_file(study.path() / "pilots.json", pilots.dump());
+  const ProgramResult simulated = study.run({"simulate", study.in("pilots.json"), "--on", "ideal",
+                                             "--participants", "4", "--db", study.in("pilots.db")});
+  INFO(simulated.errors);
+  REQUIRE(simulated.exit_code == 0);
+  json wanted = study_of("classification");
+  const auto prepare = [&](const std::string& curve) {
+    wanted["rendering"] = {{"device", "ideal"}, {"gains", {{"level_db", 3}, {"curve", curve}}}};
+    replace_file(study.path() / "cloths.json", wanted.dump());
+    return study.run({"prepare", study.in("cloths.json"), "--json"});
+  };
+  const ProgramResult by_pilots = prepare("pilots.db");
+  INFO(by_pilots.errors);
+  REQUIRE(by_pilots.exit_code == 0);
+  const json prepared = json::parse(by_pilots.output);
+  CHECK(prepared["provisional"] == false);
+  CHECK(prepared["stimuli"][0]["levels"][0]["db"] == prepared["stimuli"][0]["levels"][1]["db"]);
+  const ProgramResult missing = prepare("missing.db");
+  CHECK(missing.exit_code != 0);
+  CHECK_THAT(missing.errors, holds_text("missing.db"));
 }
