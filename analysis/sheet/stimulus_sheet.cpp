@@ -50,12 +50,15 @@ std::string in_words(const design::StudyMethod& method) {
 
 std::string in_words(const engine::RenderingOptions& rendering) {
   const std::string_view model = design::name_of(rendering.model);
-  return fmt::format("model {}, {:g} mm a pixel, filter {:g} mm, wall {:g} N/mm, gains {}{}", model,
-                     rendering.pitch_mm, rendering.filter_mm, rendering.stiffness_n_per_mm,
+  return fmt::format("model {}, {:g} mm a pixel, filter {:g} mm, wall {:g} N/mm, gains {}{}{}",
+                     model, rendering.pitch_mm, rendering.filter_mm, rendering.stiffness_n_per_mm,
                      rendering.gains ? "explicit"
                                      : fmt::format("from a budget of {:g} N/mm",
                                                    rendering.texture_stiffness_n_per_mm),
-                     rendering.equalise == engine::Equalise::rms ? ", rms force equalised" : "");
+                     rendering.equalise == engine::Equalise::rms ? ", rms force equalised" : "",
+                     rendering.touchdown_ramp_n == 0.0
+                         ? ""
+                         : fmt::format(", touchdown ramp {:g} N", rendering.touchdown_ramp_n));
 }
 
 /// The patch of the strongest force, small enough to show arrows.

@@ -4,6 +4,7 @@
 #include "bench/closed_loop/wall_sweeps.hpp"
 #include "engine/extraction.hpp"
 #include "engine/image_file.hpp"
+#include "engine/rendering/gains.hpp"
 
 #include <algorithm>
 #include <array>
@@ -103,6 +104,53 @@ std::string draw_texture(bool png, const std::vector<Plane<double>>& textures) {
          both_models(4, 5) + "unset multiplot\n";
 }
 
+/// Prints the lateral steps of landings on all textures together, as strong as a study of them has
+/// them.
+void print_touchdowns(const std::vector<Plane<double>>& textures,
+                      const engine::RenderingOptions& options) {
+  constexpr int kLandings = 40;
+  std::vector<engine::TextureField> fields;
+  std::vector<engine::FieldView> views;
+  for (const auto& texture : textures) fields.push_back(make_texture_field(texture, options));
+  for (const engine::TextureField& field : fields) views.push_back(field.view());
+  const std::vector<engine::Gains> gains = engine::choose_gains(views, options).of_field;
+  std::vector<double> rms;
+  std::vector<double> first;
+  std::vector<double> within;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const engine::RenderingModel model(views[i], options, gains[i]);
+    for (std::uint64_t seed = 1; seed <= kLandings; ++seed) {
+      const Touchdown landing = touch_down(
+          model, views[i].geometry, {.speed_mm_s = kUsualMmPerS, .time_s = 2.0, .seed = seed});
+      rms.push_back(landing.rms_n);
+      first.push_back(landing.step_n);
+      within.push_back(landing.largest_step_n);
+    }
+  }
+  const auto largest = [](const std::vector<double>& steps) {
+    return *std::ranges::max_element(steps);
+  };
+  fmt::print("{:8} {:5} {:10.5f} {:7.3f} {:9.3f} {:8.3f} {:10.3f} {:8.3f}\n",
+             options.model == engine::ModelKind::paper ? "paper" : "surface",
+             options.touchdown_ramp_n, gains.front().tangential_n, median(rms), median(first),
+             largest(first), median(within), largest(within));
+}
+
+void print_all_touchdowns(const std::vector<Plane<double>>& textures) {
+  std::puts(
+      "\nlateral force of landings at 100 mm/s, N\n"
+      "model    ramp N      k_t     rms   first ms: median, largest   any ms of 20: median, "
+      "largest");
+  for (const double ramp_n : {0.0, 0.05, 0.1, 0.2, 0.4, 0.7}) {
+    engine::RenderingOptions options;
+    options.touchdown_ramp_n = ramp_n;
+    print_touchdowns(textures, options);
+  }
+  engine::RenderingOptions surface;
+  surface.model = engine::ModelKind::surface;
+  print_touchdowns(textures, surface);
+}
+
 /// The middle of a texture, 40 mm wide at the default pitch.
 Plane<double> middle_of(const Plane<double>& texture) {
   constexpr int kSidePx = 200;
@@ -119,7 +167,7 @@ std::vector<Plane<double>> textures_of(const std::filesystem::path& stimuli) {
   std::vector<Plane<double>> textures;
   for (const char* name : kTextures) {
     const GreyImage image = engine::read_grey_image(stimuli / (std::string(name) + ".png"));
-    textures.push_back(middle_of(engine::extract_texture<double>(image, {}).texture));
+    textures.push_back(engine::extract_texture<double>(image, {}).texture);
   }
   return textures;
 }
@@ -134,7 +182,10 @@ void run(const std::filesystem::path& stimuli, const std::filesystem::path& out,
   print_quantised_walls();
   print_device_models();
   std::fflush(stdout);
-  analysis::draw_with_gnuplot(draw_texture(png, textures_of(stimuli)), out / ("chatter" + ending));
+  std::vector<Plane<double>> textures = textures_of(stimuli);
+  print_all_touchdowns(textures);
+  for (Plane<double>& texture : textures) texture = middle_of(texture);
+  analysis::draw_with_gnuplot(draw_texture(png, textures), out / ("chatter" + ending));
 }
 
 }  // namespace

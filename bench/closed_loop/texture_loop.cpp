@@ -70,6 +70,38 @@ class ChatterSink final : public device::SampleSink {
   double deviation_n_ = 0.0;
 };
 
+class TouchdownSink final : public device::SampleSink {
+ public:
+  void record(const device::ServoSample& sample) noexcept override {
+    const Vec2 lateral_n{sample.force_n.x, sample.force_n.y};
+    const double step_n = norm(lateral_n - before_n_);
+    if (in_contact_ == 0 && sample.force_n.z > 0.0) touchdown_.step_n = step_n;
+    if (in_contact_ > 0 || sample.force_n.z > 0.0) ++in_contact_;
+    if (in_contact_ <= kLandingTicks) {
+      touchdown_.largest_step_n = std::max(touchdown_.largest_step_n, step_n);
+    }
+    if (static_cast<double>(sample.tick) >= kLandingS * device::kServoRateHz) {
+      ++ticks_;
+      squares_ += lateral_n.x * lateral_n.x + lateral_n.y * lateral_n.y;
+    }
+    before_n_ = lateral_n;
+  }
+
+  [[nodiscard]] Touchdown touchdown() const {
+    Touchdown touchdown = touchdown_;
+    touchdown.rms_n = std::sqrt(squares_ / static_cast<double>(std::max<std::int64_t>(ticks_, 1)));
+    return touchdown;
+  }
+
+ private:
+  static constexpr int kLandingTicks = 20;
+  Touchdown touchdown_;
+  Vec2 before_n_;
+  int in_contact_ = 0;  ///< ticks since the first with contact, that one included
+  std::int64_t ticks_ = 0;
+  double squares_ = 0.0;
+};
+
 device::SimulatedHand stroking_hand(const PlaneGeometry& plane, const TextureStroke& stroke) {
   device::HandOptions hand;
   hand.push_n = stroke.push_n;
@@ -82,6 +114,17 @@ device::SimulatedHand stroking_hand(const PlaneGeometry& plane, const TextureStr
   return {hand, device::ExplorationPath(plane, path, random)};
 }
 
+void run_stroke(const engine::RenderingModel& model, const PlaneGeometry& plane,
+                const TextureStroke& stroke, device::SampleSink& sink) {
+  device::SimulatedHand hand = stroking_hand(plane, stroke);
+  session::ModelForce force(model);
+  const device::ServoReport report = device::run_servo_in_virtual_time(hand, force, sink, {});
+  if (report.end == device::ServoEnd::fault) {
+    throw std::runtime_error("closed loop: the run ended with the fault: " +
+                             std::string(device::name_of(report.fault)));
+  }
+}
+
 }  // namespace
 
 Chatter stroke_texture(const Plane<double>& texture, const engine::RenderingOptions& options,
@@ -90,15 +133,16 @@ Chatter stroke_texture(const Plane<double>& texture, const engine::RenderingOpti
   const engine::FieldView view = field.view();
   const engine::Gains gains = engine::choose_gains({&view, 1}, options).of_field.front();
   const engine::RenderingModel model(view, options, gains);
-  device::SimulatedHand hand = stroking_hand(view.geometry, stroke);
-  session::ModelForce force(model);
   ChatterSink sink(stroke.push_n);
-  const device::ServoReport report = device::run_servo_in_virtual_time(hand, force, sink, {});
-  if (report.end == device::ServoEnd::fault) {
-    throw std::runtime_error("closed loop: the run ended with the fault: " +
-                             std::string(device::name_of(report.fault)));
-  }
+  run_stroke(model, view.geometry, stroke, sink);
   return sink.chatter();
+}
+
+Touchdown touch_down(const engine::RenderingModel& model, const PlaneGeometry& plane,
+                     const TextureStroke& stroke) {
+  TouchdownSink sink;
+  run_stroke(model, plane, stroke, sink);
+  return sink.touchdown();
 }
 
 }  // namespace touchtrial::bench

@@ -1,9 +1,10 @@
-/// \file How much a simulated hand chatters while it strokes a texture through the servo.
+/// \file How much a simulated hand chatters while it strokes a texture through the servo, and what it
+/// feels when it comes down.
 /// Source: docs/benchmarks/closed-loop.md.
 #pragma once
 
 #include "core/plane.hpp"
-#include "engine/rendering/rendering_options.hpp"
+#include "engine/rendering/rendering_model.hpp"
 
 #include <cstdint>
 
@@ -32,5 +33,18 @@ struct Chatter {
 [[nodiscard]] Chatter stroke_texture(const Plane<double>& texture,
                                      const engine::RenderingOptions& options,
                                      const TextureStroke& stroke = {});
+
+/// The lateral force of a hand that comes down on a texture while it strokes, as sent to it.
+struct Touchdown {
+  double step_n = 0.0;          ///< from none, in the first tick of contact
+  double largest_step_n = 0.0;  ///< from one tick to the next, within 20 ms of the first contact
+  double rms_n = 0.0;           ///< from the second second on
+};
+
+/// Runs the servo as stroke_texture.
+/// \param stroke  of more than 1 s
+/// \throws std::runtime_error if the run ended with a fault; the message names it
+[[nodiscard]] Touchdown touch_down(const engine::RenderingModel& model, const PlaneGeometry& plane,
+                                   const TextureStroke& stroke);
 
 }  // namespace touchtrial::bench

@@ -30,10 +30,9 @@ double root_mean(SampledView field, SquareOf square_of) noexcept {
   return std::sqrt(sum / static_cast<double>(field.samples.size()));
 }
 
-/// Scale * sqrt(squared_step(left, right) + squared_step(above, below)) / (2 pitch) for every pixel
-/// that has all four neighbours.
-template <typename SquaredStep>
-std::vector<float> central_differences(SampledView field, double scale, SquaredStep squared_step) {
+/// Scale * sqrt(squares_at(pixel, width)) / (2 pitch) for every pixel that has all four neighbours.
+template <typename SquaresAt>
+std::vector<float> interior_norms(SampledView field, double scale, SquaresAt squares_at) {
   const int height = field.geometry.height_px;
   const int width = field.geometry.width_px;
   if (height < 3 || width < 3) return {};
@@ -44,12 +43,45 @@ std::vector<float> central_differences(SampledView field, double scale, SquaredS
   for (int y = 1; y < height - 1; ++y) {
     const FieldSample* row = field.samples.data() + static_cast<std::size_t>(y) * width;
     for (int x = 1; x < width - 1; ++x) {
-      const double squares =
-          squared_step(row[x - 1], row[x + 1]) + squared_step(row[x - width], row[x + width]);
-      *to++ = static_cast<float>(per_mm * std::sqrt(squares));
+      *to++ = static_cast<float>(per_mm * std::sqrt(squares_at(row + x, width)));
     }
   }
   return norms;
+}
+
+/// squared_step(left, right) + squared_step(above, below) under the root.
+template <typename SquaredStep>
+std::vector<float> central_differences(SampledView field, double scale, SquaredStep squared_step) {
+  return interior_norms(field, scale, [=](const FieldSample* at, int width) {
+    return squared_step(at[-1], at[1]) + squared_step(at[-width], at[width]);
+  });
+}
+
+/// With J the Jacobian of the whole F_T and P the outer product of F_T and the share's gradient,
+/// the force at a share s of the ramp has the Jacobian s J + P along the plane, and F_T * per_mm in
+/// depth. The norm is convex in s, so it is largest at an end of the ramp; above it, it is J's.
+std::vector<float> stiffness_on_ramp(SampledView field, double scale, RampSlopes ramp) {
+  const double per_step = 2.0 * field.geometry.pitch_mm * ramp.per_mm;
+  return interior_norms(field, scale, [=](const FieldSample* at, int width) {
+    double whole = 0.0;
+    double at_top = 0.0;
+    double at_touchdown = 0.0;
+    for (const int step : {1, width}) {
+      const FieldSample& before = at[-step];
+      const FieldSample& after = at[step];
+      const double share = ramp.per_grey * (double{after.height} - before.height);
+      const double steps[] = {double{after.force_x} - before.force_x,
+                              double{after.force_y} - before.force_y};
+      const double shares[] = {share * at->force_x, share * at->force_y};
+      for (const int i : {0, 1}) {
+        whole += square(steps[i]);
+        at_top += square(steps[i] + shares[i]);
+        at_touchdown += square(shares[i]);
+      }
+    }
+    const double in_depth = square(per_step * at->force_x) + square(per_step * at->force_y);
+    return std::max(whole, std::max(at_top, at_touchdown) + in_depth);
+  });
 }
 
 /// The place of a value >= 0 in the order of its leading bits: floats sort like their bits.
@@ -104,7 +136,8 @@ double height_rms(SampledView field) noexcept {
   return root_mean(field, [](const FieldSample& s) { return square(s.height); });
 }
 
-std::vector<float> tangential_stiffness(SampledView field, double scale) {
+std::vector<float> tangential_stiffness(SampledView field, double scale, RampSlopes ramp) {
+  if (ramp.per_mm != 0.0) return stiffness_on_ramp(field, scale, ramp);
   return central_differences(field, scale, [](const FieldSample& a, const FieldSample& b) {
     return square(double{b.force_x} - a.force_x) + square(double{b.force_y} - a.force_y);
   });

@@ -36,12 +36,21 @@ struct SampledField {
 /// Root mean square of the heights over all pixels, grey levels.
 [[nodiscard]] double height_rms(SampledView field) noexcept;
 
-/// Scale * Frobenius norm of the in-plane Jacobian of F_T at every interior pixel, by central
-/// differences over the pitch: grey levels per pixel per mm. A field with a side below 3 has no
-/// interior. In single precision.
-[[nodiscard]] std::vector<float> tangential_stiffness(SampledView field, double scale);
+/// The share of F_T that height and depth add while the load is on the touchdown ramp; zeros: no
+/// ramp.
+struct RampSlopes {
+  double per_grey = 0.0;  ///< c / touchdown_ramp_n
+  double per_mm = 0.0;    ///< k / touchdown_ramp_n
+};
 
-/// The same with the norm of the heights' gradient: grey levels per mm.
+/// Scale * Frobenius norm of the in-plane Jacobian of F_T at every interior pixel, by central
+/// differences over the pitch: grey levels per pixel per mm. With a ramp, of the Jacobian along the
+/// plane and in depth, at the load at which it is largest. A field with a side below 3 has no
+/// interior. In single precision.
+[[nodiscard]] std::vector<float> tangential_stiffness(SampledView field, double scale,
+                                                      RampSlopes ramp = {});
+
+/// Scale * norm of the heights' gradient at every interior pixel: grey levels per mm.
 [[nodiscard]] std::vector<float> height_stiffness(SampledView field, double scale);
 
 /// Factors that equalise fields: with Equalise::rms, 1 / rms, and 0 for a flat field; else 1 each.

@@ -27,11 +27,13 @@ inline constexpr std::array<double, 3> kStrokeSpeedsMmPerS = {50.0, 100.0, 200.0
 /// of kStatedLoadN, because its lateral force grows with the load; its normal rms holds at a
 /// constant depth.
 struct FieldStatistics {
-  double tangential_rms_n = 0.0;        ///< of |F_T| over all pixels
-  double tangential_p999_n = 0.0;       ///< 99.9th percentile of |F_T| over all pixels
-  double normal_rms_n = 0.0;            ///< of c * (G - 128), or of k * alpha * h
-  double stiffness_p99_n_per_mm = 0.0;  ///< 99th percentile of the in-plane Jacobian's norm
-  double share_below_1_mm = 0.0;        ///< share of tangential force power at wavelengths < 1 mm
+  double tangential_rms_n = 0.0;   ///< of |F_T| over all pixels
+  double tangential_p999_n = 0.0;  ///< 99.9th percentile of |F_T| over all pixels
+  double normal_rms_n = 0.0;       ///< of c * (G - 128), or of k * alpha * h
+  /// 99th percentile of the in-plane Jacobian's norm; on a touchdown ramp, of the lateral force's
+  /// Jacobian with depth, at its largest.
+  double stiffness_p99_n_per_mm = 0.0;
+  double share_below_1_mm = 0.0;  ///< share of tangential force power at wavelengths < 1 mm
   /// Share of tangential force power above 250 Hz for strokes at kStrokeSpeedsMmPerS. Each wave is
   /// taken to be crossed at a right angle, where its frequency is highest.
   std::array<double, 3> share_above_250_hz{};
@@ -39,7 +41,8 @@ struct FieldStatistics {
 
 /// Power excludes the mean force. Thread-safe. Cost: two real Fourier transforms of the field's
 /// size.
-/// \param options  of the study: `surface` depends on their stiffness, `paper` on none of them
+/// \param options  of the study: `surface` depends on their stiffness, `paper` on stiffness and
+///   touchdown ramp
 /// \throws std::invalid_argument if the field is empty or has samples that are not finite
 [[nodiscard]] FieldStatistics field_statistics(FieldView field, Gains gains,
                                                const RenderingOptions& options = {});

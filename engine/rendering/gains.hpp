@@ -19,7 +19,9 @@ struct StudyGains {
 /// pooled over the interior pixels of all fields, of the in-plane Jacobian's Frobenius norm (and of
 /// the surface gradient's norm) stays within the budget, in N/mm. Interior pixels have all four
 /// neighbours; derivatives are central differences over the pitch; percentiles interpolate
-/// linearly. Where more than 99 % of the pool is flat, its maximum replaces the percentile.
+/// linearly. Where more than 99 % of the pool is flat, its maximum replaces the percentile. With a
+/// touchdown ramp the lateral force's Jacobian is that along the plane and in depth, at the load at
+/// which it is largest, so that k_t is smaller.
 ///
 /// With Equalise::rms the gain of each field is divided by the field's own rms (of |F_T| for k_t,
 /// of G - 128 for c) before pooling, so that all stimuli get the same rms force.

@@ -142,6 +142,7 @@ PaperModel::PaperModel(FieldView field, const RenderingOptions& options, Gains g
       stiffness_n_per_mm_(options.stiffness_n_per_mm),
       damping_n_s_per_mm_(options.damping_n_s_per_mm),
       reference_height_(options.reference_grey - kMidGrey),
+      touchdown_ramp_n_(options.touchdown_ramp_n),
       max_force_n_(options.max_force_n),
       gains_(gains) {}
 
@@ -161,10 +162,12 @@ Vec3 PaperModel::force_n(const Vec3& position, const Vec3& velocity_mm_s) const 
     elastic_n += gains_.normal_n * (texture.value - reference_height_);
   }
   const double normal_n = elastic_n - damping_n_s_per_mm_ * velocity_mm_s.z;
-  if (!(elastic_n > 0.0 && normal_n > 0.0)) return {};
-  return limited_in_norm(
-      {gains_.tangential_n * texture.along_x, gains_.tangential_n * texture.along_y, normal_n},
-      max_force_n_);
+  const double load_n = std::min(normal_n, elastic_n);  // NaN if F_N is
+  if (!(load_n > 0.0)) return {};
+  double tangential_n = gains_.tangential_n;
+  if (load_n < touchdown_ramp_n_) tangential_n *= load_n / touchdown_ramp_n_;
+  return limited_in_norm({tangential_n * texture.along_x, tangential_n * texture.along_y, normal_n},
+                         max_force_n_);
 }
 
 bool PaperModel::is_out_of_reach(double wall_n) const noexcept {
@@ -261,6 +264,15 @@ struct Channel {
   explicit Channel(std::size_t fields) : rms(fields), factors(fields), stiffness(fields) {}
 };
 
+/// How the ramp adds to the lateral force's stiffness. Ramps shorter than any number that a hand
+/// could tell from a step count as this long, which keeps the numbers finite.
+RampSlopes ramp_slopes(const RenderingOptions& options, double normal_n) {
+  constexpr double kShortestN = 1e-9;
+  if (options.touchdown_ramp_n == 0.0) return {};
+  const double ramp_n = std::max(options.touchdown_ramp_n, kShortestN);
+  return {normal_n / ramp_n, options.stiffness_n_per_mm / ramp_n};
+}
+
 struct ChannelGains {
   std::vector<double> of_field;
   bool over_budget = false;
@@ -283,23 +295,32 @@ ChannelGains channel_gains(const Channel& channel, std::optional<double> explici
 StudyGains gains_of_paper(std::span<const FieldView> fields, const RenderingOptions& options) {
   Channel along(fields.size());
   Channel across(fields.size());
+  const auto set_rms = [&](Channel& channel, std::size_t i, double rms) {
+    channel.rms[i] = rms;
+    channel.factors[i] = equalising_factors({&rms, 1}, options.equalise).front();
+  };
   in_parallel(jobs_for(fields), fields.size(), [&](std::size_t i) {
     const SampledField sampled = sampled_paper(fields[i]);
-    const auto measure = [&](Channel& channel, double (*rms)(SampledView) noexcept,
-                             std::vector<float> (*stiffness)(SampledView, double)) {
-      channel.rms[i] = rms(sampled.view());
-      channel.factors[i] = equalising_factors({&channel.rms[i], 1}, options.equalise).front();
-      if (channel.rms[i] > 0.0)
-        channel.stiffness[i] = stiffness(sampled.view(), channel.factors[i]);
-    };
-    measure(along, tangential_rms, tangential_stiffness);
-    measure(across, height_rms, height_stiffness);
+    set_rms(along, i, tangential_rms(sampled.view()));
+    set_rms(across, i, height_rms(sampled.view()));
+    if (across.rms[i] > 0.0)
+      across.stiffness[i] = height_stiffness(sampled.view(), across.factors[i]);
+    if (along.rms[i] > 0.0 && options.touchdown_ramp_n == 0.0)
+      along.stiffness[i] = tangential_stiffness(sampled.view(), along.factors[i]);
   });
   std::optional<Gains> given = options.gains;
-  const ChannelGains tangential =
-      channel_gains(along, given ? std::optional(given->tangential_n) : std::nullopt, options);
   const ChannelGains normal =
       channel_gains(across, given ? std::optional(given->normal_n) : std::nullopt, options);
+  // On a ramp, heights count in the lateral stiffness, with the gain that they have by now.
+  if (options.touchdown_ramp_n != 0.0) {
+    in_parallel(jobs_for(fields), fields.size(), [&](std::size_t i) {
+      if (along.rms[i] == 0.0) return;
+      along.stiffness[i] = tangential_stiffness(sampled_paper(fields[i]).view(), along.factors[i],
+                                                ramp_slopes(options, normal.of_field[i]));
+    });
+  }
+  const ChannelGains tangential =
+      channel_gains(along, given ? std::optional(given->tangential_n) : std::nullopt, options);
   StudyGains gains;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     gains.of_field.push_back({tangential.of_field[i], normal.of_field[i]});
@@ -308,15 +329,15 @@ StudyGains gains_of_paper(std::span<const FieldView> fields, const RenderingOpti
   return gains;
 }
 
-FieldStatistics statistics_of_paper(FieldView field, Gains gains,
-                                    const RenderingOptions& /*options*/) {
+FieldStatistics statistics_of_paper(FieldView field, Gains gains, const RenderingOptions& options) {
   const SampledField sampled = sampled_paper(field);
   const SampledView view = sampled.view();
   const double heights = height_rms(view);
   require_finite_rms(tangential_rms(view), heights);
   FieldStatistics statistics = lateral_statistics(view, gains.tangential_n);
   statistics.normal_rms_n = gains.normal_n * heights;
-  const std::vector<float> stiffness = tangential_stiffness(view, 1.0);
+  const std::vector<float> stiffness =
+      tangential_stiffness(view, 1.0, ramp_slopes(options, gains.normal_n));
   statistics.stiffness_p99_n_per_mm = gains.tangential_n * percentile({&stiffness, 1}, 0.99);
   return statistics;
 }

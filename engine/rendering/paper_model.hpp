@@ -23,8 +23,9 @@ class PaperModel {
   /// reference_grey 0, depth must be positive too. In contact F_N = elastic force - damping * v_z
   /// and F_T = k_t * tangential_force(heights), both bilinear between pixel centres and constant
   /// across the outer half pixel; G = 128 + T. No plane of forces is stored: they follow from the
-  /// heights round the stylus. The norm of the total is limited to max_force_n; its direction is
-  /// kept.
+  /// heights round the stylus. Below a load of touchdown_ramp_n F_T is multiplied by load /
+  /// touchdown_ramp_n; the load is the smaller of elastic force and F_N. The norm of the total is
+  /// limited to max_force_n; its direction is kept.
   /// Damping neither pulls (where F_N <= 0 there is no force at all) nor acts above the surface.
   /// Beyond the plane's edge: the flat wall, k * depth - damping * v_z.
   /// Without contact the force is zero; the field is not read where no surface could reach the
@@ -42,6 +43,7 @@ class PaperModel {
   double stiffness_n_per_mm_;
   double damping_n_s_per_mm_;
   double reference_height_;  ///< G_ref - 128
+  double touchdown_ramp_n_;
   double max_force_n_;
   Gains gains_;
 };

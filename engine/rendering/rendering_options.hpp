@@ -74,6 +74,7 @@ struct RenderingOptions {
   double reference_grey = 128.0;  ///< paper: G_ref, grey levels, 0 .. 255
   double friction = 0.0;          ///< surface: friction coefficient mu, >= 0; 0: no friction
   int neighbourhood = 3;          ///< paper: n, odd, 3 .. kLargestNeighbourhood
+  double touchdown_ramp_n = 0.0;  ///< paper: load with the whole lateral force, >= 0; 0: no ramp
   double max_force_n = 3.3;       ///< limit of the total force's norm, > 0
 
   friend bool operator==(const RenderingOptions&, const RenderingOptions&) = default;

@@ -89,6 +89,17 @@ void read_friction(const JsonObject& object, engine::RenderingOptions& options) 
   }
 }
 
+void read_touchdown_ramp(const JsonObject& object, engine::RenderingOptions& options) {
+  const auto ramp = object.find("touchdown_ramp_n");
+  if (!ramp) return;
+  options.touchdown_ramp_n = ramp->number({.low = 0.0, .high = 1.0});
+  if (options.model == engine::ModelKind::surface && options.touchdown_ramp_n != 0.0) {
+    ramp->refuse(
+        "must be 0: the lateral force of the rendering model surface grows with the load by "
+        "itself; leave it out or give \"model\": \"paper\"");
+  }
+}
+
 nlohmann::json gains_json(const engine::RenderingOptions& rendering) {
   if (!rendering.gains) return "budget";
   if (rendering.model == engine::ModelKind::surface)
@@ -129,11 +140,12 @@ ReadRendering read_rendering(const JsonValue& place) {
   const JsonObject object =
       place.object({"model", "pitch_mm", "stiffness_n_per_mm", "damping_n_s_per_mm", "filter_mm",
                     "texture_stiffness_n_per_mm", "gains", "equalise", "reference_grey", "friction",
-                    "neighbourhood", "max_force_n", "device"});
+                    "neighbourhood", "touchdown_ramp_n", "max_force_n", "device"});
   ReadRendering read;
   engine::RenderingOptions& options = read.options;
   if (const auto model = object.find("model")) options.model = model->choice(kModelNames);
   read_friction(object, options);
+  read_touchdown_ramp(object, options);
   read_wall(object, options);
   read_texture(object, read);
   if (const auto member = object.find("device")) read.device = read_device(*member);
@@ -155,18 +167,21 @@ std::string written_rendering(const engine::RenderingOptions& rendering) {
 }
 
 nlohmann::json to_json(const engine::RenderingOptions& rendering) {
-  return {{"model", word_for(kModelNames, rendering.model)},
-          {"pitch_mm", rendering.pitch_mm},
-          {"stiffness_n_per_mm", rendering.stiffness_n_per_mm},
-          {"damping_n_s_per_mm", rendering.damping_n_s_per_mm},
-          {"filter_mm", rendering.filter_mm},
-          {"texture_stiffness_n_per_mm", rendering.texture_stiffness_n_per_mm},
-          {"gains", gains_json(rendering)},
-          {"equalise", word_for(kEqualiseNames, rendering.equalise)},
-          {"reference_grey", rendering.reference_grey},
-          {"friction", rendering.friction},
-          {"neighbourhood", rendering.neighbourhood},
-          {"max_force_n", rendering.max_force_n}};
+  nlohmann::json object = {{"model", word_for(kModelNames, rendering.model)},
+                           {"pitch_mm", rendering.pitch_mm},
+                           {"stiffness_n_per_mm", rendering.stiffness_n_per_mm},
+                           {"damping_n_s_per_mm", rendering.damping_n_s_per_mm},
+                           {"filter_mm", rendering.filter_mm},
+                           {"texture_stiffness_n_per_mm", rendering.texture_stiffness_n_per_mm},
+                           {"gains", gains_json(rendering)},
+                           {"equalise", word_for(kEqualiseNames, rendering.equalise)},
+                           {"reference_grey", rendering.reference_grey},
+                           {"friction", rendering.friction},
+                           {"neighbourhood", rendering.neighbourhood},
+                           {"max_force_n", rendering.max_force_n}};
+  // Left out where there is none, so that studies without it keep their seals.
+  if (rendering.touchdown_ramp_n != 0.0) object["touchdown_ramp_n"] = rendering.touchdown_ramp_n;
+  return object;
 }
 
 }  // namespace touchtrial::design

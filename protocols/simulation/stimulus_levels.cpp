@@ -316,7 +316,8 @@ StimulusLevels levels_of(const design::StudyCodes& key, const session::StimulusS
                          std::uint64_t seed) {
   StimulusLevels result;
   std::vector<engine::FieldWithGains> fields;
-  for (const LabelledField& labelled : LabelledFields(key, source).all()) {
+  const LabelledFields all(key, source);
+  for (const LabelledField& labelled : all.all()) {
     result.stimuli.push_back(labelled.stimulus);
     fields.push_back(source.field(key.code_of(labelled.stimulus)));
   }

@@ -1,6 +1,7 @@
 #include "engine/rendering/gains.hpp"
 
 #include "engine/rendering/field_measures.hpp"
+#include "engine/rendering/field_statistics.hpp"
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"
 
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace touchtrial {
 namespace {
@@ -34,6 +36,46 @@ std::vector<double> stiffness_slowly(engine::FieldView field,
                    std::pow(along_y / (2.0 * field.geometry.pitch_mm), 2);
       }
       norms.push_back(std::sqrt(squares));
+    }
+  }
+  return norms;
+}
+
+/// The norm of the lateral force's Jacobian along the plane and in depth at every interior pixel,
+/// at the load on the touchdown ramp, or beyond it, at which it is largest.
+std::vector<double> stiffness_with_ramp_slowly(engine::FieldView field,
+                                               const engine::RenderingOptions& options,
+                                               engine::Gains gains) {
+  const engine::SampledField samples = sampled(field);
+  const double two_px_mm = 2.0 * field.geometry.pitch_mm;
+  const double ramp_n = options.touchdown_ramp_n;
+  std::vector<double> norms;
+  for (int y = 1; y + 1 < field.geometry.height_px; ++y) {
+    for (int x = 1; x + 1 < field.geometry.width_px; ++x) {
+      const auto value = [&](float engine::FieldSample::*of, int dy, int dx) {
+        return double{samples.samples.at(y + dy, x + dx).*of};
+      };
+      double largest = 0.0;
+      for (int tenths = 0; tenths <= 11; ++tenths) {
+        const bool is_beyond = tenths > 10;
+        const double share = is_beyond ? 1.0 : 0.1 * tenths;
+        double squares = 0.0;
+        for (const auto of : {&engine::FieldSample::force_x, &engine::FieldSample::force_y}) {
+          const double force_n = gains.tangential_n * value(of, 0, 0);
+          for (const auto& [dy, dx] : {std::pair{0, 1}, {1, 0}}) {
+            const double change =
+                gains.tangential_n * (value(of, dy, dx) - value(of, -dy, -dx)) / two_px_mm;
+            const double load = gains.normal_n *
+                                (value(&engine::FieldSample::height, dy, dx) -
+                                 value(&engine::FieldSample::height, -dy, -dx)) /
+                                two_px_mm;
+            squares += std::pow(share * change + (is_beyond ? 0.0 : force_n * load / ramp_n), 2);
+          }
+          if (!is_beyond) squares += std::pow(force_n * options.stiffness_n_per_mm / ramp_n, 2);
+        }
+        largest = std::max(largest, std::sqrt(squares));
+      }
+      norms.push_back(largest);
     }
   }
   return norms;
@@ -144,6 +186,24 @@ TEST_CASE("choose_gains meets the stiffness budget exactly over all fields toget
   CHECK_FALSE(gains.over_budget);
 }
 
+TEST_CASE("choose_gains meets the budget with a touchdown ramp, whose stiffness counts") {
+  const std::vector<engine::TextureField> fields = three_fields();
+  engine::RenderingOptions options = GENERATE(engine::RenderingOptions{}, equalised());
+  const engine::Gains without = engine::choose_gains(views_of(fields), options).of_field[0];
+  options.touchdown_ramp_n = GENERATE(0.01, 0.2, 1.0);
+  const engine::StudyGains gains = engine::choose_gains(views_of(fields), options);
+  std::vector<double> stiffness;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const auto of_field = stiffness_with_ramp_slowly(fields[i].view(), options, gains.of_field[i]);
+    stiffness.insert(stiffness.end(), of_field.begin(), of_field.end());
+    CHECK(engine::field_statistics(fields[i].view(), gains.of_field[i], options)
+              .stiffness_p99_n_per_mm == Approx(percentile_slowly(of_field, 0.99)).epsilon(1e-6));
+  }
+  CHECK(percentile_slowly(stiffness, 0.99) == Approx(0.4).epsilon(1e-6));
+  CHECK(gains.of_field[0].normal_n == without.normal_n);
+  CHECK(gains.of_field[0].tangential_n < without.tangential_n);
+}
+
 TEST_CASE("choose_gains gives all fields one pair of gains unless they are equalised") {
   const std::vector<engine::TextureField> fields = three_fields();
   const engine::StudyGains gains = engine::choose_gains(views_of(fields), {});
@@ -236,6 +296,9 @@ TEST_CASE("choose_gains takes explicit gains as they are and says when they exce
   const engine::StudyGains same = engine::choose_gains(views_of(fields), options);
   CHECK(same.of_field == std::vector<engine::Gains>(3, allowed));
   CHECK_FALSE(same.over_budget);
+  options.touchdown_ramp_n = 0.2;
+  CHECK(engine::choose_gains(views_of(fields), options).over_budget);
+  options.touchdown_ramp_n = 0.0;
   options.gains = engine::Gains{1.001 * allowed.tangential_n, 0.0};
   const engine::StudyGains over = engine::choose_gains(views_of(fields), options);
   CHECK(over.of_field == std::vector<engine::Gains>(3, *options.gains));

@@ -1,6 +1,7 @@
 #include "engine/rendering/paper_model.hpp"
 
 #include "engine/force_field.hpp"
+#include "engine/reference/paper_reference.hpp"
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"
 
@@ -19,25 +20,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 Vec3 centre_of(engine::FieldView field, int y, int x, double z_mm) {
   const Vec2 at = field.geometry.to_mm(x, y);
   return {at.x, at.y, z_mm};
-}
-
-/// A value at every pixel, interpolated bilinearly: four weighted corners written out.
-double mixed_slowly(engine::FieldView field, const Plane<double>& values, double x_mm,
-                    double y_mm) {
-  const int height = field.geometry.height_px;
-  const int width = field.geometry.width_px;
-  const Vec2 px = field.geometry.to_px(x_mm, y_mm);
-  double sum = 0.0;
-  for (int y = -1; y <= height; ++y) {
-    for (int x = -1; x <= width; ++x) {
-      const double weight =
-          std::max(0.0, 1.0 - std::abs(px.x - x)) * std::max(0.0, 1.0 - std::abs(px.y - y));
-      const int row = std::clamp(y, 0, height - 1);
-      const int column = std::clamp(x, 0, width - 1);
-      sum += weight * values.at(row, column);
-    }
-  }
-  return sum;
 }
 
 TEST_CASE("PaperModel is a Hooke wall on a flat texture") {
@@ -85,58 +67,93 @@ TEST_CASE("PaperModel damps in contact, never pulls and does not act in the air"
   CHECK(model.force_n({-2.0, 2.0, 0.1}, {0.0, 0.0, -500.0}) == Vec3{});
 }
 
-/// The force planes and heights of a field, in double, from the definition.
-struct SlowField {
-  explicit SlowField(engine::FieldView field)
-      : heights(field.geometry.height_px, field.geometry.width_px) {
-    std::ranges::copy(field.heights, heights.samples().begin());
-    Plane<double> slopes = heights;
-    std::ranges::copy(field.slopes(), slopes.samples().begin());
-    force = engine::tangential_force(slopes, field.neighbourhood);
-  }
-  Plane<double> heights;
-  engine::ForceField<double> force;
-};
-
 TEST_CASE("PaperModel gives tangential_force() of the field's heights at pixel centres") {
   const engine::TextureField field = random_field(6, 9, 2);
   const engine::FieldView view = field.view();
-  const SlowField slow(view);
+  Plane<double> heights(6, 9);
+  std::ranges::copy(view.heights, heights.samples().begin());
+  const engine::ForceField<double> slow = engine::tangential_force(heights, 3);
   const engine::PaperModel model(view, {}, kGains);
   for (int y = 0; y < 6; ++y) {
     for (int x = 0; x < 9; ++x) {
       const Vec3 force_n = model.force_n(centre_of(view, y, x, -2.0), kStill);
-      REQUIRE(force_n.x == Approx(0.012 * slow.force.x.at(y, x)).margin(1e-12));
-      REQUIRE(force_n.y == Approx(0.012 * slow.force.y.at(y, x)).margin(1e-12));
-      REQUIRE(force_n.z == Approx(0.8 + 0.01 * slow.heights.at(y, x)).margin(1e-12));
+      REQUIRE(force_n.x == Approx(0.012 * slow.x.at(y, x)).margin(1e-12));
+      REQUIRE(force_n.y == Approx(0.012 * slow.y.at(y, x)).margin(1e-12));
+      REQUIRE(force_n.z == Approx(0.8 + 0.01 * heights.at(y, x)).margin(1e-12));
     }
   }
 }
 
-TEST_CASE("PaperModel is bilinear between pixel centres and constant in the outer half pixel") {
+TEST_CASE("PaperModel agrees with its equations at every size, load, speed and ramp") {
   const int height = GENERATE(1, 2, 3, 4, 7);
   const int width = GENERATE(1, 2, 3, 11);
   engine::RenderingOptions options;
   options.neighbourhood = GENERATE(3, 5, 31);
+  options.touchdown_ramp_n = GENERATE(0.0, 1e-6, 0.2, 1.0);
   options.filter_mm = 0.0;
   const engine::TextureField field =
       engine::make_texture_field(random_texture(height, width, 3), options);
   const engine::FieldView view = field.view();
-  const SlowField slow(view);
-  const engine::PaperModel model(view, options, kGains);
   RandomStream random(4, "points");
+  options.damping_n_s_per_mm = GENERATE(0.0, 0.002);
+  const engine::PaperModel model(view, options, kGains);
+  const reference::PaperForce slow(view, options, kGains);
   for (int i = 0; i < 200; ++i) {
-    const double x_mm = random.uniform(0.0, view.geometry.width_mm());
-    const double y_mm = random.uniform(0.0, view.geometry.height_mm());
-    const Vec3 force_n = model.force_n({x_mm, y_mm, -2.0}, kStill);
-    CAPTURE(height, width, options.neighbourhood, x_mm, y_mm);
-    const double fx = mixed_slowly(view, slow.force.x, x_mm, y_mm);
-    const double fy = mixed_slowly(view, slow.force.y, x_mm, y_mm);
-    const Vec3 expected{0.012 * fx, 0.012 * fy,
-                        0.8 + 0.01 * mixed_slowly(view, slow.heights, x_mm, y_mm)};
-    const double scale = std::min(1.0, 3.3 / norm(expected));
-    REQUIRE(norm(force_n - scale * expected) < 1e-12);
+    const Vec3 position_mm{random.uniform(-0.1, view.geometry.width_mm() + 0.1),
+                           random.uniform(-0.1, view.geometry.height_mm() + 0.1),
+                           random.uniform(-2.5, 0.5)};
+    const Vec3 velocity_mm_s{random.uniform(-200.0, 200.0), 0.0, random.uniform(-200.0, 200.0)};
+    const Vec3 force_n = model.force_n(position_mm, velocity_mm_s);
+    const Vec3 expected = slow.force_n(position_mm, velocity_mm_s);
+    CAPTURE(height, width, options.neighbourhood, options.touchdown_ramp_n, position_mm.x,
+            position_mm.y, position_mm.z, velocity_mm_s.z);
+    REQUIRE(norm(force_n - expected) < 1e-12);
   }
+}
+
+TEST_CASE("PaperModel's touchdown ramp multiplies the lateral force alone, by the load") {
+  const engine::TextureField field = random_field(10, 10, 16);
+  engine::RenderingOptions options;
+  const engine::PaperModel whole(field.view(), options, kGains);
+  options.touchdown_ramp_n = GENERATE(1e-300, 0.05, 0.2, 1.0);
+  const engine::PaperModel ramped(field.view(), options, kGains);
+  RandomStream random(17, "points");
+  int below = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 at{random.uniform(0.0, 2.0), random.uniform(0.0, 2.0), random.uniform(-4.0, 0.5)};
+    const Vec3 full_n = whole.force_n(at, kStill);
+    const Vec3 force_n = ramped.force_n(at, kStill);
+    if (full_n.z >= options.touchdown_ramp_n) {
+      REQUIRE(force_n == full_n);
+    } else {
+      const double share = full_n.z / options.touchdown_ramp_n;
+      REQUIRE(norm(force_n - Vec3{share * full_n.x, share * full_n.y, full_n.z}) < 1e-15);
+      if (full_n.z > 0.0) ++below;
+    }
+  }
+  CHECK((below > 0) == (options.touchdown_ramp_n > 1e-300));
+}
+
+TEST_CASE("PaperModel with a touchdown ramp has no lateral step at landing and at lift-off") {
+  const engine::TextureField field = random_field(10, 10, 18, 100.0);
+  engine::RenderingOptions options;
+  options.damping_n_s_per_mm = 0.002;
+  const double speed_mm_s = GENERATE(0.0, -50.0, 50.0);
+  const auto largest_step_n = [&](double ramp_n) {
+    options.touchdown_ramp_n = ramp_n;
+    const engine::PaperModel model(field.view(), options, kGains);
+    constexpr double kStepMm = 1e-5;
+    double largest_n = 0.0;
+    Vec3 before;
+    for (double z = 1.0; z > -1.0; z -= kStepMm) {
+      const Vec3 force_n = model.force_n({0.9, 1.1, z}, {0.0, 0.0, speed_mm_s});
+      largest_n = std::max(largest_n, std::hypot(force_n.x - before.x, force_n.y - before.y));
+      before = force_n;
+    }
+    return largest_n;
+  };
+  CHECK(largest_step_n(0.0) > 0.05);
+  CHECK(largest_step_n(0.2) < 1e-4);
 }
 
 TEST_CASE("PaperModel takes the slopes of a sum of fields from their own plane") {

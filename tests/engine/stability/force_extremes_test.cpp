@@ -102,6 +102,7 @@ TEST_CASE("the paper model's force is finite and limited for gains from 1e-12 to
   const engine::TextureField field = field_of(noise_image({33, 35}));
   engine::RenderingOptions options;
   options.damping_n_s_per_mm = 0.01;
+  options.touchdown_ramp_n = GENERATE(0.0, 1e-320, 1e-9, 0.2, 1.0);
   for (double gain = 1e-12; gain < 2e12; gain *= 1e3) {
     for (const engine::Gains gains :
          {engine::Gains{gain, 0.0}, engine::Gains{0.0, gain}, engine::Gains{gain, gain}}) {
@@ -131,6 +132,7 @@ TEST_CASE("the paper model's tangential force is proportional to its gain until 
 }
 
 TEST_CASE("gains of extreme textures are finite, and those of flat ones are zero") {
+  const double ramp_n = GENERATE(0.0, 1e-320, 0.2);
   for (const Size size : extreme_sizes()) {
     for (const auto& [name, image] : extreme_images(size)) {
       INFO(name << ", " << size.height << " x " << size.width);
@@ -139,12 +141,15 @@ TEST_CASE("gains of extreme textures are finite, and those of flat ones are zero
       for (const double budget : {1e-12, 0.4, 1e12}) {
         engine::RenderingOptions options;
         options.texture_stiffness_n_per_mm = budget;
+        options.touchdown_ramp_n = ramp_n;
         const engine::Gains gains = engine::choose_gains(views, options).of_field.front();
         CHECK(std::isfinite(gains.tangential_n));
         CHECK(std::isfinite(gains.normal_n));
         CHECK(gains.tangential_n >= 0.0);
         CHECK(gains.normal_n >= 0.0);
-        const engine::FieldStatistics statistics = engine::field_statistics(field.view(), gains);
+        const engine::FieldStatistics statistics =
+            engine::field_statistics(field.view(), gains, options);
+        CHECK(std::isfinite(statistics.stiffness_p99_n_per_mm));
         CHECK(std::isfinite(statistics.tangential_p999_n));
         CHECK(statistics.share_below_1_mm >= 0.0);
         CHECK(statistics.share_below_1_mm <= 1.0 + 1e-12);

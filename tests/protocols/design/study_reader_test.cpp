@@ -2,6 +2,7 @@
 #include "core/files.hpp"
 #include "protocols/design/study.hpp"
 #include "protocols/design/study_examples.hpp"
+#include "protocols/design/study_options.hpp"
 #include "protocols/design/study_sections.hpp"
 #include "protocols/identification/design/identification.hpp"
 #include "support/catch.hpp"
@@ -71,6 +72,7 @@ TEST_CASE("every key of a full study is read") {
                            {"reference_grey", 100.5},
                            {"friction", 0.0},
                            {"neighbourhood", 5},
+                           {"touchdown_ramp_n", 0.2},
                            {"max_force_n", 2}};
   document["trials"] = {{"repeats", 7},
                         {"order", "uniform"},
@@ -101,6 +103,7 @@ TEST_CASE("every key of a full study is read") {
                                            .equalise = engine::Equalise::rms,
                                            .reference_grey = 100.5,
                                            .neighbourhood = 5,
+                                           .touchdown_ramp_n = 0.2,
                                            .max_force_n = 2.0};
   CHECK(study.rendering == rendering);
   const design::TrialOptions trials{.repeats = 7,
@@ -250,6 +253,20 @@ TEST_CASE("the gains of one model are refused for the other, with their place") 
   contains(refusal(document), "/rendering/gains/height_mm: ");
   document["rendering"] = {{"model", "surface"}, {"friction", -0.1}};
   contains(refusal(document), "/rendering/friction: ");
+}
+
+TEST_CASE("a touchdown ramp is written where there is one, and refused beside the surface model") {
+  json document = minimal_study();
+  document["rendering"] = {{"touchdown_ramp_n", 0.25}};
+  const engine::RenderingOptions ramped = parsed(document).rendering;
+  CHECK(ramped.touchdown_ramp_n == 0.25);
+  CHECK(design::parse_rendering(design::written_rendering(ramped), "written") == ramped);
+  const std::string plain = design::written_rendering(engine::RenderingOptions{});
+  CHECK_FALSE(json::parse(plain).contains("touchdown_ramp_n"));
+  document["rendering"]["touchdown_ramp_n"] = GENERATE(-0.1, 1.1);
+  contains(refusal(document), "/rendering/touchdown_ramp_n: ");
+  document["rendering"] = {{"model", "surface"}, {"touchdown_ramp_n", 0.25}};
+  contains(refusal(document), "/rendering/touchdown_ramp_n: must be 0");
 }
 
 TEST_CASE("what this version cannot do is refused with a plain message") {

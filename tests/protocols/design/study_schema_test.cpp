@@ -52,9 +52,14 @@ std::string refusal(const json& study) {
   return "";
 }
 
-const json kPaper = {
-    {"model", "paper"}, {"gains", {{"tangential_n", 0.01}, {"normal_n", 0.01}}}, {"friction", 0}};
-const json kSurface = {{"model", "surface"}, {"gains", {{"height_mm", 0.01}}}, {"friction", 0.2}};
+const json kPaper = {{"model", "paper"},
+                     {"gains", {{"tangential_n", 0.01}, {"normal_n", 0.01}}},
+                     {"friction", 0},
+                     {"touchdown_ramp_n", 0.2}};
+const json kSurface = {{"model", "surface"},
+                       {"gains", {{"height_mm", 0.01}}},
+                       {"friction", 0.2},
+                       {"touchdown_ramp_n", 0}};
 
 /// The sections that are about people, with every key.
 json full_plans() {
@@ -279,7 +284,7 @@ double step_of(const json& property) {
 TEST_CASE("the schema describes every section of the study file") {
   std::set<std::string> places;
   for (const Property& property : all_properties()) places.insert(property.place.to_string());
-  CHECK(places.size() == 13 + 2 + 18 + 15 + (13 + 2 + 6 + 2) + (3 + 2) +
+  CHECK(places.size() == 13 + 2 + 18 + 16 + (13 + 2 + 6 + 2) + (3 + 2) +
                              (14 + 6 + 1 + 2 + 5 + 2 * 6) + 4 + 2 + (15 + 3));
   for (const char* place :
        {"/seed", "/rendering/gains/normal_n", "/rendering/gains/height_mm", "/trials/catch",
@@ -395,7 +400,7 @@ TEST_CASE("the reader keeps the schema's constants and multiples") {
       CHECK_FALSE(property.refusal_with(6).empty());
     }
   }
-  CHECK(rules == 2 * static_cast<int>(kMethods.size()) + 1);
+  CHECK(rules == 2 * static_cast<int>(kMethods.size()) + 2);
 }
 
 TEST_CASE("the reader keeps the schema's lengths of lists") {
@@ -451,7 +456,7 @@ TEST_CASE("the schema's defaults are the reader's") {
     CHECK(written.registration == bare.registration);
     CHECK(written.seed == bare.seed);
   }
-  CHECK(defaults == (23 + 9 + 3 + 2 + 13 + 2 + 1 + 10) * (static_cast<int>(kMethods.size()) + 1));
+  CHECK(defaults == (24 + 9 + 3 + 2 + 13 + 2 + 1 + 10) * (static_cast<int>(kMethods.size()) + 1));
 }
 
 TEST_CASE("the schema's defaults of the methods' keys are the reader's") {
