@@ -37,7 +37,8 @@ def main(work):
     program = tree / "bin" / "touchtrial"
     home = work / "home"
     home.mkdir()
-    os.environ.update(HOME=str(home), XDG_CACHE_HOME=str(home / ".cache"))
+    # A machine that builds Touchtrial has Ninja, and perhaps no make.
+    os.environ.update(HOME=str(home), XDG_CACHE_HOME=str(home / ".cache"), CMAKE_GENERATOR="Ninja")
 
     traces = [path.relative_to(tree) for path in tree.rglob("*") if path.is_file()
               and any(os.fsencode(folder) + b"/" in path.read_bytes() for folder in (BUILD, SOURCE, work / "first"))]
