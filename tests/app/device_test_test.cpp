@@ -468,7 +468,8 @@ TEST_CASE("device bring-up keeps what it has at q and at a signal, and says what
 
 TEST_CASE("device bring-up keeps what it has at the end of the input") {
   const DeviceFolder folder(dhd_settings());
-  const ProgramResult result = folder.run("bring-up", {"dhd"});
+  const ProgramResult result =
+      folder.run("bring-up", {"dhd", "--out", folder.path("dhd-bring-up.json").string()});
   CHECK(result.exit_code == 2);
   CHECK(bring_up_file(folder).at("steps").at("rest") == "interrupted");
 }
@@ -490,7 +491,10 @@ TEST_CASE("device bring-up that leaves out every step asks its questions, and it
   CHECK(verdict.at("settled") == json::array({"force_button"}));
   CHECK(verdict.at("open").size() > 5);
   // Nothing is replaced.
-  CHECK(folder.run("bring-up", {"dhd"}).exit_code == 1);
+  const ProgramResult again =
+      folder.run("bring-up", {"dhd", "--out", folder.path("dhd-bring-up.json").string()});
+  CHECK(again.exit_code == 1);
+  CHECK_THAT(again.errors, holds_text("--out"));
   replace_file(folder.path("hostile.json"), R"({"kind": "touchtrial device bring-up 1"})");
   const ProgramResult hostile = run_touchtrial(
       folder.path(""), {"device", "bring-up", "--read", folder.path("hostile.json").string()});
