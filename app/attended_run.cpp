@@ -68,7 +68,7 @@ std::optional<std::string> line_of_input() {
     const ssize_t got = ::read(STDIN_FILENO, &letter, 1);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) {
-      throw UsageError("standard input ended; answer every prompt; nothing was written");
+      throw UsageError("standard input ended; answer every prompt");
     }
     if (letter == '\n') return line;
     line += letter;
@@ -124,6 +124,7 @@ AttendedRun::AttendedRun(OpenedDevice& opened, device::HapticDevice& device,
     : opened_(opened),
       device_(device),
       options_(options_for(limits, rate_hz)),
+      max_force_n_(limits.max_force_n),
       recorder_(kRecordedS, rate_hz),
       watchdog_(device, control_, heartbeat_, device::Watchdog::silence_for(device.info())),
       signals_(device, control_),
@@ -198,6 +199,10 @@ void AttendedRun::wait_until_ready(double limit_s) {
   if (device_.readiness() != device::DeviceReadiness::ready) {
     throw DeviceError(fmt::format("{}: is not ready after {:.0f} s; {}", name, limit_s, advice));
   }
+}
+
+void AttendedRun::limit_force(double most_n) noexcept {
+  options_.limits.max_force_n = std::min(max_force_n_, most_n);
 }
 
 std::string AttendedRun::flight_record() const {

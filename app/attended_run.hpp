@@ -100,6 +100,10 @@ class AttendedRun {
   /// \throws DeviceError if it is not ready after `limit_s`, or a fault occurs
   void wait_until_ready(double limit_s);
 
+  /// The largest force of the runs that follow, within the limits that this was made with.
+  /// \param most_n  > 0
+  void limit_force(double most_n) noexcept;
+
   /// Lets the keys + and - scale all forces in steps of 10 %, from 10 % to 100 %.
   void let_choose_strength() noexcept { chooses_strength_ = true; }
 
@@ -119,6 +123,7 @@ class AttendedRun {
   OpenedDevice& opened_;
   device::HapticDevice& device_;
   device::ServoOptions options_;
+  double max_force_n_;  ///< of the limits that this was made with
   device::ServoControl control_;
   device::LatestValue<device::ServoState> state_;
   device::LatestValue<device::ServoParameters> parameters_;

@@ -217,6 +217,7 @@ void add_device_command(CLI::App& program, Action& action) {
   add_device_initialise_command(*device, action);
   add_device_test_command(*device, action);
   add_device_fit_command(*device, action);
+  add_device_bring_up_command(*device, action);
   add_device_accept_command(*device, action);
   add_device_monitor_command(*device, action);
   add_device_models_command(*device, action);

@@ -97,7 +97,8 @@ struct DeviceInfo {
   /// the last bit while somebody presses (SafetyLimits::frozen_s). False for whatever a program or
   /// a recording moves, and for the mouse, which a hand may hold still.
   bool has_encoders = false;
-  DeviceScale scale{};  ///< that `open_device` applied; drivers leave it alone
+  DeviceScale scale{};    ///< that `open_device` applied; drivers leave it alone
+  std::string library{};  ///< version of the maker's library, as it gives it; may be empty
 };
 
 /// A force-feedback device. The constructor opens it and throws DeviceError if it cannot; the

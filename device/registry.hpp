@@ -3,6 +3,7 @@
 
 #include "device/device_settings.hpp"
 #include "device/haptic_device.hpp"
+#include "device/unverified_fact.hpp"
 
 #include <functional>
 #include <memory>
@@ -50,6 +51,8 @@ struct DeviceDriver {
   std::function<std::string(const DeviceSettings&)> initialise = nullptr;
   /// Under whose names it opens as well; one may have the driver's own name.
   std::vector<DeviceProduct> products{};
+  /// What nobody has checked on a real device; empty for what has no hardware.
+  std::vector<UnverifiedFact> unverified{};
 
   /// Its name, then those of its products: each opens it, in commands and in settings.
   [[nodiscard]] std::vector<std::string_view> names() const;

@@ -27,6 +27,7 @@ inline constexpr std::array<std::string_view, 7> kAcceptanceSteps = {
 enum class Stance {
   lying,     ///< nothing: it lies or is held still
   moving,    ///< moves it slowly along all axes
+  carrying,  ///< carries it by some centimetres in the axis' direction, and holds it there
   holding,   ///< holds it lightly, so that it can give way
   free,      ///< brings it to the middle and lets go
   loaded,    ///< the same with a weight on it
@@ -72,6 +73,9 @@ class AcceptanceBench {
   [[nodiscard]] virtual DeviceInfo info() const = 0;
   /// In force for every run.
   [[nodiscard]] virtual SafetyLimits limits() const = 0;
+  /// Puts the largest force of the runs that follow below the bench's own limit.
+  /// \param most_n  > 0
+  virtual void limit_force(double most_n) = 0;
   /// \param name  of the run, at most 8 letters
   /// \throws touchtrial::Error if a person or a signal stopped it
   [[nodiscard]] virtual ServoReport run(const std::string& name, Measurement& measurement) = 0;

@@ -117,7 +117,12 @@ bool ReboundDetector::throws(double height_mm) noexcept {
 Listening::Listening(double seconds)
     : Measurement(seconds, 0.0, std::numeric_limits<double>::infinity()) {}
 
-Vec3 Listening::next_n(const DeviceSample& /*sample*/, double time_s) noexcept {
+Vec3 Listening::next_n(const DeviceSample& sample, double time_s) noexcept {
+  if (!has_reading_) first_ = newest_ = sample.sequence;
+  gap_ = has_reading_ && sample.sequence == newest_ ? gap_ + 1 : 0;
+  has_reading_ = true;
+  newest_ = sample.sequence;
+  longest_gap_ = std::max(longest_gap_, gap_);
   if (time_s >= seconds()) finish();
   return {};
 }
@@ -297,11 +302,12 @@ Vec3 StrokedPlane::next_n(const DeviceSample& sample, double time_s) noexcept {
       plane_.force_n(place_mm, to_plane_direction(sample.velocity_mm_s, kLying)), kLying);
 }
 
-SteadyPush::SteadyPush(double seconds) : Measurement(seconds, kForceN, 200.0) {}
+SteadyPush::SteadyPush(double seconds, Vec3 force_n, double reach_mm)
+    : Measurement(seconds, norm(force_n), reach_mm), force_n_(force_n) {}
 
 Vec3 SteadyPush::next_n(const DeviceSample& /*sample*/, double time_s) noexcept {
   if (time_s >= seconds()) finish();
-  return {0.0, -kForceN, 0.0};
+  return force_n_;
 }
 
 }  // namespace touchtrial::device

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -109,8 +110,19 @@ class Listening final : public Measurement {
  public:
   explicit Listening(double seconds);
 
+  /// The device's own readings from the first ready one on, by DeviceSample::sequence.
+  [[nodiscard]] std::uint64_t new_readings() const noexcept { return newest_ - first_; }
+  /// The most ticks in a row without a new one.
+  [[nodiscard]] int longest_gap_ticks() const noexcept { return longest_gap_; }
+
  private:
   [[nodiscard]] Vec3 next_n(const DeviceSample& sample, double time_s) noexcept override;
+
+  bool has_reading_ = false;
+  std::uint64_t first_ = 0;
+  std::uint64_t newest_ = 0;
+  int gap_ = 0;
+  int longest_gap_ = 0;
 };
 
 /// Pushes along an axis in steps of kStepN until the handle has moved by kMovedMm, first one way
@@ -282,10 +294,13 @@ class SteadyPush final : public Measurement {
  public:
   static constexpr double kForceN = 0.3;
 
-  explicit SteadyPush(double seconds);
+  /// \param reach_mm  further from its start the handle is let go
+  explicit SteadyPush(double seconds, Vec3 force_n = {0.0, -kForceN, 0.0}, double reach_mm = 200.0);
 
  private:
   [[nodiscard]] Vec3 next_n(const DeviceSample& sample, double time_s) noexcept override;
+
+  Vec3 force_n_;
 };
 
 }  // namespace touchtrial::device

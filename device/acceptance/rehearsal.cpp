@@ -12,6 +12,8 @@ namespace {
 constexpr double kRehearsedWeightN = 1.0;
 constexpr double kWayMm = 8.0;  ///< of slow motion to either side
 constexpr double kLongestWayS = 6.0;
+constexpr double kCarriedMm = 20.0;
+constexpr double kCarriedAfterS = 1.0;
 constexpr double kPressN = 0.7;
 constexpr double kStrokeMm = 15.0;  ///< to either side; 94 mm/s at most
 constexpr double kStrokeS = 1.0;
@@ -97,6 +99,11 @@ DeviceDynamics::Outside Rehearsal::hand(double time_s, Vec3 position_mm) const {
       const Vec3 way_mm = {kWayMm * std::sin(phase), kWayMm * std::sin(1.2 * phase),
                            kWayMm * std::sin(1.5 * phase)};
       return {0.5 * (off_mm + way_mm) + weight_carried, 0.1, same_on_all(0.01)};
+    }
+    case Stance::carrying: {
+      const double share = std::clamp(time_s - began_s_ - kCarriedAfterS, 0.0, 1.0);
+      return {0.5 * (off_mm + (share * kCarriedMm) * direction_of(axis_)) + weight_carried, 0.1,
+              same_on_all(0.01)};
     }
     case Stance::holding:
       return {0.05 * off_mm + weight_carried, 0.05, same_on_all(0.003)};

@@ -5,6 +5,7 @@
 #include "device/acceptance/acceptance.hpp"
 #include "device/model/device_model.hpp"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,10 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
   explicit Rehearsal(const DeviceModel& model);
 
   [[nodiscard]] DeviceInfo info() const override { return device_.info(); }
-  [[nodiscard]] SafetyLimits limits() const override { return {}; }
+  [[nodiscard]] SafetyLimits limits() const override { return limits_; }
+  void limit_force(double most_n) override {
+    limits_.max_force_n = std::min(SafetyLimits{}.max_force_n, most_n);
+  }
   [[nodiscard]] ServoReport run(const std::string& name, Measurement& measurement) override;
 
   /// Of the model's tip, each tick.
@@ -53,6 +57,7 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
   [[nodiscard]] DeviceDynamics::Outside letting_go(double time_s, Vec3 off_mm) const;
 
   ModelledDevice device_;
+  SafetyLimits limits_;
   TipAccelerometer tip_;
   Vec3 middle_mm_;
   Stance stance_ = Stance::lying;

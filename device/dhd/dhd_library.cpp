@@ -147,6 +147,7 @@ Api load_api(const DynamicLibrary& library) {
   library.find_if_any("dhdGetSystemName", api.get_system_name);
   library.find_if_any("dhdGetSerialNumber", api.get_serial_number);
   library.find_if_any("dhdGetVersion", api.get_version);
+  library.find_if_any("dhdGetSDKVersion", api.get_sdk_version);
   library.find_if_any("dhdSetEffectorMass", api.set_effector_mass);
   library.find_if_any("dhdGetEffectorMass", api.get_effector_mass);
   library.find_if_any("dhdSetMaxForce", api.set_max_force);

@@ -62,9 +62,10 @@ struct Api {
   const char* (*get_system_name)(char);
   int (*get_serial_number)(unsigned short*, char);
   int (*get_version)(double*, char);
-  int (*set_effector_mass)(double, char);   ///< kg
-  int (*get_effector_mass)(double*, char);  ///< kg
-  int (*set_max_force)(double, char);       ///< N; below 0: no limit
+  void (*get_sdk_version)(int*, int*, int*, int*);  ///< major, minor, release, revision
+  int (*set_effector_mass)(double, char);           ///< kg
+  int (*get_effector_mass)(double*, char);          ///< kg
+  int (*set_max_force)(double, char);               ///< N; below 0: no limit
   int (*set_watchdog)(unsigned char, char);
   int (*get_watchdog)(unsigned char*, char);
   int (*get_joint_angles)(double*, char);                                               ///< rad

@@ -35,6 +35,7 @@ constexpr std::uint16_t kHighestPriority = 0xFFFF;
 constexpr Enum kButtons = 0x2000;
 constexpr Enum kPosition = 0x2050;  ///< 3 doubles, mm
 constexpr Enum kVelocity = 0x2051;  ///< 3 doubles, mm/s
+constexpr Enum kVersion = 0x2500;   ///< of the library
 constexpr Enum kModel = 0x2501;
 constexpr Enum kVendor = 0x2503;
 constexpr Enum kSerial = 0x2504;

@@ -1,6 +1,6 @@
-// touchtrial device test and device accept as people and scripts run them. Every test waits for
-// the program's output, never for a time, and tolerates a machine that stalls: the program must
-// then end with a fault.
+// touchtrial device test, device accept and device bring-up as people and scripts run them. Every
+// test waits for the program's output, never for a time, and tolerates a machine that stalls: the
+// program must then end with a fault.
 #include "app/touchtrial_process.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
@@ -430,4 +430,87 @@ TEST_CASE("device accept refuses a broken emulated device, and takes an accelero
   CHECK_THAT(certificate.at("failures").dump(), holds_text("axis z") && holds_text("sign"));
   CHECK(certificate.at("spectra").at(0).at("felt") == "wall");
   CHECK(folder.run("accept", {"--emulate", "falcn"}).exit_code == 2);
+}
+
+namespace {
+
+json bring_up_file(const DeviceFolder& folder) {
+  return json::parse(text_of(read_file(folder.path("dhd-bring-up.json"))));
+}
+
+}  // namespace
+
+TEST_CASE("device bring-up keeps what it has at q and at a signal, and says what was not done") {
+  for (const bool by_signal : {false, true}) {
+    const DeviceFolder folder(dhd_settings());
+    ChildProcess program = folder.start("bring-up", {"omega"});
+    REQUIRE(program.says("let go of it slowly"));
+    program.write("s\n");
+    REQUIRE(program.says("carry it straight up"));
+    if (by_signal) {
+      program.send_signal(SIGTERM);
+    } else {
+      program.write("q\n");
+    }
+    const int code = program.finish();
+    INFO(program.output());
+    CHECK(code == (by_signal ? 128 + SIGTERM : 1));
+    const json file = bring_up_file(folder);
+    CHECK(file.at("driver") == "dhd");
+    CHECK(file.at("ended") == "stopped");
+    CHECK(file.at("library") == "3.17.5.1900");
+    CHECK(file.at("steps").at("rest") == "left_out");
+    CHECK(file.at("steps").at("ways") == "interrupted");
+    CHECK(file.at("steps").at("questions") == "not_reached");
+    CHECK(file.dump().find("4242") == std::string::npos);
+  }
+}
+
+TEST_CASE("device bring-up keeps what it has at the end of the input") {
+  const DeviceFolder folder(dhd_settings());
+  const ProgramResult result =
+      folder.run("bring-up", {"dhd", "--out", folder.path("dhd-bring-up.json").string()});
+  CHECK(result.exit_code == 2);
+  CHECK(bring_up_file(folder).at("steps").at("rest") == "interrupted");
+}
+
+TEST_CASE("device bring-up that leaves out every step asks its questions, and its file is read") {
+  const DeviceFolder folder(dhd_settings());
+  ChildProcess skipping = folder.start("bring-up", {"dhd"});
+  // rest, three ways, six pushes, steps, range, program, cable; then five questions.
+  skipping.write("s\ns\ns\ns\ns\ns\ns\ns\ns\ns\ns\ns\ns\ns\n9\n1\n\n\n\n\n");
+  const int code = skipping.finish();
+  INFO(skipping.output());
+  CHECK(code == 0);
+  CHECK(bring_up_file(folder).at("ended") == "complete");
+  const ProgramResult read = run_touchtrial(
+      folder.path(""),
+      {"device", "bring-up", "--json", "--read", folder.path("dhd-bring-up.json").string()});
+  CHECK(read.exit_code == 0);
+  const json verdict = json::parse(read.output);
+  CHECK(verdict.at("settled") == json::array({"force_button"}));
+  CHECK(verdict.at("open").size() > 5);
+  // Nothing is replaced.
+  const ProgramResult again =
+      folder.run("bring-up", {"dhd", "--out", folder.path("dhd-bring-up.json").string()});
+  CHECK(again.exit_code == 1);
+  CHECK_THAT(again.errors, holds_text("--out"));
+  replace_file(folder.path("hostile.json"), R"({"kind": "touchtrial device bring-up 1"})");
+  const ProgramResult hostile = run_touchtrial(
+      folder.path(""), {"device", "bring-up", "--read", folder.path("hostile.json").string()});
+  CHECK(hostile.exit_code == 2);
+  CHECK(line_count(hostile.errors) == 1);
+}
+
+TEST_CASE("device bring-up lists the facts that nobody has verified") {
+  const DeviceFolder folder;
+  const ProgramResult all =
+      run_touchtrial(folder.path(""), {"device", "bring-up", "--facts", "--json"});
+  CHECK(all.exit_code == 0);
+  CHECK(json::parse(all.output).size() == 4);
+  const ProgramResult one =
+      run_touchtrial(folder.path(""), {"device", "bring-up", "omega", "--facts", "--json"});
+  CHECK(json::parse(one.output).size() == 1);
+  CHECK(folder.run("bring-up", {"simulated"}).exit_code == 1);
+  CHECK(folder.run("bring-up", {}).exit_code == 2);
 }

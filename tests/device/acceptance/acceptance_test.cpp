@@ -64,6 +64,7 @@ class WatchedRehearsal final : public device::AcceptanceBench {
   explicit WatchedRehearsal(const DeviceModel& model) : rehearsal_(model) {}
   [[nodiscard]] device::DeviceInfo info() const override { return rehearsal_.info(); }
   [[nodiscard]] device::SafetyLimits limits() const override { return rehearsal_.limits(); }
+  void limit_force(double most_n) override { rehearsal_.limit_force(most_n); }
   [[nodiscard]] device::ServoReport run(const std::string& name,
                                         device::Measurement& measurement) override {
     device::ServoReport report = rehearsal_.run(name, measurement);

@@ -298,6 +298,7 @@ TEST_CASE("dhd: the device describes itself, and its model gives size and streng
   CHECK(info.model == "omega.3");
   CHECK(info.serial == "4242");
   CHECK(info.firmware == "3.5");
+  CHECK(info.library == "3.17.5.1900");
   // The maker's data sheet: a cylinder of 160 mm, 110 mm long; 12 N.
   CHECK(info.max_force_n == 12.0);
   CHECK(info.continuous_force_n == 12.0);

@@ -432,6 +432,13 @@ int dhdGetVersion(double* version, char device) {
   return is_open(device) ? 0 : kFailed;
 }
 
+void dhdGetSDKVersion(int* major, int* minor, int* release, int* revision) {
+  *major = 3;
+  *minor = 17;
+  *release = 5;
+  *revision = 1900;
+}
+
 int dhdGetDeltaJointAngles(double* a, double* b, double* c, char device) {
   if (!is_expert()) return fail(kErrorExpertModeDisabled);
   *a = kAngles[0];

@@ -283,6 +283,7 @@ void hdSetDoublev(std::uint32_t what, const double* values) {
 }
 
 const char* hdGetString(std::uint32_t what) {
+  if (what == 0x2500) return "3.5.0";
   if (what == 0x2501) return "Touch";
   if (what == 0x2503) return "3D Systems";
   if (what == 0x2504) return "SN-4711";

@@ -70,6 +70,7 @@ TEST_CASE("openhaptics: the device describes itself") {
   CHECK(info.model == "3D Systems Touch");
   CHECK(info.serial == "SN-4711");
   CHECK(info.firmware == "1.25");
+  CHECK(info.library == "3.5.0");
   CHECK(info.max_force_n == 3.25);
   CHECK(info.continuous_force_n == 0.875);
   CHECK(info.max_stiffness_n_per_mm == Approx(0.4));

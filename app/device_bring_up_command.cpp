@@ -1,0 +1,258 @@
+// device bring-up: half an hour with a device that the project does not have, in one file to send
+// back; and what such a file settles.
+#include "app/acceptance_terminal.hpp"
+#include "app/commands.hpp"
+#include "app/commit.hpp"
+#include "app/console.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/version.hpp"
+#include "device/bring_up/bring_up.hpp"
+#include "device/registry.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kEndedEarly = 1;
+
+struct BringUpArguments {
+  std::string driver;
+  fs::path settings;
+  fs::path out;
+  fs::path read;
+  bool facts = false;
+  bool json = false;
+};
+
+/// The lab's own limits hold, but its corrections and the weight that it lets a Falcon carry do
+/// not: the readings are to be the driver's own, and no force may come on top of the small ones.
+device::DeviceSettings settings_of(const BringUpArguments& arguments) {
+  device::DeviceSettings settings = device::device_settings_for(arguments.settings);
+  settings.falcon.gravity_bias_n = {};
+  if (const auto use = settings.uses.find(arguments.driver); use != settings.uses.end()) {
+    use->second.scale = {};
+  }
+  return settings;
+}
+
+std::string step_lines(const device::BringUp& record) {
+  std::string text = "steps not done:";
+  bool any = false;
+  for (std::size_t i = 0; i < device::kBringUpSteps; ++i) {
+    if (record.outcomes.at(i) == device::StepOutcome::done) continue;
+    text += (any ? ", " : " ") + std::string(name_of(static_cast<device::BringUpStep>(i))) + " (" +
+            std::string(name_of(record.outcomes.at(i))) + ")";
+    any = true;
+  }
+  return any ? text + "\n" : "";
+}
+
+std::string measured_lines(const device::BringUp& record) {
+  std::string text;
+  if (record.loop) {
+    text += fmt::format(
+        "loop: {:.1f} ticks in a second, {:.0f} new readings, longest gap {:.0f} ms; late p50 "
+        "{:.0f} "
+        "us, p99 {:.0f} us, worst {:.0f} us\n",
+        record.loop->rate_hz, record.loop->readings_hz, record.loop->longest_gap_ms,
+        record.loop->p50_us, record.loop->p99_us, record.loop->worst_us);
+  }
+  if (record.rest) {
+    text += fmt::format("rest: noise {:.4f} mm, drift {:.3f} mm\n", record.rest->noise_mm,
+                        record.rest->drift_mm);
+  }
+  if (record.step_mm) text += fmt::format("step: {:.4f} mm\n", record.step_mm->value);
+  for (const device::CarriedWay& way : record.ways) {
+    text += fmt::format("carried along {}: read {:+.1f}, {:+.1f}, {:+.1f} mm{}{}\n",
+                        device::name_of(way.axis), way.moved_mm.x, way.moved_mm.y, way.moved_mm.z,
+                        way.ruler_mm ? fmt::format(", ruler {:.0f} mm", *way.ruler_mm) : "",
+                        way.is_right() ? "" : ": WRONG");
+  }
+  for (const device::FeltPush& push : record.pushes) {
+    text += fmt::format("push {:+.1f} N along {}: felt {}{}\n", push.force_n,
+                        device::name_of(push.axis), name_of(push.felt),
+                        push.is_wrong() ? ": WRONG" : "");
+  }
+  if (record.reached) {
+    const device::Workspace& r = *record.reached;
+    text += fmt::format("reached: x {:.0f} to {:.0f}, y {:.0f} to {:.0f}, z {:.0f} to {:.0f} mm\n",
+                        r.least_mm.x, r.greatest_mm.x, r.least_mm.y, r.greatest_mm.y, r.least_mm.z,
+                        r.greatest_mm.z);
+  }
+  if (record.weight && record.weight->weight) {
+    const auto scale = record.weight->scale();
+    text += fmt::format("weight: delivers {:.0f} +- {:.0f} % of the command\n",
+                        100.0 * scale->value, 100.0 * scale->error);
+  }
+  if (record.wall) {
+    text +=
+        fmt::format("wall of {:.2f} N/mm: {}; {} ticks recorded\n", record.wall->stiffness_n_per_mm,
+                    record.wall->swung ? "swung" : "steady", record.wall->ms.size());
+  }
+  const auto silence = [&](const char* when, const std::optional<device::SilenceSeen>& seen) {
+    if (!seen) return;
+    text += fmt::format("force when {}: {}; the run ended as {}, {}\n", when, name_of(seen->force),
+                        seen->ended, seen->fault);
+  };
+  silence("the program stopped", record.program_silent);
+  silence("the cable was pulled", record.cable_silent);
+  for (const auto& [fact, answer] : record.answers) text += fact + ": " + answer + "\n";
+  return text;
+}
+
+std::string identity_line(const device::BringUp& record) {
+  std::string text = record.driver + (record.model.empty() ? "" : ": " + record.model);
+  if (!record.firmware.empty()) text += ", firmware " + record.firmware;
+  if (!record.library.empty()) text += ", library " + record.library;
+  if (!record.device_mark.empty()) text += ", mark " + record.device_mark;
+  return text + "; touchtrial " + record.program + "\n";
+}
+
+std::string facts_text(const std::vector<const device::UnverifiedFact*>& facts,
+                       const std::string& title) {
+  std::string text = title + ":" + (facts.empty() ? " nothing" : "") + "\n";
+  for (const device::UnverifiedFact* fact : facts) {
+    text += fmt::format("  {}: {}\n", fact->id, fact->what);
+  }
+  return text;
+}
+
+/// Facts of a driver that a file settles, or does not.
+struct Verdict {
+  std::vector<const device::UnverifiedFact*> settled;
+  std::vector<const device::UnverifiedFact*> open;
+};
+
+Verdict verdict_of(const device::BringUp& record) {
+  Verdict verdict;
+  for (const device::UnverifiedFact& fact : device::device_driver(record.driver).unverified) {
+    (record.settles(fact) ? verdict.settled : verdict.open).push_back(&fact);
+  }
+  return verdict;
+}
+
+nlohmann::ordered_json ids_of(const std::vector<const device::UnverifiedFact*>& facts) {
+  nlohmann::ordered_json ids = nlohmann::ordered_json::array();
+  for (const device::UnverifiedFact* fact : facts) ids.push_back(fact->id);
+  return ids;
+}
+
+int read_file_of_bring_up(const BringUpArguments& arguments) {
+  const device::BringUp record = device::read_bring_up(arguments.read);
+  const Verdict verdict = verdict_of(record);
+  if (arguments.json) {
+    print(json_text(nlohmann::ordered_json{{"driver", record.driver},
+                                           {"ended", name_of(record.ended)},
+                                           {"settled", ids_of(verdict.settled)},
+                                           {"open", ids_of(verdict.open)}}));
+  } else {
+    print(identity_line(record) + "ended: " + std::string(name_of(record.ended)) +
+          (record.why.empty() ? "" : ": " + record.why) + "\n" + step_lines(record) +
+          measured_lines(record) + facts_text(verdict.settled, "settled by this file") +
+          facts_text(verdict.open, "still unverified"));
+  }
+  return 0;
+}
+
+int print_facts(const BringUpArguments& arguments) {
+  std::string text;
+  nlohmann::ordered_json all = nlohmann::ordered_json::object();
+  for (const device::DeviceDriver& driver : device::device_drivers()) {
+    if (driver.unverified.empty()) continue;
+    if (!arguments.driver.empty() && arguments.driver != driver.name) continue;
+    std::vector<const device::UnverifiedFact*> facts;
+    for (const device::UnverifiedFact& fact : driver.unverified) facts.push_back(&fact);
+    text += facts_text(facts, driver.name);
+    for (const device::UnverifiedFact& fact : driver.unverified) {
+      all[driver.name][fact.id] = fact.what;
+    }
+  }
+  print(arguments.json ? json_text(all) : text);
+  return 0;
+}
+
+int lead(const BringUpArguments& arguments, const fs::path& out) {
+  std::optional<device::BringUp> record;
+  const auto save = [&] { replace_file(out, device::bring_up_json(*record)); };
+  const auto keep = [&](const std::string& why) {
+    if (!record) return;
+    record->why = why;
+    save();
+    std::fprintf(stderr, "what there is so far: %s\n", out.string().c_str());
+  };
+  try {
+    AcceptanceTerminal terminal(arguments.driver, settings_of(arguments));
+    record = device::bring_up_of(terminal.info());
+    record->program = std::string(program_version());
+    if (!program_commit().empty()) record->program += " (" + std::string(program_commit()) + ")";
+    record->scheduling = std::string(device::name_of(terminal.scheduling().policy));
+    record->memory_locked = terminal.scheduling().memory_locked;
+    save();
+    device::bring_up(terminal, terminal, device::device_driver(arguments.driver).unverified,
+                     *record, save);
+  } catch (const AcceptanceStopped&) {
+    keep("stopped by a person or a signal");
+    if (device::StopOnSignals::asked()) {
+      std::fprintf(stderr, "touchtrial: %s\n", device::StopOnSignals::message().c_str());
+      return device::StopOnSignals::exit_code();
+    }
+    throw DeviceError("the bring-up was stopped; run it again, or send the file as it is");
+  } catch (const UsageError&) {
+    keep("the input ended");
+    throw;
+  }
+  print("send this file to the project: " + out.string() + "\n" + step_lines(*record));
+  return record->ended == device::BringUpEnd::complete ? 0 : kEndedEarly;
+}
+
+int bring_up_device(const BringUpArguments& arguments) {
+  if (!arguments.read.empty()) return read_file_of_bring_up(arguments);
+  if (arguments.facts) return print_facts(arguments);
+  if (arguments.driver.empty()) {
+    throw UsageError("device bring-up: name a device, as touchtrial device list does");
+  }
+  const fs::path out =
+      arguments.out.empty() ? fs::path(arguments.driver + "-bring-up.json") : arguments.out;
+  if (is_there(out)) {
+    throw FileError(one_line(out.string()) +
+                    ": is there already; name another file with --out, or move it away");
+  }
+  return in_own_process([&] { return lead(arguments, out); });
+}
+
+}  // namespace
+
+void add_device_bring_up_command(CLI::App& device, Action& action) {
+  auto arguments = std::make_shared<BringUpArguments>();
+  CLI::App* command = device.add_subcommand(
+      "bring-up",
+      "Half an hour with a device that nobody here has: small forces, questions, and one file "
+      "without names to send back");
+  add_driver_argument(*command, "NAME", arguments->driver);
+  add_settings_option(*command, arguments->settings);
+  command->add_option("--out", arguments->out, "File to write (default: NAME-bring-up.json)");
+  CLI::Option* read =
+      command
+          ->add_option("--read", arguments->read,
+                       "Print what such a file says, which facts it settles and which stay open")
+          ->type_name("FILE")
+          ->check(CLI::ExistingFile);
+  command->add_flag("--facts", arguments->facts, "Print what nobody has verified of the devices")
+      ->excludes(read);
+  add_json_flag(*command, arguments->json);
+  command->callback([=, &action] { action = [=] { return bring_up_device(*arguments); }; });
+}
+
+}  // namespace touchtrial::app
