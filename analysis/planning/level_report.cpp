@@ -316,8 +316,10 @@ std::vector<std::string> level_warnings(const design::Study& study, const Stimul
   if (weak_on.empty()) return {};
   return {fmt::format(
       "stimuli may stand less than {:g} dB above threshold or blank plane on {}; the weakest, {}: "
-      "people may not feel them; raise the gains or take another device{}",
+      "people may not feel them; raise {} or take another device{}",
       simulation::kLeastLevelDb, weak_on, words,
+      study.rendering.gains ? "/rendering/gains"
+                            : "/rendering/texture_stiffness_n_per_mm, which sets the gains,",
       study.device.empty() ? "; name yours by /rendering/device" : "")};
 }
 
