@@ -2,11 +2,13 @@
 
 #include "analysis/collection_records.hpp"
 #include "analysis/sealed_sessions.hpp"
+#include "analysis/text_figures.hpp"
 #include "protocols/design/deviation_codes.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace touchtrial::analysis {
 namespace {
@@ -75,6 +77,20 @@ bool any_ran_unverified(const std::vector<SessionRecord>& sessions) {
   return std::ranges::any_of(sessions, [](const SessionRecord& session) {
     return !session.row.erased && ran_unverified(session);
   });
+}
+
+std::string simulated_devices(const std::vector<store::SessionRow>& sessions) {
+  std::set<std::string> recorded;
+  for (const store::SessionRow& session : sessions) {
+    if (session.simulated && !session.erased) recorded.insert(session.device);
+  }
+  return device_words(recorded);
+}
+
+std::string simulated_devices(const Collection& collection) {
+  std::vector<store::SessionRow> rows;
+  for (const SessionRecord& session : collection.sessions) rows.push_back(session.row);
+  return simulated_devices(rows);
 }
 
 Collection load_collection(const StudyEvents& study, const SessionKeys& keys) {

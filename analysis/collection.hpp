@@ -97,6 +97,10 @@ struct SessionRecord {
 /// The same of any session whose data are not erased.
 [[nodiscard]] bool any_ran_unverified(const std::vector<SessionRecord>& sessions);
 
+/// device_words (text_figures.hpp) of the sessions of simulated participants whose data are not
+/// erased.
+[[nodiscard]] std::string simulated_devices(const std::vector<store::SessionRow>& sessions);
+
 /// The timing of the servo in one trial in real time.
 struct ServoTrial {
   int session = 0;
@@ -150,6 +154,9 @@ struct Collection {
   bool visual = false;     ///< textures were seen on a screen, not felt; the same for all sessions
   bool is_public = false;  ///< without ids and without texts of people: without_identities
 };
+
+/// The same of a collection's sessions.
+[[nodiscard]] std::string simulated_devices(const Collection& collection);
 
 /// \return the reason of an exclusion, behind "after outcomes were seen: " if they had been
 [[nodiscard]] std::string exclusion_words(const SessionRecord& session);

@@ -37,9 +37,11 @@ void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion
   object["p"] = figure_json(proportion.share());
 }
 
-void put_stamp(nlohmann::ordered_json& object, bool simulated) {
+void put_stamp(nlohmann::ordered_json& object, bool simulated, const std::string& device) {
   object["simulated"] = simulated;
-  if (simulated) object["stamp"] = "SIMULATED";
+  if (!simulated) return;
+  object["stamp"] = "SIMULATED";
+  if (!device.empty()) object["simulated_on"] = device;
 }
 
 void put_state(nlohmann::ordered_json& object, const store::StudyState& state, bool pilot) {

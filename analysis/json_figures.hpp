@@ -36,8 +36,10 @@ void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion
 /// The statistics by the degrees of their direction.
 [[nodiscard]] nlohmann::ordered_json glcm_json(const engine::GlcmTable& glcm);
 
-/// Adds whether the numbers come from simulated participants, and if so also a stamp.
-void put_stamp(nlohmann::ordered_json& object, bool simulated);
+/// Adds whether the numbers come from simulated participants, and if so also a stamp and, unless it
+/// is empty, for which device they hold ("simulated_on").
+/// \param device  device_words (text_figures.hpp)
+void put_stamp(nlohmann::ordered_json& object, bool simulated, const std::string& device = {});
 
 /// Adds state ("collecting", "closed" or "unblinded"), interim (unblinded but not closed) and
 /// pilot.

@@ -161,7 +161,7 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
   const SessionCounts& sessions = report.sessions;
   const TrialQuality& quality = report.quality;
   nlohmann::ordered_json object{{"study", report.study}, {"protocol", report.protocol}};
-  put_stamp(object, report.simulated);
+  put_stamp(object, report.simulated, simulated_devices(report.collection));
   object["unverified_device"] = !report.simulated && any_ran_unverified(report.collection.sessions);
   put_state(object, report.state, report.pilot);
   object["blinded"] = !report.state.unblinded;
@@ -276,7 +276,9 @@ std::string servo_text(const QualityReport& report) {
 }  // namespace
 
 std::string quality_text(const QualityReport& report) {
-  std::string text = simulated_line(report.simulated);
+  std::string text =
+      report.simulated ? simulated_on_line(simulated_devices(report.collection)) : "";
+  text += simulated_line(report.simulated);
   text += fmt::format("{} ({}): {}, {}; {}\n", report.study, report.protocol,
                       counted(report.participants, "participant"), counted(report.trials, "trial"),
                       name_of(report.state));

@@ -86,7 +86,7 @@ StudyHead head_of(const Outcomes& outcomes) {
 
 nlohmann::ordered_json head_object(const StudyHead& head) {
   nlohmann::ordered_json object{{"study", head.study}, {"protocol", head.protocol}};
-  put_stamp(object, head.simulated);
+  put_stamp(object, head.simulated, simulated_devices(head.collection));
   object["unverified_device"] = !head.simulated && any_ran_unverified(head.collection.sessions);
   put_state(object, head.state, head.pilot);
   object["participants"] = head.participants;

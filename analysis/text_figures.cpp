@@ -1,5 +1,7 @@
 #include "analysis/text_figures.hpp"
 
+#include <string_view>
+
 #include <fmt/format.h>
 
 namespace touchtrial::analysis {
@@ -32,6 +34,35 @@ std::string p_value(double p) {
 
 std::string heading(const std::string& title, bool simulated) {
   return fmt::format("\n{}{}\n", title, simulated ? " [SIMULATED]" : "");
+}
+
+namespace {
+
+std::string words_of_device(const std::string& recorded) {
+  constexpr std::string_view kHeld = "simulated ";
+  if (recorded == "simulated") return "ideal device (no such device is sold)";
+  if (recorded == "given-function") return "no device (answers follow a given function)";
+  if (recorded == kStatedPeople) return "no device (people's accuracies are stated)";
+  return recorded.starts_with(kHeld) ? "modelled device " + recorded.substr(kHeld.size())
+                                     : recorded;
+}
+
+}  // namespace
+
+std::string device_words(const std::set<std::string>& recorded) {
+  std::string words;
+  for (const std::string& device : recorded) {
+    words += (words.empty() ? "" : "; ") + words_of_device(device);
+  }
+  return words;
+}
+
+std::string simulated_on(const std::string& device) {
+  return device.empty() ? "" : "simulated on: " + device;
+}
+
+std::string simulated_on_line(const std::string& device) {
+  return device.empty() ? "" : simulated_on(device) + "\n";
 }
 
 std::string simulated_line(bool simulated) {

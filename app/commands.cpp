@@ -149,10 +149,10 @@ void add_subject_option(CLI::App& command, std::filesystem::path& subject) {
 }
 
 void add_on_option(CLI::App& command, std::string& model) {
-  command.add_option(
-      "--on", model,
-      "Device model that simulated hands hold: a name of touchtrial device models, or "
-      "a file (default: the study's, or ideal)");
+  command.add_option("--on", model,
+                     "Device that simulated hands hold: a name of touchtrial device models, a "
+                     "product, or a model's "
+                     "file (default: the study's, or an ideal device, which nobody sells)");
 }
 
 CLI::Validator place_validator() {

@@ -323,7 +323,7 @@ int rehearse_on_model(const AcceptArguments& arguments,
   if (!arguments.sound_input.empty()) {
     throw UsageError("--sound-input: a rehearsal has an accelerometer of its own; leave it out");
   }
-  const device::DeviceModel model = device::device_model(arguments.emulated);
+  const device::DeviceModel model = device::model_of_device(arguments.emulated);
   const AcceptanceFiles files = files_to_write(arguments, emulated_word(model.name));
   const std::optional<StudyPlanes> study = planes_of(arguments);
   device::Acceptance acceptance = device::rehearse_acceptance(model, options_of(arguments, study));
@@ -381,9 +381,9 @@ void add_device_accept_command(CLI::App& device, Action& action) {
       "Try a device step by step: signs, forces, friction, mass, delay, walls; writes its "
       "certificate, without which no session runs");
   add_driver_argument(*command, "NAME", arguments->driver);
-  command->add_option(
-      "--emulate", arguments->emulated,
-      "Rehearse on a device model (name or file) in virtual time; proves no device");
+  command->add_option("--emulate", arguments->emulated,
+                      "Rehearse on a device model (its name, a product or a file) in virtual time; "
+                      "proves no device");
   add_settings_option(*command, arguments->settings);
   command->add_option("--certificate", arguments->certificate,
                       "Certificate to write (default: NAME-certificate.json)");

@@ -4,7 +4,7 @@
 #include "app/console.hpp"
 #include "device/compensation/compensation_figures.hpp"
 #include "device/compensation/force_shaper.hpp"
-#include "device/model/device_model.hpp"
+#include "device/registry.hpp"
 
 #include <memory>
 #include <string>
@@ -92,7 +92,7 @@ std::string compensation_json(const CompensationArguments& arguments,
 
 int compensate(const CompensationArguments& arguments) {
   const device::CompensationFigures figures = device::measure_compensation(
-      device::device_model(arguments.model), hand_of(arguments), arguments.most_gain_db);
+      device::model_of_device(arguments.model), hand_of(arguments), arguments.most_gain_db);
   print(arguments.json ? compensation_json(arguments, figures)
                        : compensation_text(arguments, figures));
   return 0;

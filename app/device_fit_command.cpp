@@ -1,6 +1,6 @@
-// device fit: whether a study's plane and its stiffness fit the devices of a driver, even if none
-// is at hand.
+// device fit: whether a study's plane and its stiffness fit a device, even if none is at hand.
 #include "analysis/planning/level_report.hpp"
+#include "analysis/text_figures.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/device_words.hpp"
@@ -10,9 +10,11 @@
 #include "device/acceptance/certificate.hpp"
 #include "device/registry.hpp"
 #include "device/scaled_device.hpp"
+#include "device/simulated/simulated_hand.hpp"
 #include "device/workspace_fit.hpp"
 #include "engine/image_file.hpp"
 #include "protocols/design/study.hpp"
+#include "protocols/simulation/stimulus_levels.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -20,6 +22,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include <fmt/format.h>
@@ -35,19 +38,23 @@ namespace fs = std::filesystem;
 /// The origin of a workspace.
 enum class WorkspaceSource {
   maker,   ///< the maker's statement about all these devices; none was read
+  model,   ///< a device model; none was read
   device,  ///< the device that is plugged in
   none,    ///< the device reports positions on the plane, whatever its size
 };
 
 struct StudyFit {
   std::string study;
-  std::string driver;
+  std::string device;                ///< as it was named
+  std::string driver;                ///< empty: of a model that no driver serves
+  std::optional<std::string> model;  ///< that stood for the device
   PlaneGeometry plane;
   std::optional<device::Workspace> workspace;
   WorkspaceSource source = WorkspaceSource::none;
   device::WorkspaceFit fit;
   device::RenderedStiffness rendered;
-  device::DeviceInfo limits;  ///< of the device that was read; if none was, the scale alone
+  /// Of the device that was read, or its model; if neither was, the scale alone.
+  device::DeviceInfo limits;
 };
 
 const char* word_for(device::PlaneOrientation orientation) {
@@ -58,6 +65,8 @@ const char* word_for(WorkspaceSource source) {
   switch (source) {
     case WorkspaceSource::maker:
       return "maker";
+    case WorkspaceSource::model:
+      return "model";
     case WorkspaceSource::device:
       return "device";
     case WorkspaceSource::none:
@@ -66,14 +75,18 @@ const char* word_for(WorkspaceSource source) {
   return "none";
 }
 
+std::string source_words(const StudyFit& fit) {
+  if (fit.source == WorkspaceSource::device) return "as the device reports";
+  if (fit.source == WorkspaceSource::maker) return "as its maker states; no device was read";
+  return "of the device model " + fit.model.value_or("") + "; no device was read";
+}
+
 std::string workspace_text(const StudyFit& fit) {
   if (!fit.workspace) return "accepts any plane: it has no frame of its own\n";
   const Vec3 size = fit.workspace->greatest_mm - fit.workspace->least_mm;
   return fmt::format("workspace {:.1f} x {:.1f} x {:.1f} mm{}, {}\n", size.x, size.y, size.z,
                      fit.workspace->shape == device::WorkspaceShape::ellipsoid ? " (rounded)" : "",
-                     fit.source == WorkspaceSource::device
-                         ? "as the device reports"
-                         : "as its maker states; no device was read");
+                     source_words(fit));
 }
 
 ordered_json vec_json(Vec3 v) {
@@ -112,31 +125,86 @@ PlaneGeometry common_plane_of(const design::Study& study) {
   return plane;
 }
 
-/// \param orientation  nothing: as the settings say
-/// \throws UsageError if there is no such driver
-/// \throws DeviceError if only a device could tell its workspace and none can be opened
-/// \throws FileError as common_plane_of
-StudyFit fit_of(const design::Study& study, const std::string& driver,
-                const device::DeviceSettings& settings,
-                std::optional<device::PlaneOrientation> orientation) {
-  const device::DeviceDriver& known = device::device_driver(driver);
-  StudyFit fit;
-  fit.study = study.name;
-  fit.driver = driver;
-  fit.limits.scale = settings.use_of(driver).scale;
-  fit.workspace = known.nominal_workspace;
-  if (fit.workspace) {
-    fit.workspace = device::scaled(*fit.workspace, fit.limits.scale.length);
-    fit.source = WorkspaceSource::maker;
+/// A device by the name that a user or the study gives it.
+struct NamedDevice {
+  std::string name;
+  const device::DeviceDriver* driver = nullptr;  ///< null: none serves it
+  std::optional<device::DeviceModel> model;      ///< that stands for the device if none is read
+  bool is_read = true;                           ///< if its driver needs that, and it can be opened
+};
+
+/// \throws UsageError as device::model_of_device
+NamedDevice device_named(const std::string& name) {
+  NamedDevice named{.name = name, .driver = nullptr, .model = {}};
+  for (const device::DeviceDriver& driver : device::device_drivers()) {
+    if (driver.name == name) named.driver = &driver;
+    for (const device::DeviceProduct& product : driver.products) {
+      if (product.name != name) continue;
+      named.driver = &driver;
+      if (!product.model.empty()) named.model = device::device_model(product.model);
+    }
   }
-  if (!known.workspace_is_known) {
-    fit.limits = device::open_device(driver, settings)->info();
+  if (named.driver == nullptr) named.model = device::model_of_device(name);
+  return named;
+}
+
+/// \throws UsageError if neither the command nor the study names a device; as device_named
+/// \throws StudyError as simulation::device_of
+NamedDevice device_to_fit(const std::string& given, const design::Study& study) {
+  if (!given.empty()) return device_named(given);
+  if (study.device.empty()) {
+    throw UsageError(one_line(
+        study.source + ": names no device; give --device, or name one by /rendering/device"));
+  }
+  const device::DeviceModel model = simulation::device_of(study);
+  return {study.device, device::driver_of_model(model.name), model, false};
+}
+
+/// What opening the device would tell, as far as the model has it.
+void fill_from_model(const device::DeviceModel& model, StudyFit& fit) {
+  fit.model = model.name;
+  fit.limits.max_stiffness_n_per_mm = model.max_stiffness_n_per_mm;
+  if (!model.workspace) return;
+  fit.workspace = device::scaled(*model.workspace, fit.limits.scale.length);
+  fit.source = WorkspaceSource::model;
+}
+
+/// Fills in the workspace and the limits of the device.
+/// \throws DeviceError if only the device could tell and it cannot be opened
+void fill_device(const NamedDevice& named, const device::DeviceSettings& settings, StudyFit& fit) {
+  if (named.driver == nullptr || !named.is_read) return fill_from_model(*named.model, fit);
+  if (named.driver->workspace_is_known) {
+    if (!named.driver->nominal_workspace) return;
+    fit.workspace = device::scaled(*named.driver->nominal_workspace, fit.limits.scale.length);
+    fit.source = WorkspaceSource::maker;
+    return;
+  }
+  try {
+    fit.limits = device::open_device(fit.driver, settings)->info();
     fit.workspace = fit.limits.workspace;
     fit.source = WorkspaceSource::device;
+  } catch (const DeviceError&) {
+    if (!named.model) throw;
+    fill_from_model(*named.model, fit);
   }
+}
+
+/// \param orientation  nothing: as the settings say
+/// \throws DeviceError as fill_device
+/// \throws FileError as common_plane_of
+StudyFit fit_of(const design::Study& study, const NamedDevice& named,
+                const device::DeviceSettings& settings,
+                std::optional<device::PlaneOrientation> orientation) {
+  StudyFit fit;
+  fit.study = study.name;
+  fit.device = named.name;
+  fit.driver = named.driver != nullptr ? named.driver->name : "";
+  const device::DeviceUse use = settings.use_of(fit.driver);
+  fit.limits.scale = use.scale;
+  fill_device(named, settings, fit);
   fit.rendered = rendered_stiffness(study.rendering);
   fit.plane = common_plane_of(study);
-  fit.fit = device::fit_plane(fit.plane, fit.workspace, settings.use_of(driver), orientation);
+  fit.fit = device::fit_plane(fit.plane, fit.workspace, use, orientation);
   return fit;
 }
 
@@ -144,15 +212,16 @@ StudyFit fit_of(const design::Study& study, const std::string& driver,
 std::string stiffness_text(const StudyFit& fit) {
   const std::string limits = device::rendering_limits_text(fit.limits);
   if (limits.empty()) return "";
-  return fmt::format("stiffness {:g} N/mm of the wall, {:g} N/mm of the texture: {} {}\n",
-                     fit.rendered.wall_n_per_mm, fit.rendered.texture_n_per_mm, fit.driver, limits);
+  return fmt::format("stiffness {:g} N/mm of the wall, {:g} N/mm of the texture: {} {}, {}\n",
+                     fit.rendered.wall_n_per_mm, fit.rendered.texture_n_per_mm, fit.device, limits,
+                     fit.model ? "by its device model" : "as it reports");
 }
 
 std::string fit_text(const StudyFit& fit) {
   std::string text =
       fmt::format("{}: plane {:.1f} x {:.1f} mm ({} x {} px of {} mm)\n{}: ", fit.study,
                   fit.plane.width_mm(), fit.plane.height_mm(), fit.plane.width_px,
-                  fit.plane.height_px, fit.plane.pitch_mm, fit.driver);
+                  fit.plane.height_px, fit.plane.pitch_mm, fit.device);
   text += workspace_text(fit) + stiffness_text(fit);
   if (!fit.fit.fits) return text;
   if (!fit.fit.placement) return text + "fits\n";
@@ -177,19 +246,33 @@ ordered_json stiffness_json(const StudyFit& fit) {
           {"damping_limit_n_s_per_mm", limit_json(fit.limits.max_damping_n_s_per_mm)}};
 }
 
+/// device_words of the models that levels were computed on.
+std::string devices_of(const simulation::StimulusLevels& levels) {
+  std::set<std::string> recorded;
+  for (const simulation::StimulusLevel& level : levels.blank) {
+    device::DeviceModel model;
+    model.name = level.device;
+    recorded.insert(device::words_of_simulated(model));
+  }
+  return analysis::device_words(recorded);
+}
+
 /// The format is documented in docs/devices/README.md.
 std::string fit_json(const design::Study& study, const StudyFit& fit,
                      const std::optional<simulation::StimulusLevels>& levels) {
-  ordered_json object = {{"study", fit.study},
-                         {"driver", fit.driver},
-                         {"fits", fit.fit.fits},
-                         {"margin_mm", device::kWorkspaceMarginMm},
-                         {"plane", plane_json(fit.plane)},
-                         {"workspace", workspace_json(fit)},
-                         {"stiffness", stiffness_json(fit)},
-                         {"orientation", nullptr},
-                         {"origin_mm", nullptr},
-                         {"crop", nullptr}};
+  ordered_json object = {{"study", fit.study}};
+  if (levels) object["simulated_on"] = devices_of(*levels);
+  object.update({{"device", fit.device},
+                 {"driver", fit.driver},
+                 {"model", fit.model ? ordered_json(*fit.model) : ordered_json(nullptr)},
+                 {"fits", fit.fit.fits},
+                 {"margin_mm", device::kWorkspaceMarginMm},
+                 {"plane", plane_json(fit.plane)},
+                 {"workspace", workspace_json(fit)},
+                 {"stiffness", stiffness_json(fit)},
+                 {"orientation", nullptr},
+                 {"origin_mm", nullptr},
+                 {"crop", nullptr}});
   if (fit.fit.placement) {
     object["orientation"] = word_for(fit.fit.placement->orientation);
     object["origin_mm"] = vec_json(fit.fit.placement->origin_mm);
@@ -202,7 +285,7 @@ std::string fit_json(const design::Study& study, const StudyFit& fit,
 
 struct DeviceFitArguments {
   fs::path study;
-  std::string driver;
+  std::string device;  ///< empty: the study's
   std::optional<device::PlaneOrientation> orientation;
   fs::path settings;
   fs::path certificate;  ///< empty: NAME-certificate.json, if it is there
@@ -249,14 +332,19 @@ void print_levels(const design::Study& study,
 int fit(const DeviceFitArguments& arguments) {
   const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   const design::Study study = design::load_study(arguments.study);
-  const StudyFit fit = fit_of(study, arguments.driver, settings, arguments.orientation);
+  const NamedDevice named = device_to_fit(arguments.device, study);
+  const StudyFit fit = fit_of(study, named, settings, arguments.orientation);
   const auto levels = levels_here(study, arguments.study);
+  if (levels && !arguments.json) {
+    print("levels " + analysis::simulated_on_line(devices_of(*levels)));
+  }
   print(arguments.json ? fit_json(study, fit, levels) : fit_text(fit));
   if (!fit.fit.fits) {
-    throw DeviceError(device::misfit_text(arguments.driver, fit.plane, *fit.workspace, fit.fit));
+    throw DeviceError(device::misfit_text(fit.device, fit.plane, *fit.workspace, fit.fit));
   }
-  const fs::path usual = arguments.driver + "-certificate.json";
-  if (!arguments.certificate.empty() || is_there(usual)) {
+  const fs::path usual = fit.driver + "-certificate.json";
+  const bool has_usual = !fit.driver.empty() && is_there(usual);
+  if (!arguments.certificate.empty() || has_usual) {
     check_with_certificate(arguments.certificate.empty() ? usual : arguments.certificate, study,
                            fit);
   }
@@ -278,7 +366,12 @@ void add_device_fit_command(CLI::App& device, Action& action) {
       "Check whether a study's plane fits a device's workspace, and its stiffness the device's "
       "limits; if the plane does not, give the crop that does");
   add_study_argument(*command, arguments->study);
-  add_driver_argument(*command, "--device", arguments->driver)->required();
+  command
+      ->add_option("--device", arguments->device,
+                   "Driver, product or device model, as touchtrial device list and device models "
+                   "name them, or a model's file (default: the study's). A product that cannot be "
+                   "opened is that of its model")
+      ->type_name("NAME");
   command
       ->add_option_function<std::string>(
           "--orientation",

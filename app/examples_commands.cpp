@@ -16,6 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The studies themselves name no device, and would be simulated on an ideal one.
+constexpr const char* kDemoDevice = "touch";
+
 struct DemoArguments {
   fs::path folder = "touchtrial-demo";
   int participants = 20;
@@ -49,8 +52,8 @@ int run_demo(const DemoArguments& arguments) {
     const std::string db = (arguments.folder / (name + ".db")).string();
     const std::string report = (arguments.folder / (name + "-report")).string();
     const std::vector<std::vector<std::string>> steps = {
-        {"simulate", study, "--participants", std::to_string(arguments.participants), "--seed", "1",
-         "--db", db},
+        {"simulate", study, "--on", kDemoDevice, "--participants",
+         std::to_string(arguments.participants), "--seed", "1", "--db", db},
         {"verify", db},
         {"report", db},
         {"report", db, "--out", report}};
@@ -79,7 +82,8 @@ void add_examples_commands(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<DemoArguments>();
   CLI::App* demo = program.add_subcommand(
       "demo",
-      "Run simulated participants through both experiments, and print and write their reports");
+      "Run participants who are simulated on a modelled 3D Systems Touch through both "
+      "experiments, and print and write their reports");
   demo->add_option("FOLDER", arguments->folder, "New folder for studies, databases and reports")
       ->capture_default_str();
   demo->add_option("--participants", arguments->participants,

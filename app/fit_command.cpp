@@ -4,6 +4,7 @@
 #include "analysis/planning/fit_report.hpp"
 #include "analysis/planning/subject_fit.hpp"
 #include "analysis/sealed_sessions.hpp"
+#include "analysis/text_figures.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
@@ -77,6 +78,7 @@ planning::FitOrigin origin_of(const FitArguments& arguments, const design::Study
   origin.explorations = arguments.felt.explorations;
   origin.directions = arguments.felt.directions;
   origin.seed = arguments.felt.seed;
+  origin.felt_on = analysis::device_words({simulation::recorded_device(subject)});
   return origin;
 }
 
@@ -169,6 +171,7 @@ int fit_study(const FitArguments& arguments) {
       planning::fit_subject(model, counts, subject, options, shares(progress_bar("fitting")));
   planning::FitOrigin origin = origin_of(arguments, key.study, subject);
   origin.simulated = outcomes.simulated;
+  if (origin.simulated) origin.answers_on = analysis::simulated_devices(outcomes.collection);
   origin.pilot = outcomes.pilot;
   origin.interim = !outcomes.state.closed;
   finish(arguments, fit.subject,

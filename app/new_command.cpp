@@ -6,6 +6,7 @@
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
+#include "device/registry.hpp"
 #include "protocols/design/languages.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/design/study.hpp"
@@ -128,6 +129,10 @@ std::vector<NewQuestion> new_questions() {
   const std::vector<std::string> protocols = protocols_of_new_studies();
   const std::vector<std::string> languages(design::language_codes().begin(),
                                            design::language_codes().end());
+  const std::vector<std::string> devices = device::modelled_names();
+  const auto is_device = [devices](const std::string& text) {
+    return text.empty() || std::ranges::find(devices, text) != devices.end();
+  };
   const auto is_folder = [](const std::string& text) {
     std::error_code unreadable;
     return text.empty() || fs::is_directory(text, unreadable);
@@ -142,6 +147,14 @@ std::vector<NewQuestion> new_questions() {
        CLI::IsMember(protocols), always(protocols.front())},
       {"--pictures", "Folder of your photographs; empty: five textures of the program's own",
        allowed_if(is_folder, "is no folder", "FOLDER"), always("")},
+      {"--device",
+       "Device that the study is for, as touch or omega; empty: none, and then simulated people "
+       "hold an ideal device, which nobody sells",
+       allowed_if(
+           is_device,
+           "must be one of " + listed(devices, " or ") + "; a model's file is named in the study",
+           "NAME"),
+       always("")},
       {"--people", "Number of participants", number_within(2, 100'000), always("20")},
       {"--worth",
        "Least effect worth having, in points of 100: right answers above chance, or of one method "
@@ -319,7 +332,7 @@ constexpr const char* kStudyText =
   "rendering": {
     // "paper": the model of the source paper. "surface": no closed path of the hand gains energy.
     "model": "paper",
-    // Size of a picture's pixel on the plane, mm.
+{device}    // Size of a picture's pixel on the plane, mm.
     "pitch_mm": 0.2,
     // "budget": forces as strong as the plane's stiffness allows, in one scale for all textures.
     "gains": "budget",
@@ -392,6 +405,16 @@ constexpr const char* kStudyText =
   // Decides simulations alone, never what people get.
   "seed": {seed}
 }
+)";
+
+constexpr const char* kDeviceText =
+    R"(    // The device that the study is for: levels are stated for it, and simulated hands hold it.
+    "device": {name},
+)";
+
+constexpr const char* kNoDeviceText =
+    R"(    // No "device" is named: simulated hands hold an ideal one, which nobody sells, and so no
+    // simulated accuracy or number of participants holds for a real one.
 )";
 
 constexpr const char* kPracticeText =
@@ -500,6 +523,7 @@ std::string study_text(const NewArguments& arguments, const NewStudy& study) {
       study.practice.empty()
           ? ""
           : filled_in(kPracticeText, {{"practice_classes", lines_of(study.practice, "      ")}});
+  const std::string& device = answers.at("--device");
   const int visits = visits_of(answers);
   const std::vector<std::string> groups = groups_in(answers.at("--groups"));
   fillings.insert(
@@ -512,6 +536,8 @@ std::string study_text(const NewArguments& arguments, const NewStudy& study) {
        {"groups", groups.empty() ? "" : filled_in(kGroupsText, {{"labels", Json(groups).dump()}})},
        {"name", in_json(answers.at("--name"))},
        {"protocol", in_json(answers.at("--protocol"))},
+       {"device",
+        device.empty() ? kNoDeviceText : filled_in(kDeviceText, {{"name", in_json(device)}})},
        {"classes", lines_of(study.classes, "    ")},
        {"practice_trials", study.practice.empty() ? "0" : "5"},
        {"practice", practice},

@@ -6,6 +6,7 @@
 #include "analysis/planning/stated_people.hpp"
 #include "analysis/planning/uncertain_subject.hpp"
 #include "analysis/planning/what_if.hpp"
+#include "analysis/text_figures.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
@@ -261,7 +262,9 @@ struct PowerPreparation {
             assumed_words(),
             std::string(program_version()),
             fitted ? static_cast<int>(fitted->draws.size()) : 0,
-            study.trials.order != design::TrialOrder::uniform};
+            study.trials.order != design::TrialOrder::uniform,
+            analysis::device_words(
+                {stated ? analysis::kStatedPeople : simulation::recorded_device(subject)})};
   }
 
   design::Study study;
@@ -323,7 +326,8 @@ void make_missing_runs(const PowerPreparation& prepared, const PowerArguments& a
 void print_shard(const PowerArguments& arguments, const planning::PowerProgress& progress) {
   const fs::path file = file_of(arguments, progress.shard);
   const int runs = progress.shard.own_runs(progress.plan.runs);
-  print(fmt::format("SIMULATED: shard {}/{}: {} of {} runs of each of {} sizes\nfile     {}\n",
+  print(analysis::simulated_on_line(progress.setting.device) +
+        fmt::format("SIMULATED: shard {}/{}: {} of {} runs of each of {} sizes\nfile     {}\n",
                     progress.shard.number, progress.shard.count, runs, progress.plan.runs,
                     progress.plan.participants.size(), file.string()));
 }

@@ -1,3 +1,4 @@
+#include "analysis/text_figures.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/simulated_study.hpp"
@@ -21,7 +22,8 @@ std::string summary_of(const SimulateArguments& arguments,
                        const simulation::SimulationReport& report) {
   const StudyToSimulate& study = arguments.study;
   if (arguments.json) return simulation_json(study, report);
-  return fmt::format("SIMULATED: {} sessions, {} presentations, {}\ndatabase {}\nkey      {}\n",
+  return analysis::simulated_on_line(analysis::device_words({report.device})) +
+         fmt::format("SIMULATED: {} sessions, {} presentations, {}\ndatabase {}\nkey      {}\n",
                      report.sessions, report.presentations,
                      study.keep_blind ? "still blind" : "closed and unblinded",
                      study.database.string(), key_path_for(study.database, {}).string());

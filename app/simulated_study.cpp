@@ -1,5 +1,6 @@
 #include "app/simulated_study.hpp"
 
+#include "analysis/text_figures.hpp"
 #include "app/console.hpp"
 #include "app/heads.hpp"
 #include "app/study_inputs.hpp"
@@ -56,6 +57,7 @@ simulation::SimulationReport simulate_study(const StudyToSimulate& wanted) {
 std::string simulation_json(const StudyToSimulate& wanted,
                             const simulation::SimulationReport& report) {
   return json_text(nlohmann::json{{"simulated", true},
+                                  {"simulated_on", analysis::device_words({report.device})},
                                   {"sessions", report.sessions},
                                   {"presentations", report.presentations},
                                   {"invalid_trials", report.invalid_trials},

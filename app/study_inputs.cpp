@@ -11,6 +11,7 @@
 #include "core/files.hpp"
 #include "core/public_keys.hpp"
 #include "device/device_settings.hpp"
+#include "device/registry.hpp"
 #include "engine/fourier/planning.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/collect/collect.hpp"
@@ -368,7 +369,7 @@ simulation::SubjectModel subject_for(const std::filesystem::path& path, const de
       path.empty() ? simulation::default_subject() : simulation::load_subject_model(path);
   subject.check_labels(study);
   if (!on.empty()) {
-    subject.device = device::device_model(on);
+    subject.device = device::model_of_device(on);
   } else if (!study.device.empty()) {
     subject.device = simulation::device_of(study);
   }

@@ -143,8 +143,8 @@ void prepare_simulated_pack(const design::StudyKey& key);
 void refuse_other_key(const std::filesystem::path& path, const design::StudyKey& key);
 
 /// \param path  a subject model; empty: the built-in one
-/// \param on  model of the device that it holds, a name or a file; empty: the study's, or ideal
-/// \throws as load_subject_model, SubjectModel::check_labels, device::device_model and
+/// \param on  device that it holds, as device::model_of_device; empty: the study's, or ideal
+/// \throws as load_subject_model, SubjectModel::check_labels, device::model_of_device and
 ///   simulation::device_of
 [[nodiscard]] simulation::SubjectModel subject_for(const std::filesystem::path& path,
                                                    const design::Study& study,

@@ -2,6 +2,7 @@
 
 #include "analysis/planning/power_progress.hpp"
 #include "analysis/planning/threshold_plan.hpp"
+#include "analysis/text_figures.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
@@ -89,6 +90,7 @@ int plan_thresholds(const design::Study& study, const std::filesystem::path& fil
   const std::vector<int> trials = trials_to_try(study, arguments);
   planning::ThresholdPlanReport report;
   report.setting = {study.name, planning::words_of(subject),
+                    analysis::device_words({simulation::recorded_device(subject)}),
                     design::threshold::unit_of_level(design::threshold::options_of(study))};
   report.plan = {.participants = plan.participants,
                  .runs = plan.runs,

@@ -6,8 +6,11 @@
 #include "device/scaled_device.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace touchtrial::device {
 namespace {
@@ -30,6 +33,16 @@ DeviceSettings in_drivers_newtons(DeviceSettings settings, const std::string& dr
   if (use.limits.max_force_n) *use.limits.max_force_n /= weakest;
   if (use.limits.continuous_force_n) *use.limits.continuous_force_n /= weakest;
   return settings;
+}
+
+/// Those that a model stands for, driver by driver.
+std::vector<DeviceProduct> modelled_products() {
+  std::vector<DeviceProduct> all;
+  for (const DeviceDriver& driver : device_drivers()) {
+    std::ranges::copy_if(driver.products, std::back_inserter(all),
+                         [](const DeviceProduct& product) { return !product.model.empty(); });
+  }
+  return all;
 }
 
 }  // namespace
@@ -72,6 +85,36 @@ const DeviceDriver& device_driver(const std::string& name) {
   throw UsageError(one_line(
       name + ": there is no such device or driver; " +
       (nearest ? "did you mean " + std::string(*nearest) + "?" : "see touchtrial device list")));
+}
+
+std::vector<std::string> modelled_names() {
+  std::vector<std::string> names;
+  for (const DeviceModel& model : shipped_device_models()) names.push_back(model.name);
+  for (const DeviceProduct& product : modelled_products()) {
+    if (product.name != product.model) names.push_back(product.name);
+  }
+  return names;
+}
+
+DeviceModel model_of_device(const std::string& name) {
+  for (const DeviceProduct& product : modelled_products()) {
+    if (product.name == name) return device_model(product.model);
+  }
+  const bool is_file = name.find('/') != std::string::npos || name.ends_with(".json");
+  const std::vector<std::string> known = modelled_names();
+  if (is_file || std::ranges::find(known, name) != known.end()) return device_model(name);
+  throw UsageError(one_line(fmt::format(
+      "{}: there is no model of such a device; known are {}, and files that end in .json", name,
+      fmt::join(known, ", "))));
+}
+
+const DeviceDriver* driver_of_model(std::string_view model) {
+  for (const DeviceDriver& driver : device_drivers()) {
+    const bool is_served = std::ranges::any_of(
+        driver.products, [&](const DeviceProduct& product) { return product.model == model; });
+    if (is_served && !model.empty()) return &driver;
+  }
+  return nullptr;
 }
 
 std::unique_ptr<HapticDevice> open_device(const std::string& driver,

@@ -3,6 +3,7 @@
 
 #include "device/device_settings.hpp"
 #include "device/haptic_device.hpp"
+#include "device/model/device_model.hpp"
 #include "device/unverified_fact.hpp"
 
 #include <functional>
@@ -32,6 +33,8 @@ struct DeviceListing {
 struct DeviceProduct {
   std::string name;   ///< that opens its driver too, for instance "omega"
   std::string title;  ///< for people, "Force Dimension omega"
+  /// Name of the shipped model that stands for it where no device is at hand; empty: none does.
+  std::string model{};
 };
 
 /// What one driver offers the registry.
@@ -64,6 +67,19 @@ struct DeviceDriver {
 /// \return what is plugged in, and what each driver lacks; a driver's DeviceError or other Error
 ///   becomes a line of its listing
 [[nodiscard]] std::vector<DeviceListing> list_devices(const DeviceSettings& settings);
+
+/// \return every name that model_of_device knows: those of models, then of products with a model
+[[nodiscard]] std::vector<std::string> modelled_names();
+
+/// \return the model of a device that is not at hand: for simulations, levels and planning
+/// \param name  of a shipped model, of a product with a model, or a model's file: a path that has a
+///   slash or ends in ".json"
+/// \throws UsageError listing what is known if there is none of this name; as read_device_model
+[[nodiscard]] DeviceModel model_of_device(const std::string& name);
+
+/// \return the driver of the device that a model stands for; null: of none that a driver serves
+/// \param model  name of a model
+[[nodiscard]] const DeviceDriver* driver_of_model(std::string_view model);
 
 /// \return every name that device_driver knows, driver by driver
 [[nodiscard]] std::vector<std::string_view> device_names();

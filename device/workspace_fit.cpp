@@ -140,7 +140,7 @@ std::string rendering_limits_text(const DeviceInfo& device) {
     text += (text.empty() ? "" : " and ") + std::string("a damping of at most ") +
             short_text(device.max_damping_n_s_per_mm) + " N s/mm";
   }
-  return text.empty() ? "" : "renders " + text + ", as it reports";
+  return text.empty() ? "" : "renders " + text;
 }
 
 std::string check_stiffness(const RenderedStiffness& rendered, const DeviceInfo& device) {

@@ -1,5 +1,6 @@
 #include "analysis/exports/export_tables.hpp"
 
+#include "analysis/collection.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/said_tables.hpp"
 #include "analysis/exports/study_tables.hpp"
@@ -27,10 +28,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The contents of the folder, for readers who do not know the program.
-std::string contents_json(const store::StudyCommitment& commitment, bool blinded,
+std::string contents_json(const store::StudyStore& store, bool blinded,
                           const std::vector<ExportFile>& files) {
+  const store::StudyCommitment& commitment = store.commitment();
   Json contents{{"study", commitment.study}, {"protocol", commitment.protocol}};
-  put_stamp(contents, commitment.simulated);
+  put_stamp(contents, commitment.simulated, simulated_devices(store.sessions()));
   contents["study_id"] = commitment.study_id;
   contents["pilot"] = commitment.pilot;
   contents["blinded"] = blinded;
@@ -135,7 +137,7 @@ std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
   std::vector<ExportFile> files = csv_files(exported_tables(store, outcomes, consents));
   if (outcomes)
     files.push_back(text_file("study_file.json", without_comments(outcomes->design.text)));
-  files.push_back(text_file("export.json", contents_json(commitment, !outcomes, files)));
+  files.push_back(text_file("export.json", contents_json(store, !outcomes, files)));
   return write_export(folder, {commitment.study, commitment.study_id, "csv"}, files);
 }
 
@@ -196,7 +198,7 @@ std::filesystem::path export_json(const store::StudyStore& store,
                                   const std::vector<store::PersonalRecord>& consents) {
   const store::StudyCommitment& commitment = store.commitment();
   Json document{{"study", commitment.study}, {"protocol", commitment.protocol}};
-  put_stamp(document, commitment.simulated);
+  put_stamp(document, commitment.simulated, simulated_devices(store.sessions()));
   document["study_id"] = commitment.study_id;
   if (outcomes) {
     document["report"] = Json::parse(analysis_of(outcomes->design).results(*outcomes, {})->json());

@@ -107,6 +107,8 @@ Table hands_table(const Collection& collection) {
 std::vector<std::string> banners_of(const QualityReport& report) {
   std::vector<std::string> banners;
   if (report.simulated) {
+    const std::string device = simulated_on(simulated_devices(report.collection));
+    if (!device.empty()) banners.push_back(device);
     banners.emplace_back("SIMULATED: this study's participants are simulated.");
   }
   if (report.pilot) banners.emplace_back("PILOT: not to be pooled with the study's data.");

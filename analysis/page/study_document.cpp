@@ -40,6 +40,8 @@ bool is_interim(const Provenance& provenance) {
 std::vector<std::string> banners_of(const StudyHead& report, const Provenance& provenance) {
   std::vector<std::string> banners;
   if (report.simulated) {
+    const std::string device = simulated_on(simulated_devices(report.collection));
+    if (!device.empty()) banners.push_back(device);
     banners.emplace_back(
         "SIMULATED: these numbers come from simulated participants. They say what a model of a "
         "hand and of a sense of touch does, not what people do.");

@@ -103,10 +103,18 @@ std::string biases_text(const simulation::SubjectModel& subject) {
   return text;
 }
 
+/// For which device the numbers hold: the answers', if they are simulated, and that of the
+/// explorations, which always are.
+std::string device_lines(const FitOrigin& origin) {
+  return analysis::simulated_on_line(origin.answers_on) +
+         (origin.felt_on.empty() ? "" : "explorations ") +
+         analysis::simulated_on_line(origin.felt_on);
+}
+
 }  // namespace
 
 std::string fit_text(const SubjectFit& fit, const FitOrigin& origin) {
-  std::string text = analysis::simulated_line(origin.simulated);
+  std::string text = device_lines(origin) + analysis::simulated_line(origin.simulated);
   text += fmt::format(
       "{}: {}, {} with an answer{}{}{}\n", origin.study,
       analysis::counted(fit.participants, "participant"), analysis::counted(fit.trials, "trial"),
@@ -121,7 +129,7 @@ std::string fit_text(const SubjectFit& fit, const FitOrigin& origin) {
 }
 
 std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin) {
-  std::string text = origin.study + ": a subject for published accuracies\n";
+  std::string text = device_lines(origin) + origin.study + ": a subject for published accuracies\n";
   analysis::TextTable table({"class", "published", "expected of the fit", "difference, points"});
   for (std::size_t c = 0; c < fit.classes.size(); ++c) {
     table.add({fit.classes[c], analysis::percent_of_share(fit.wanted[c]),
@@ -151,9 +159,11 @@ Json origin_json(const FitOrigin& origin) {
   Json object = {{"study", origin.study}, {"subject", origin.subject}};
   object["simulated"] = origin.simulated;
   if (origin.simulated) object["stamp"] = "SIMULATED";
+  if (!origin.answers_on.empty()) object["simulated_on"] = origin.answers_on;
   object["pilot"] = origin.pilot;
   object["interim"] = origin.interim;
-  object["bank"] = {{"explorations", origin.explorations},
+  object["bank"] = {{"simulated_on", origin.felt_on},
+                    {"explorations", origin.explorations},
                     {"directions", origin.directions},
                     {"seed", origin.seed}};
   return object;

@@ -23,6 +23,8 @@ struct FitOrigin {
   int explorations = 0;
   int directions = 0;
   std::uint64_t seed = 0;
+  std::string answers_on{};  ///< analysis::device_words of the answers; empty: real participants
+  std::string felt_on{};     ///< analysis::device_words of the subject that feels
 };
 
 /// Tables for a terminal; ends with a line feed.

@@ -35,6 +35,7 @@ struct PowerSetting {
   /// answers that a bias gives, and so all numbers, depend on the orders that the study's seed
   /// draws.
   bool has_fixed_counts = true;
+  std::string device{};  ///< analysis::device_words of what the subject holds
 
   /// Whether people feel the study's textures; otherwise only how often they are right is stated.
   [[nodiscard]] bool feels() const { return fields != kNoFields; }

@@ -13,7 +13,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "touchtrial power progress";
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 29U;
 
 ordered_json setting_object(const PowerSetting& setting) {
@@ -21,7 +21,8 @@ ordered_json setting_object(const PowerSetting& setting) {
           {"test", setting.test},       {"estimate", setting.estimate},
           {"seal", setting.seal},       {"fields", setting.fields},
           {"subject", setting.subject}, {"program", setting.program},
-          {"draws", setting.draws},     {"has_fixed_counts", setting.has_fixed_counts}};
+          {"draws", setting.draws},     {"has_fixed_counts", setting.has_fixed_counts},
+          {"device", setting.device}};
 }
 
 ordered_json stored_plan(const PowerPlan& plan) {
@@ -74,10 +75,12 @@ void require(bool holds, const char* what) {
 }
 
 PowerSetting setting_of(const ordered_json& object) {
-  return {object.at("study"),           object.at("protocol"), object.at("test"),
-          object.at("estimate"),        object.at("seal"),     object.at("fields"),
-          object.at("subject"),         object.at("program"),  object.at("draws"),
-          object.at("has_fixed_counts")};
+  return {object.at("study"),   object.at("protocol"),
+          object.at("test"),    object.at("estimate"),
+          object.at("seal"),    object.at("fields"),
+          object.at("subject"), object.at("program"),
+          object.at("draws"),   object.at("has_fixed_counts"),
+          object.at("device")};
 }
 
 PowerPlan plan_of(const ordered_json& object) {

@@ -185,7 +185,7 @@ std::string power_stamp(const PowerSetting& setting) {
 
 std::string power_text(const PowerReport& report) {
   const std::string stamp = power_stamp(report.setting) + "\n";
-  std::string text = stamp;
+  std::string text = analysis::simulated_on_line(report.setting.device) + stamp;
   text += analysis::wrapped("study    ", report.setting.study + ", " + report.setting.protocol);
   text += analysis::wrapped("test     ", report.setting.test);
   text += analysis::wrapped("assumed  ", report.setting.subject);
@@ -259,6 +259,9 @@ analysis::Table table_of(const PowerReport& report) {
   for (const PowerRow& row : report.rows) table.rows.push_back(table_row(row));
   for (const std::string& sentence : target_sentences(report)) table.notes.push_back({sentence});
   for (const std::string& warning : report.warnings) table.notes.push_back({warning});
+  if (!report.setting.device.empty()) {
+    table.notes.push_back({analysis::simulated_on(report.setting.device)});
+  }
   table.notes.push_back({"Assumed: " + report.setting.subject + "."});
   for (const std::string& sentence : method_sentences(report)) table.notes.push_back({sentence});
   return table;
@@ -347,6 +350,7 @@ std::string power_json(const PowerReport& report) {
   ordered_json object;
   object["simulated"] = true;
   object["stamp"] = "SIMULATED";
+  object["simulated_on"] = setting.device;
   object["claim"] = power_stamp(setting);
   object["study"] = setting.study;
   object["protocol"] = setting.protocol;

@@ -67,6 +67,7 @@ struct ThresholdRow {
 struct ThresholdPlanSetting {
   std::string study;
   std::string subject;  ///< words_of the subject model
+  std::string device;   ///< analysis::device_words
   std::string unit;     ///< of a level
 };
 

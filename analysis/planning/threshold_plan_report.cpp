@@ -208,7 +208,8 @@ ordered_json pool_json(const ThresholdPlanReport& report, const ThresholdPool& p
 std::string threshold_plan_text(const ThresholdPlanReport& report) {
   const std::string stamp = analysis::wrapped("", stamp_of(report));
   std::string text =
-      stamp + fmt::format("study    {}\nunit     {}\n", report.setting.study, report.setting.unit);
+      analysis::simulated_on_line(report.setting.device) + stamp +
+      fmt::format("study    {}\nunit     {}\n", report.setting.study, report.setting.unit);
   text +=
       analysis::heading("Simulated participants, by trials of a track", true) + pools_text(report);
   text += analysis::heading("Intervals of mean thresholds", true) + widths_text(report);
@@ -227,6 +228,7 @@ std::string threshold_plan_json(const ThresholdPlanReport& report) {
   const ThresholdPlan& plan = report.plan;
   ordered_json document = {{"simulated", true},
                            {"stamp", stamp_of(report)},
+                           {"simulated_on", report.setting.device},
                            {"study", report.setting.study},
                            {"protocol", "threshold"},
                            {"subject", report.setting.subject},

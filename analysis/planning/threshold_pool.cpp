@@ -87,7 +87,7 @@ bool hold_session(const PoolSetting& setting, int number, int visit,
   opening.visit = visit;
   opening.study_id = key.study_id;
   opening.seal = key.seal;
-  opening.device = device::words_of_simulated(setting.subject.device);
+  opening.device = simulation::recorded_device(setting.subject);
   opening.simulated = true;
   session.open({}, opening, design::schedule_to_json(schedule, key));
   participant.come_to(visit, simulation::course_of(key.study, schedule));

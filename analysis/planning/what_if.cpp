@@ -268,7 +268,7 @@ Json row_json(const WhatIfRow& row) {
 }  // namespace
 
 std::string what_if_text(const WhatIf& result) {
-  std::string text = std::string(kStamp) + "\n";
+  std::string text = analysis::simulated_on_line(result.setting.device) + kStamp + "\n";
   text += analysis::wrapped("study    ", result.setting.study + ", " + result.setting.protocol);
   text += analysis::wrapped("test     ", result.setting.test);
   text += analysis::wrapped("assumed  ", result.setting.subject);
@@ -306,6 +306,7 @@ std::string what_if_json(const WhatIf& result) {
   Json object;
   object["simulated"] = true;
   object["stamp"] = "SIMULATED";
+  object["simulated_on"] = result.setting.device;
   object["claim"] = kStamp;
   object["study"] = result.setting.study;
   object["protocol"] = result.setting.protocol;

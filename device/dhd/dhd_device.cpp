@@ -435,7 +435,7 @@ DeviceDriver dhd_driver() {
           .open = dhd::open_dhd,
           .workspace_is_known = false,
           .initialise = dhd::initialise_dhd,
-          .products = {{"omega", "Force Dimension omega"},
+          .products = {{"omega", "Force Dimension omega", "omega_3"},
                        {"delta", "Force Dimension delta"},
                        {"sigma", "Force Dimension sigma"},
                        {"lambda", "Force Dimension lambda"}},

@@ -224,7 +224,7 @@ DeviceDriver falcon_driver() {
           .list = falcon::list_falcons,
           .open = falcon::open_falcon,
           .nominal_workspace = falcon::kFalconWorkspace,
-          .products = {{"falcon", "Novint Falcon"}},
+          .products = {{"falcon", "Novint Falcon", "falcon"}},
           .unverified = falcon_unverified()};
 }
 

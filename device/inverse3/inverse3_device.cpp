@@ -510,7 +510,7 @@ DeviceDriver inverse3_driver() {
           .list = inverse3::list_inverse3,
           .open = inverse3::open_inverse3,
           .workspace_is_known = false,
-          .products = {{"inverse3", "Haply Inverse3"},
+          .products = {{"inverse3", "Haply Inverse3", "inverse3"},
                        {"inverse3x", "Haply Inverse3x"},
                        {"minverse", "Haply Minverse"}},
           .unverified = inverse3_unverified()};

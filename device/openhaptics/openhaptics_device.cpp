@@ -230,7 +230,7 @@ std::vector<DeviceListing> list_openhaptics(const DeviceSettings& settings) {
     listing.serial = info.serial;
     listing.present = true;
     if (const std::string limits = rendering_limits_text(info); !limits.empty()) {
-      listing.notes = {limits};
+      listing.notes = {limits + ", as it reports"};
     }
   } catch (const DeviceError& error) {
     listing.missing = {error.what()};
@@ -368,12 +368,12 @@ DeviceDriver openhaptics_driver() {
           .list = hd::list_openhaptics,
           .open = hd::open_openhaptics,
           .workspace_is_known = false,
-          .products = {{"touch", "3D Systems Touch"},
-                       {"touch_x", "3D Systems Touch X"},
+          .products = {{"touch", "3D Systems Touch", "touch"},
+                       {"touch_x", "3D Systems Touch X", "touch_x"},
                        {"phantom", "any Phantom"},
-                       {"omni", "Phantom Omni"},
-                       {"desktop", "Phantom Desktop"},
-                       {"premium", "Phantom Premium"}},
+                       {"omni", "Phantom Omni", "touch"},
+                       {"desktop", "Phantom Desktop", "touch_x"},
+                       {"premium", "Phantom Premium", "premium_1_5"}},
           .unverified = openhaptics_unverified()};
 }
 

@@ -1,6 +1,7 @@
 #include "device/simulated/simulated_hand.hpp"
 
 #include "device/drivers.hpp"
+#include "device/registry.hpp"
 #include "device/servo/servo.hpp"
 
 #include <algorithm>
@@ -115,7 +116,7 @@ std::unique_ptr<HapticDevice> open_simulated(const DeviceSettings& settings) {
   exploration.duration_s = kNamedExploreS;
   const std::string& held = settings.simulated_on;
   return std::make_unique<SimulatedHand>(hand, ExplorationPath(kNamedPlane, exploration, random),
-                                         held.empty() ? DeviceModel{} : device_model(held));
+                                         held.empty() ? DeviceModel{} : model_of_device(held));
 }
 
 }  // namespace

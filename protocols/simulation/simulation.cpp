@@ -33,8 +33,7 @@ struct Setting {
   const design::StudyKey& key;
   const session::StimulusSource& source;
   const Population& population;
-  const device::DeviceModel& held;
-  bool is_given;  ///< answers follow a given function
+  std::string device;  ///< recorded_device
   std::uint64_t seed;
   Digest seal;
 };
@@ -71,7 +70,7 @@ store::SessionOpening opening_of(const Setting& setting, const Place& place) {
   if (group && groups.open) opening.group = groups.labels[static_cast<std::size_t>(*group)];
   opening.study_id = setting.key.study_id;
   opening.seal = setting.seal;
-  opening.device = setting.is_given ? "given-function" : device::words_of_simulated(setting.held);
+  opening.device = setting.device;
   opening.simulated = true;
   return opening;
 }
@@ -209,13 +208,13 @@ SimulationReport simulate_study(const design::StudyKey& key, const engine::Pack&
   const session::StimulusSource source(pack, key);
   const std::unique_ptr<const Population> population =
       population_of({key, source, subject, options.seed, options.jobs});
-  const Setting setting{
-      key,          source,  *population, subject.device, subject.given_function.has_value(),
-      options.seed, key.seal};
+  const Setting setting{key, source, *population, recorded_device(subject), options.seed, key.seal};
   const int sessions = options.participants * key.study.visits.count;
   Collector collector(store, progress, key.study.visits, sessions);
   run_sessions(setting, options, store.next_session(), sessions, collector);
-  return collector.report();
+  SimulationReport report = collector.report();
+  report.device = setting.device;
+  return report;
 }
 
 }  // namespace touchtrial::simulation

@@ -8,6 +8,7 @@
 #include "protocols/store/study_store.hpp"
 
 #include <cstdint>
+#include <string>
 
 namespace touchtrial::simulation {
 
@@ -24,6 +25,7 @@ struct SimulationReport {
   int presentations = 0;
   int invalid_trials = 0;
   std::int64_t ticks = 0;  ///< of the servo, without training
+  std::string device{};    ///< recorded_device of the subject
 };
 
 /// Teaches the participants the study's labelled fields as the subject model says. Then runs one

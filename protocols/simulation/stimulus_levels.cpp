@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "device/registry.hpp"
 #include "engine/perception/texture_sense.hpp"
 #include "engine/perception/threshold_weights.hpp"
 #include "protocols/session/exploration.hpp"
@@ -228,7 +229,7 @@ device::DeviceModel device_of(const design::Study& study) {
   const bool is_file =
       study.device.find('/') != std::string::npos || study.device.ends_with(".json");
   try {
-    return device::device_model(is_file ? (study.folder / study.device).string() : study.device);
+    return device::model_of_device(is_file ? (study.folder / study.device).string() : study.device);
   } catch (const Error& error) {
     throw StudyError(one_line(study.source + ": /rendering/device: " + error.what()));
   }

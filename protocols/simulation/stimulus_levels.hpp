@@ -57,7 +57,8 @@ struct StimulusLevels {
 /// Below this a stimulus is warned of.
 inline constexpr double kMinLevelDb = 10.0;
 
-/// The model that a study names: the program's own, or a file's, relative to the study's folder.
+/// The model of the device that a study names, as device::model_of_device; a file is relative to
+/// the study's folder.
 /// \pre the study names one
 /// \throws StudyError with its place in the study and the remedy if there is no such model
 [[nodiscard]] device::DeviceModel device_of(const design::Study& study);

@@ -4,6 +4,7 @@
 #include "core/files.hpp"
 #include "core/nearest_name.hpp"
 #include "core/strict_json.hpp"
+#include "device/simulated/simulated_hand.hpp"
 #include "protocols/simulation/subject_changes_json.hpp"
 
 #include <algorithm>
@@ -156,6 +157,10 @@ void check_label(const std::string& label, const std::string& pointer, const std
 }
 
 }  // namespace
+
+std::string recorded_device(const SubjectModel& model) {
+  return model.given_function ? "given-function" : device::words_of_simulated(model.device);
+}
 
 std::string_view name_of_sense(const std::optional<engine::ThresholdCurve>& sense) noexcept {
   return sense ? engine::name_of(*sense) : "flat";

@@ -89,6 +89,10 @@ struct SubjectModel {
   void check_labels(const design::Study& study) const;
 };
 
+/// \return the device as sessions of this subject record it (store::SessionOpening):
+///   device::words_of_simulated, or "given-function" if nothing is felt
+[[nodiscard]] std::string recorded_device(const SubjectModel& model);
+
 /// \return as subject files have it: "flat", "israr_2006" or "tan_1994"
 [[nodiscard]] std::string_view name_of_sense(
     const std::optional<engine::ThresholdCurve>& sense) noexcept;

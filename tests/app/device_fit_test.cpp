@@ -112,6 +112,34 @@ TEST_CASE("device fit compares a study's stiffness with what the device says tha
   CHECK_THAT(beyond.errors, holds_text("rendering.stiffness_n_per_mm of 0.5 N/mm is beyond"));
 }
 
+TEST_CASE("device fit takes a product's model where no device of it can be opened") {
+  const FitFolder folder(200, 200);
+  replace_file(folder.path() / "devices.json", R"({"dhd": {"library": "gone.so"}})");
+  const ProgramResult product = folder.fit({"--device", "omega", "--json"});
+  INFO(product.errors);
+  REQUIRE(product.exit_code == 0);
+  const json fit = json::parse(product.output);
+  CHECK(fit.at("driver") == "dhd");
+  CHECK(fit.at("model") == "omega_3");
+  CHECK(fit.at("workspace").at("from") == "model");
+  CHECK(fit.at("stiffness").at("limit_n_per_mm").get<double>() > 0.0);
+  CHECK(folder.fit({"--device", "dhd"}).exit_code == 1);
+  CHECK(folder.fit({"--device", "sigma"}).exit_code == 1);
+  CHECK(json::parse(folder.fit({"--device", "touch_x", "--json"}).output).at("model") == "touch_x");
+}
+
+TEST_CASE("device fit takes the study's device, and of that its model") {
+  const FitFolder named(200, 200, R"(, "rendering": {"device": "omega"})");
+  const ProgramResult result = named.fit({"--json"});
+  INFO(result.errors);
+  REQUIRE(result.exit_code == 0);
+  CHECK(json::parse(result.output).at("model") == "omega_3");
+  CHECK(json::parse(result.output).at("device") == "omega");
+  const ProgramResult nameless = FitFolder(200, 200).fit({});
+  CHECK(nameless.exit_code == 2);
+  CHECK_THAT(nameless.errors, holds_text("/rendering/device"));
+}
+
 TEST_CASE("device fit refuses a certificate that no session takes") {
   const FitFolder folder(200, 200);
   const std::string file = (folder.path() / "c.json").string();
@@ -153,8 +181,12 @@ TEST_CASE("device fit says how strong the stimuli are once the study is prepared
   const ProgramResult prepared =
       run_touchtrial(folder.path(), {"prepare", (folder.path() / "study.json").string(), "--json"});
   REQUIRE(prepared.exit_code == 0);
+  // Flat planes have no strength, and the warning names the key that would give it.
+  CHECK_THAT(prepared.errors, holds_text("/rendering/texture_stiffness_n_per_mm"));
   const json there = json::parse(prepared.output);
   CHECK(levels().at("blank") == there.at("blank").at("levels"));
+  const json fit = json::parse(folder.fit({"--device", "falcon", "--json"}).output);
+  CHECK_THAT(fit.at("simulated_on").get<std::string>(), holds_text("modelled device falcon"));
   REQUIRE(levels().at("stimuli").size() == 2);
   // Both are the same grey: prepare lists them in the order of their codes.
   CHECK(levels().at("stimuli")[0].at("levels") == there.at("stimuli")[0].at("levels"));

@@ -31,6 +31,9 @@ TEST_CASE("fit prints tables, writes a subject file that simulate reads, and sta
   INFO(ran.errors);
   REQUIRE(ran.exit_code == 0);
   CHECK_THAT(ran.output, holds_text("SIMULATED"));
+  CHECK_THAT(ran.output, Catch::Matchers::StartsWith(
+                             "simulated on: ideal device (no such device is sold)\n"
+                             "explorations simulated on: ideal device (no such device is sold)\n"));
   CHECK_THAT(ran.output, holds_text("noise of features"));
   CHECK_THAT(ran.output, holds_text("corduroy"));
   const json fitted = json::parse(content(study.path() / "fitted.json"));
@@ -44,6 +47,8 @@ TEST_CASE("fit prints tables, writes a subject file that simulate reads, and sta
   REQUIRE(as_json.exit_code == 0);
   const json object = json::parse(as_json.output);
   CHECK(object.at("stamp") == "SIMULATED");
+  CHECK(object.at("simulated_on") == "ideal device (no such device is sold)");
+  CHECK(object.at("bank").at("simulated_on") == object.at("simulated_on"));
   CHECK(object.at("participants") == 4);
   CHECK(object.at("trials") == 24);
   REQUIRE(object.at("estimates").size() == 2);

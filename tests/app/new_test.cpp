@@ -82,6 +82,8 @@ TEST_CASE("every line of a new study has its comment, and its answers stand in i
   CHECK(study.at("session").at("consent_version") == "2026-03 {seed}");
   CHECK(study.at("registration").at("participants") == 31);
   CHECK(study.at("registration").at("smallest_effect") == 0.325);  // one in five, and 12.5 points
+  CHECK(study.at("rendering").at("model") == "paper");
+  CHECK_FALSE(study.at("rendering").contains("device"));
   CHECK(study.at("practice").at("classes").size() == 3);
   CHECK(study.at("trials").at("practice") == 5);
   const std::string text = content(desk.folder.path() / "felt/cloths.json");
@@ -96,20 +98,23 @@ TEST_CASE("every line of a new study has its comment, and its answers stand in i
 
 TEST_CASE("what no option answers is asked, and a wrong answer is asked for again") {
   const Desk desk;
-  // Name, protocol, pictures, people twice, worth, language, consent, visits, groups twice.
+  // Name, protocol, pictures, device twice, people twice, worth, language, consent, visits, groups
+  // twice.
   const ProgramResult made =
-      desk.make("linen", {}, "linen\n\n\nmany\n12\n\nfr-klingon\nen\n\n\none\n\n");
+      desk.make("linen", {}, "linen\n\n\ntuch\nomega\nmany\n12\n\nfr-klingon\nen\n\n\none\n\n");
   INFO(made.errors);
   REQUIRE(made.exit_code == 0);
   CHECK_THAT(made.errors, holds_text("Number of participants [20]: "));
   CHECK_THAT(made.errors, holds_text("many: must be a number from 2 to 100000"));
   CHECK_THAT(made.errors, holds_text("fr-klingon: "));
+  CHECK_THAT(made.errors, holds_text("tuch: ") && holds_text("touch_x"));
   CHECK_THAT(made.errors, holds_text("one: must be 2 to 16 names"));
   CHECK_THAT(made.errors, !holds_text("Least days between"));
   const json study = desk.study("linen/linen.json");
   CHECK(study.at("registration").at("participants") == 12);
   CHECK(study.at("registration").at("smallest_effect") == 0.4);
   CHECK(study.at("session").at("consent_version") == "");
+  CHECK(study.at("rendering").at("device") == "omega");
   CHECK_FALSE(study.contains("visits"));
   CHECK_FALSE(study.contains("groups"));
 }
@@ -139,6 +144,8 @@ TEST_CASE("without answers, or in a folder with something in it, nothing is writ
   check_refused(desk.make("felt", {"--yes", "--name", "a b"}), "--name");
   check_refused(desk.make("felt", {"--yes", "--worth", "51"}), "--worth");
   check_refused(desk.make("felt", {"--yes", "--pictures", desk.in("nowhere")}), "--pictures");
+  check_refused(desk.make("felt", {"--yes", "--device", "tuch"}), "--device");
+  check_refused(desk.make("felt", {"--yes", "--device", "my/own.json"}), "--device");
   CHECK_FALSE(is_there(desk.in("felt")));
 }
 
@@ -181,12 +188,12 @@ TEST_CASE("photographs are tried when they are named, and what they lack is aske
              holds_text("too few for a crop of 200 x 200") && holds_text("--size 120"));
   CHECK_FALSE(is_there(desk.in("deep")));
 
-  // Name, protocol, pictures twice, size and crops, people, worth, language, consent, visits,
-  // groups.
+  // Name, protocol, pictures twice, size and crops, device, people, worth, language, consent,
+  // visits, groups.
   std::vector<std::string> asked = {"new", desk.in("mine")};
   asked.insert(asked.end(), size.begin(), size.end());
   const ProgramResult made = desk.run(
-      asked, "mine\n\n" + desk.in("empty") + "\n" + desk.in("album") + "\n48\n1\n12\n\n\n\n\n\n");
+      asked, "mine\n\n" + desk.in("empty") + "\n" + desk.in("album") + "\n48\n1\n\n12\n\n\n\n\n\n");
   INFO(made.errors);
   REQUIRE(made.exit_code == 0);
   CHECK_THAT(made.errors, holds_text("Side of a picture, pixels [120]: "));

@@ -57,6 +57,7 @@ TEST_CASE("power prints and writes the same numbers with any number of threads")
   CHECK(one.output == two.output);
   const json report = json::parse(one.output);
   CHECK(report.at("simulated") == true);
+  CHECK(report.at("simulated_on") == "ideal device (no such device is sold)");
   CHECK(report.at("sizes").size() == 2);
   CHECK(report.at("sizes").at(0).at("type_one_error").at("runs") == 120);
   CHECK(content(study.path() / "power" / "power.json") == one.output);
@@ -64,7 +65,9 @@ TEST_CASE("power prints and writes the same numbers with any number of threads")
     CHECK(fs::exists(study.path() / "power" / name));
   }
   const ProgramResult text = run_power(study, kSizes);
-  CHECK_THAT(text.output, holds_text("SIMULATED: power given the assumed sensitivity"));
+  CHECK_THAT(text.output,
+             Catch::Matchers::StartsWith("simulated on: ideal device (no such device is sold)\n"
+                                         "SIMULATED: power given the assumed sensitivity"));
 }
 
 TEST_CASE("combined shards of a power run print the same as one run") {

@@ -10,12 +10,23 @@
 
 using namespace touchtrial;
 
+namespace {
+
+constexpr const char* kOnIdeal = "simulated on: ideal device (no such device is sold)";
+
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
+}  // namespace
+
 TEST_CASE("a study goes from its file to an accuracy table that adds up") {
   const StudyFolder study;
   const ProgramResult simulated = study.simulate("a.db");
   INFO(simulated.errors);
   REQUIRE(simulated.exit_code == 0);
   CHECK(simulated.output.find("SIMULATED") != std::string::npos);
+  CHECK(first_line(simulated.output) == kOnIdeal);
 
   const ProgramResult reported = study.run({"report", study.in("a.db"), "--json"});
   REQUIRE(reported.exit_code == 0);
@@ -24,6 +35,7 @@ TEST_CASE("a study goes from its file to an accuracy table that adds up") {
   CHECK(report.at("trials") == 4 * 6);
   CHECK(report.at("classes") == json(kLabels));
   CHECK(report.at("simulated") == true);
+  CHECK("simulated on: " + report.at("simulated_on").get<std::string>() == kOnIdeal);
   const json& method = report.at("methods").at(0);
   int correct = 0;
   for (std::size_t i = 0; i < kLabels.size(); ++i) {
@@ -38,7 +50,34 @@ TEST_CASE("a study goes from its file to an accuracy table that adds up") {
   const ProgramResult text = study.run({"report", study.in("a.db")});
   CHECK(text.exit_code == 0);
   CHECK(text.output.find("SIMULATED") != std::string::npos);
+  CHECK(first_line(text.output) == kOnIdeal);
   CHECK(text.output.find("corduroy") != std::string::npos);
+}
+
+TEST_CASE("numbers name the modelled device that they were simulated on, blind or not") {
+  const StudyFolder study;
+  const ProgramResult simulated =
+      study.simulate("t.db", {"--on", "omni", "--keep-blind", "--json"});
+  INFO(simulated.errors);
+  REQUIRE(simulated.exit_code == 0);
+  CHECK(json::parse(simulated.output).at("simulated_on") == "modelled device touch");
+  const auto reported = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"report", study.in("t.db")});
+    return study.run(more).output;
+  };
+  CHECK(first_line(reported({})) == "simulated on: modelled device touch");
+  CHECK(json::parse(reported({"--json"})).at("simulated_on") == "modelled device touch");
+  REQUIRE(study.run({"close", study.in("t.db"), "--yes"}).exit_code == 0);
+  REQUIRE(study.run({"unblind", study.in("t.db"), "--reason", "done", "--yes"}).exit_code == 0);
+  CHECK(first_line(reported({})) == "simulated on: modelled device touch");
+  CHECK(json::parse(reported({"--json"})).at("simulated_on") == "modelled device touch");
+  REQUIRE(study.run({"report", study.in("t.db"), "--out", study.in("page")}).exit_code == 0);
+  CHECK_THAT(content(study.path() / "page" / "report.html"),
+             holds_text("simulated on: modelled device touch"));
+  REQUIRE(study.run({"export", study.in("t.db"), "--format", "csv", "--out", study.in("csv")})
+              .exit_code == 0);
+  CHECK(json::parse(content(study.path() / "csv" / "export.json")).at("simulated_on") ==
+        "modelled device touch");
 }
 
 TEST_CASE("exports and reports are the same bytes for a seed, whatever the number of jobs") {

@@ -40,6 +40,28 @@ TEST_CASE("a product's name is that of one driver, and opens it") {
   CHECK(products > 10);
 }
 
+TEST_CASE(
+    "a product with a model is simulated on it, by any name of either, and others are refused") {
+  for (const device::DeviceDriver& driver : device::device_drivers()) {
+    for (const device::DeviceProduct& product : driver.products) {
+      if (product.model.empty()) continue;
+      INFO(product.name);
+      CHECK(device::model_of_device(product.name).name == product.model);
+      CHECK(device::model_of_device(product.model).name == product.model);
+      REQUIRE(device::driver_of_model(product.model) != nullptr);
+      CHECK(device::driver_of_model(product.model)->name == driver.name);
+    }
+  }
+  CHECK(device::driver_of_model("ideal") == nullptr);
+  CHECK(device::driver_of_model("") == nullptr);
+  CHECK(device::model_of_device("omega").name == "omega_3");
+  for (const char* name : {"sigma", "theremin", ""}) {
+    CHECK(refuses<UsageError>([=] { static_cast<void>(device::model_of_device(name)); },
+                              "known are falcon, ideal,"));
+  }
+  CHECK_THROWS_AS(device::model_of_device("gone/mine.json"), FileError);
+}
+
 TEST_CASE("docs/devices names every driver with every product that it serves") {
   const std::string page = text_of(
       read_file(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "docs" / "devices" / "README.md"));

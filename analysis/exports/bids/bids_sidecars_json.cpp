@@ -104,7 +104,7 @@ std::string dataset_description_json(const DatasetSource& study, const DatasetOp
     object["EthicsApprovals"] = {study.key->study.session.ethics_number};
   }
   object["GeneratedBy"] = generated_by();
-  put_stamp(object, commitment.simulated);
+  put_stamp(object, commitment.simulated, simulated_devices(study.store.sessions()));
   object["pilot"] = commitment.pilot;
   object["study_id"] = commitment.study_id;
   return json_text(object);
@@ -116,7 +116,7 @@ std::string derivative_description_json(const DatasetSource& study) {
               {"BIDSVersion", kBidsVersion},
               {"DatasetType", "derivative"},
               {"GeneratedBy", generated_by()}};
-  put_stamp(object, commitment.simulated);
+  put_stamp(object, commitment.simulated, simulated_devices(study.store.sessions()));
   return json_text(object);
 }
 
@@ -130,7 +130,7 @@ std::string columns_json(const std::vector<std::string>& columns, bool simulated
 std::string task_json(const DatasetSource& study, const DatasetOptions& options,
                       const std::vector<std::string>& columns) {
   Json object = task_object(study, options);
-  put_stamp(object, study.store.commitment().simulated);
+  put_stamp(object, study.store.commitment().simulated, simulated_devices(study.store.sessions()));
   put_columns(object, columns);
   return json_text(object);
 }

@@ -90,6 +90,8 @@ TEST_CASE("a study's device is a shipped model or a file beside it, and what is 
   study.device = "falcon";
   REQUIRE(simulation::level_devices(study).size() == 1);
   CHECK(simulation::level_devices(study).front().name == "falcon");
+  study.device = "omega";
+  CHECK(simulation::level_devices(study).front().name == "omega_3");
   study.device = "falcom";
   CHECK_THROWS_WITH(simulation::level_devices(study),
                     holds_text("mine.json: /rendering/device: ") && holds_text("falcon"));
