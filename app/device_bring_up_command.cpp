@@ -2,7 +2,6 @@
 // back; and what such a file settles.
 #include "app/acceptance_terminal.hpp"
 #include "app/commands.hpp"
-#include "app/commit.hpp"
 #include "app/console.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -28,6 +27,7 @@ namespace fs = std::filesystem;
 constexpr int kEndedEarly = 1;
 
 struct BringUpArguments {
+  std::string program;  ///< what `--version` prints
   std::string driver;
   fs::path settings;
   fs::path out;
@@ -195,8 +195,7 @@ int lead(const BringUpArguments& arguments, const fs::path& out) {
   try {
     AcceptanceTerminal terminal(arguments.driver, settings_of(arguments));
     record = device::bring_up_of(terminal.info());
-    record->program = std::string(program_version());
-    if (!program_commit().empty()) record->program += " (" + std::string(program_commit()) + ")";
+    record->program = arguments.program;
     record->scheduling = std::string(device::name_of(terminal.scheduling().policy));
     record->memory_locked = terminal.scheduling().memory_locked;
     save();
@@ -236,6 +235,9 @@ int bring_up_device(const BringUpArguments& arguments) {
 
 void add_device_bring_up_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<BringUpArguments>();
+  for (const CLI::App* app = &device; app != nullptr; app = app->get_parent()) {
+    arguments->program = app->version();
+  }
   CLI::App* command = device.add_subcommand(
       "bring-up",
       "Half an hour with a device that nobody here has: small forces, questions, and one file "
