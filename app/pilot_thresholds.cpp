@@ -113,7 +113,13 @@ simulation::LevelCurve curve_of(const design::Study& study, const device::Device
   for (const engine::ThresholdCurve curve : engine::kThresholdCurves) {
     if (study.level.value().curve == engine::name_of(curve)) return {curve, {}};
   }
-  return {engine::ThresholdCurve::israr_2006, pilots_db(study, device)};
+  try {
+    return {engine::ThresholdCurve::israr_2006, pilots_db(study, device)};
+  } catch (const StudyError&) {
+    throw;
+  } catch (const Error& error) {
+    throw StudyError(one_line(study.source + ": /rendering/gains/curve: " + error.what()));
+  }
 }
 
 }  // namespace touchtrial::app

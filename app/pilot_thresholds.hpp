@@ -14,7 +14,6 @@ namespace touchtrial::app {
 /// \pre the study has a level
 /// \throws StudyError naming /rendering/gains/curve if the database is no unblinded detection study
 ///   along gain with key and pack, or fewer than three people have a threshold in it
-/// \throws as collect::open_study and key_of_database
 [[nodiscard]] simulation::LevelCurve curve_of(const design::Study& study,
                                               const device::DeviceModel& device);
 
