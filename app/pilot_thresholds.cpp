@@ -23,7 +23,7 @@
 namespace touchtrial::app {
 namespace {
 
-using Json = nlohmann::json;
+using nlohmann::json;
 
 constexpr std::size_t kMinPilots = 3;
 /// Right answers at the threshold that levels count from (d' = 1.62) among two and three intervals.
@@ -36,11 +36,11 @@ constexpr double kRightOfThree = 0.794;
 }
 
 /// The report of the pilots' study, as `report --json` prints it.
-Json report_of(const design::Study& study, const store::StudyStore& store,
+json report_of(const design::Study& study, const store::StudyStore& store,
                const design::StudyKey& key) {
   if (!store.state().unblinded) refuse(study, "is not unblinded; close and unblind it");
   const analysis::Outcomes outcomes = outcomes_of(store, key);
-  Json report = Json::parse(analysis::analysis_of(outcomes.design).results(outcomes, {})->json());
+  json report = json::parse(analysis::analysis_of(outcomes.design).results(outcomes, {})->json());
   if (report.value("task", "") != "detection" || report.value("along", "") != "gain" ||
       report.value("question", "") != "which-interval") {
     refuse(study, "is no detection study along gain that asks which interval");
@@ -49,8 +49,8 @@ Json report_of(const design::Study& study, const store::StudyStore& store,
 }
 
 /// The threshold of a track, at the share of right answers that levels count from, dB.
-double threshold_db(const Json& track, double guess) {
-  const Json& found = track.at("posterior");
+double threshold_db(const json& track, double guess) {
+  const json& found = track.at("posterior");
   const double right = guess > 0.4 ? kRightOfTwo : kRightOfThree;
   // Along the track's Weibull function.
   const double more = std::log10(-std::log((1.0 - right) / (1.0 - guess)));
@@ -59,13 +59,13 @@ double threshold_db(const Json& track, double guess) {
 
 /// The mean threshold of each stimulus that has one.
 std::vector<std::pair<std::string, double>> means_by_standard(const design::Study& study,
-                                                              const Json& report) {
+                                                              const json& report) {
   std::vector<std::pair<std::string, double>> means;
-  for (const Json& standard : report.at("standards")) {
+  for (const json& standard : report.at("standards")) {
     double sum = 0.0;
     std::size_t found = 0;
     std::size_t censored = 0;
-    for (const Json& track : report.at("tracks")) {
+    for (const json& track : report.at("tracks")) {
       if (track.at("standard") != standard.at("standard")) continue;
       if (track.at("posterior").at("threshold").is_null()) {
         ++censored;

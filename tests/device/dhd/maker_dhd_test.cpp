@@ -329,7 +329,7 @@ TEST_CASE("maker's dhd: encoders that stop under a press are a fault within half
   // On a busy machine forces lapse, so the unbroken press may be late.
   const device::ServoReport report = desk.feel_unhurried(press, 10'000);
   CHECK(report.end == ServoEnd::fault);
-  CHECK(report.fault == device::SafetyFault::device);
+  CHECK(report.fault == device::SafetyFault::frozen_encoders);
   CHECK(report.ticks > 1000);
   CHECK(longest_press_ms(desk.last(static_cast<std::size_t>(report.ticks) - 1000)) <= 500);
   desk.wait_ms(50);
