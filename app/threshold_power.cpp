@@ -90,8 +90,8 @@ int plan_thresholds(const design::Study& study, const std::filesystem::path& fil
   const std::vector<int> trials = trials_to_try(study, arguments);
   planning::ThresholdPlanReport report;
   report.setting = {study.name, planning::words_of(subject),
-                    analysis::device_words({simulation::recorded_device(subject)}),
-                    design::threshold::unit_of_level(design::threshold::options_of(study))};
+                    design::threshold::unit_of_level(design::threshold::options_of(study)),
+                    analysis::device_words({simulation::recorded_device(subject)})};
   report.plan = {.participants = plan.participants,
                  .runs = plan.runs,
                  .seed = plan.seed,

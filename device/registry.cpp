@@ -103,9 +103,11 @@ DeviceModel model_of_device(const std::string& name) {
   const bool is_file = name.find('/') != std::string::npos || name.ends_with(".json");
   const std::vector<std::string> known = modelled_names();
   if (is_file || std::ranges::find(known, name) != known.end()) return device_model(name);
+  const std::vector<std::string_view> views(known.begin(), known.end());
+  const auto nearest = nearest_name(name, views);
   throw UsageError(one_line(fmt::format(
-      "{}: there is no model of such a device; known are {}, and files that end in .json", name,
-      fmt::join(known, ", "))));
+      "{}: there is no model of such a device; {}known are {}, and files that end in .json", name,
+      nearest ? "did you mean " + std::string(*nearest) + "? " : "", fmt::join(known, ", "))));
 }
 
 const DeviceDriver* driver_of_model(std::string_view model) {

@@ -71,7 +71,8 @@ struct DeviceDriver {
 /// \return the model of a device that is not at hand: for simulations, levels and planning
 /// \param name  of a shipped model, of a product with a model, or a model's file: a path that has a
 ///   slash or ends in ".json"
-/// \throws UsageError listing what is known if there is none of this name; as read_device_model
+/// \throws UsageError naming the nearest and listing what is known if there is none of this name; as
+///   read_device_model
 [[nodiscard]] DeviceModel model_of_device(const std::string& name);
 
 /// \return the driver of the device that a model stands for; null: of none that a driver serves

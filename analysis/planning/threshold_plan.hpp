@@ -66,9 +66,9 @@ struct ThresholdRow {
 /// What the numbers are of, in words.
 struct ThresholdPlanSetting {
   std::string study;
-  std::string subject;  ///< words_of the subject model
-  std::string device;   ///< analysis::device_words
-  std::string unit;     ///< of a level
+  std::string subject;   ///< words_of the subject model
+  std::string unit;      ///< of a level
+  std::string device{};  ///< analysis::device_words of what the subject holds
 };
 
 /// For each number of trials a pool, and its rows.

@@ -59,6 +59,8 @@ TEST_CASE(
     CHECK(refuses<UsageError>([=] { static_cast<void>(device::model_of_device(name)); },
                               "known are falcon, ideal,"));
   }
+  CHECK(refuses<UsageError>([] { static_cast<void>(device::model_of_device("omgea")); },
+                            "did you mean omega?"));
   CHECK_THROWS_AS(device::model_of_device("gone/mine.json"), FileError);
 }
 
