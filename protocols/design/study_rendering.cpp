@@ -49,9 +49,8 @@ void read_gains(const JsonValue& place, ReadRendering& read) {
     static_cast<void>(place.choice(kNames));
     return;
   }
-  const JsonObject all =
-      place.object({"level_db", "curve", "tangential_n", "normal_n", "height_mm"});
-  if (all.find("level_db") || all.find("curve")) {
+  const auto keys = nlohmann::json::parse(place.any_object());
+  if (keys.contains("level_db") || keys.contains("curve")) {
     read.level = read_level(place);
   } else {
     read.options.gains = read_explicit_gains(place, read.options.model);

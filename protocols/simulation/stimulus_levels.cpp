@@ -24,6 +24,8 @@ namespace {
 
 /// Of each plane, each as long as an interval of the default detection study.
 constexpr std::size_t kExplorations = 8;
+/// Of the blank plane, whose differences from stroke to stroke set the threshold where it is felt.
+constexpr std::size_t kBlankExplorations = 64;
 constexpr double kIntervalS = 2.5;
 /// Gains farther from the pack's than this are not tried.
 constexpr double kTrustedDb = 40.0;
@@ -57,7 +59,7 @@ class CurveSenses final : public device::TipSense {
 };
 
 /// Features by exploration.
-using Explored = std::array<engine::FeltFeatures, kExplorations>;
+using Explored = std::vector<engine::FeltFeatures>;
 
 /// The same by curve.
 struct Felt {
@@ -69,20 +71,20 @@ using Hands = std::vector<device::SimulatedHand>;
 
 /// \param hands  before their first tick, one for each exploration
 Felt stroked(const engine::RenderingModel& model, const PlaneGeometry& plane,
-             const device::ServoOptions& servo, const Hands& hands) {
+             const device::ServoOptions& servo, std::span<const device::SimulatedHand> hands) {
   Felt felt;
-  for (std::size_t i = 0; i < kExplorations; ++i) {
-    device::SimulatedHand hand = hands[i];
+  for (device::SimulatedHand hand : hands) {
     CurveSenses senses(plane);
     hand.feel_by(senses);
     session::ModelForce force(model);
     NoSamples sink;
     static_cast<void>(device::run_servo_in_virtual_time(hand, force, sink, servo));
     for (std::size_t curve = 0; curve < kCurves; ++curve) {
-      felt.features[curve][i] = senses.by(curve).features();
+      felt.features[curve].push_back(senses.by(curve).features());
     }
     const Powers powers = senses.by(0).mean_powers();
-    for (std::size_t k = 0; k < powers.size(); ++k) felt.powers[k] += powers[k] / kExplorations;
+    for (std::size_t k = 0; k < powers.size(); ++k)
+      felt.powers[k] += powers[k] / static_cast<double>(hands.size());
   }
   return felt;
 }
@@ -130,8 +132,8 @@ class Detector {
     const double sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
     const double squares =
         std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 0.0);
-    own_variance_ = noise_.own * noise_.own * squares + noise_.common * noise_.common * sum * sum;
-    blank_strength_ = strength(0.0);
+    deviation_ = std::sqrt(noise_.own * noise_.own * squares +
+                           noise_.common * noise_.common * sum * sum + variance_of_blank());
   }
 
   /// Takes how a gain feels, from which others are extrapolated.
@@ -160,12 +162,6 @@ class Detector {
   static constexpr double kMaxGainDb = 60.0;
   static constexpr double kStepDb = 1e-3;
 
-  /// The sum of weighted features: its mean over explorations, and the variance between them.
-  struct Strength {
-    double mean = 0.0;
-    double variance = 0.0;
-  };
-
   static double power_of(double gain_db) { return std::pow(10.0, gain_db / 10.0); }
   static Explored powers_of(Explored explored) {
     for (engine::FeltFeatures& features : explored) {
@@ -175,40 +171,40 @@ class Detector {
   }
   /// \param power  of the gain
   [[nodiscard]] engine::FeltFeatures perceived(std::size_t exploration, double power) const {
-    engine::FeltFeatures felt{};
+    engine::FeltFeatures felt = blank_[exploration];
     for (std::size_t k = 0; k < felt.size(); ++k) {
-      const double sum = blank_[exploration][k] + power * texture_[exploration][k];
+      const double sum = felt[k] + (power > 0.0 ? power * texture_[exploration][k] : 0.0);
       felt[k] = 0.5 * std::log(floor_.share * std::max(0.0, sum) + floor_.floor);
     }
     return felt;
   }
-  [[nodiscard]] Strength strength(double power) const {
-    std::array<double, kExplorations> sums{};
-    Strength found;
-    for (std::size_t i = 0; i < kExplorations; ++i) {
-      const engine::FeltFeatures felt = perceived(i, power);
-      sums[i] = std::inner_product(weights_.begin(), weights_.end(), felt.begin(), 0.0);
-      found.mean += sums[i] / kExplorations;
-    }
-    for (const double sum : sums) {
-      found.variance += (sum - found.mean) * (sum - found.mean) / (kExplorations - 1);
-    }
-    return found;
+  [[nodiscard]] double strength(std::size_t exploration, double power) const {
+    const engine::FeltFeatures felt = perceived(exploration, power);
+    return std::inner_product(weights_.begin(), weights_.end(), felt.begin(), 0.0);
+  }
+  [[nodiscard]] double variance_of_blank() const {
+    std::vector<double> strengths;
+    for (std::size_t i = 0; i < blank_.size(); ++i) strengths.push_back(strength(i, 0.0));
+    const auto count = static_cast<double>(strengths.size());
+    const double mean = std::accumulate(strengths.begin(), strengths.end(), 0.0) / count;
+    double squares = 0.0;
+    for (const double one : strengths) squares += (one - mean) * (one - mean);
+    return squares / (count - 1.0);
   }
   [[nodiscard]] bool is_told(double gain_db) const {
-    const Strength textured = strength(power_of(gain_db));
-    const double variance = own_variance_ + 0.5 * (textured.variance + blank_strength_.variance);
-    return textured.mean - blank_strength_.mean >= kThresholdDPrime * std::sqrt(variance) &&
-           variance > 0.0;
+    double more = 0.0;
+    for (std::size_t i = 0; i < kExplorations; ++i) {
+      more += (strength(i, power_of(gain_db)) - strength(i, 0.0)) / kExplorations;
+    }
+    return deviation_ > 0.0 && more >= kThresholdDPrime * deviation_;
   }
 
   engine::FeltNoise noise_;
   FeltFloor floor_;
-  Explored blank_;      // powers
-  Explored texture_{};  // what the whole texture adds to them
+  Explored blank_;    // powers
+  Explored texture_;  // what the whole texture adds to the first of them
   engine::FeltFeatures weights_{};
-  double own_variance_ = 0.0;
-  Strength blank_strength_;
+  double deviation_ = 0.0;  // of the sum of weighted features, from interval to interval
 };
 
 StimulusLevel level_of(const std::string& device, engine::ThresholdCurve curve, const Felt& felt,
@@ -264,25 +260,27 @@ FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
     }
     SubjectModel holder = subject;
     holder.device = devices[i - kCurves];
-    for (std::size_t path = 0; path < kExplorations; ++path) {
+    for (std::size_t path = 0; path < kBlankExplorations; ++path) {
       RandomStream random(seed, "levels: path", path);
       hands[i - kCurves].push_back(make_exploring_hand(holder, plane, random));
       hands[i - kCurves].back().foresee();
     }
   });
-  const auto felt_on = [&](std::size_t device, std::size_t field, double factor) {
+  const auto felt_on = [&](std::size_t device, std::size_t field, double factor,
+                           std::size_t explorations) {
     const engine::FieldWithGains& stroked_field = fields[field];
     return stroked(
         {stroked_field.field, study.rendering, engine::scaled(stroked_field.gains, factor)}, plane,
         servo, hands[device]);
   };
   std::vector<Felt> blanks(devices.size());
-  in_parallel(jobs, devices.size(), [&](std::size_t d) { blanks[d] = felt_on(d, 0, 0.0); });
+  in_parallel(jobs, devices.size(),
+              [&](std::size_t d) { blanks[d] = felt_on(d, 0, 0.0, kBlankExplorations); });
   std::vector<PlaneLevels> levels(devices.size() * fields.size());
   in_parallel(jobs, levels.size(), [&](std::size_t i) {
     const std::size_t d = i / fields.size();
     const auto felt_at = [&](double gain_db) {
-      return felt_on(d, i % fields.size(), std::pow(10.0, gain_db / 20.0));
+      return felt_on(d, i % fields.size(), std::pow(10.0, gain_db / 20.0), kExplorations);
     };
     const Felt whole = felt_at(0.0);
     for (std::size_t curve = 0; curve < kCurves; ++curve) {

@@ -197,9 +197,10 @@ TEST_CASE("gains follow from the level that a study states, and say where it is 
     REQUIRE(result.exit_code == 0);
     return json::parse(result.output);
   };
-  const json budget = prepared({{"device", "ideal"}});
-  const json low =
-      prepared({{"device", "ideal"}, {"gains", {{"level_db", 0}, {"curve", "israr_2006"}}}});
+  const json budget = prepared({{"device", "ideal"}, {"pitch_mm", 0.5}});
+  const json low = prepared({{"device", "ideal"},
+                             {"pitch_mm", 0.5},
+                             {"gains", {{"level_db", 0}, {"curve", "israr_2006"}}}});
   CHECK(low["stimuli"][0]["gains"]["tangential_n"] < budget["stimuli"][0]["gains"]["tangential_n"]);
   CHECK(low["provisional"] == true);
   double weakest_db = 100.0;
@@ -207,8 +208,9 @@ TEST_CASE("gains follow from the level that a study states, and say where it is 
     weakest_db = std::min(weakest_db, stimulus["levels"][0]["db"].get<double>());
   }
   CHECK(weakest_db == Approx(0.0).margin(0.2));
-  const json out_of_reach =
-      prepared({{"device", "falcon"}, {"gains", {{"level_db", 40}, {"curve", "tan_1994"}}}});
+  const json out_of_reach = prepared({{"device", "falcon"},
+                                      {"pitch_mm", 0.5},
+                                      {"gains", {{"level_db", 40}, {"curve", "tan_1994"}}}});
   CHECK(out_of_reach["stimuli"][0]["gains"] == budget["stimuli"][0]["gains"]);
   CHECK_THAT(out_of_reach["warnings"].dump(), holds_text("/rendering/gains/level_db"));
   // The line is said again by a run that has nothing to do.

@@ -342,6 +342,8 @@ TEST_CASE("the reader accepts exactly the schema's words") {
     for (const json& word : words) {
       if (word == "threshold") {
         CHECK_THAT(property.refusal_with(word), holds_text("/threshold: is missing"));
+      } else if (word == "level") {
+        CHECK_THAT(property.refusal_with(word), holds_text("/rendering/equalise: is level"));
       } else {
         CHECK(property.refusal_with(word).empty());
       }

@@ -20,14 +20,14 @@ class WantedStudy {
  public:
   explicit WantedStudy(double level_db, bool all_alike = false)
       : study_({.rendering = R"({"device": "touch_x", "gains": {"level_db": )" +
-                             std::to_string(level_db) + R"(, "curve": "tan_1994"})" +
+                             std::to_string(level_db) + R"(, "curve": "israr_2006"})" +
                              (all_alike ? R"(, "equalise": "level"})" : "}")}) {
     for (const design::KeyedStimulus& stimulus : study_.key().stimuli) {
       mapped_.push_back(study_.pack().map(stimulus.code));
       views_.push_back(mapped_.back().view());
     }
   }
-  [[nodiscard]] LevelledGains gains(LevelCurve curve = {ThresholdCurve::tan_1994, {}}) const {
+  [[nodiscard]] LevelledGains gains(LevelCurve curve = {ThresholdCurve::israr_2006, {}}) const {
     return simulation::gains_at_level(study_.key(), views_, device(), curve, 2);
   }
   /// Levels of stimuli with these gains, as the tables state them.
@@ -37,7 +37,7 @@ class WantedStudy {
     std::vector<double> levels;
     for (const auto& plane :
          simulation::levels_of_fields(fields, study_.key().study, {device()}, 2).levels) {
-      levels.push_back(plane[1].db);
+      levels.push_back(plane[0].db);
     }
     return levels;
   }
@@ -95,7 +95,7 @@ TEST_CASE("stimuli out of reach are alike at the level that the weakest can have
 TEST_CASE("less sensitive pilots get larger gains, by as many decibels") {
   const WantedStudy study(0.0);
   const double usual = study.gains().gains.of_field[0].tangential_n;
-  const double more = study.gains({ThresholdCurve::tan_1994, 2.0}).gains.of_field[0].tangential_n;
+  const double more = study.gains({ThresholdCurve::israr_2006, 2.0}).gains.of_field[0].tangential_n;
   CHECK(20.0 * std::log10(more / usual) == Approx(2.0).margin(0.2));
 }
 
