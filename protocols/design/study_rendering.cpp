@@ -162,7 +162,9 @@ engine::RenderingOptions parse_rendering(std::string_view text, const std::strin
 }
 
 std::string written_rendering(const engine::RenderingOptions& rendering) {
-  return to_json(rendering).dump();
+  nlohmann::json every_key = to_json(rendering);
+  every_key["touchdown_ramp_n"] = rendering.touchdown_ramp_n;
+  return every_key.dump();
 }
 
 nlohmann::json to_json(const engine::RenderingOptions& rendering) {
