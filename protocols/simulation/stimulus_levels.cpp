@@ -271,7 +271,7 @@ FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
     const engine::FieldWithGains& stroked_field = fields[field];
     return stroked(
         {stroked_field.field, study.rendering, engine::scaled(stroked_field.gains, factor)}, plane,
-        servo, hands[device]);
+        servo, std::span(hands[device]).first(explorations));
   };
   std::vector<Felt> blanks(devices.size());
   in_parallel(jobs, devices.size(),
