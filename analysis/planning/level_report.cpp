@@ -266,9 +266,11 @@ std::string level_alone_words(const design::Study& study, const StimulusLevels& 
   if (words.empty()) return words;
   return fmt::format(
       "A simulated person who judged by strength alone, and not by pattern, would be right in so "
-      "many answers (chance {:.0f} %), over curves and methods: {}. \"equalise\": \"level\" takes "
-      "that away.",
-      100.0 / static_cast<double>(study.classes.size()), words);
+      "many answers (chance {:.0f} %), over curves and methods: {}.{}",
+      100.0 / static_cast<double>(study.classes.size()), words,
+      study.rendering.equalise == engine::Equalise::level
+          ? ""
+          : " \"equalise\": \"level\" takes that away.");
 }
 
 Json json_of(const PlaneLevels& levels) {
