@@ -131,7 +131,8 @@ TEST_CASE("report_json has the published keys in their order") {
     return keys;
   };
   CHECK(keys_of(json) ==
-        "study protocol simulated stamp unverified_device state interim question_alone pilot "
+        "study protocol simulated stamp simulated_on unverified_device state interim "
+        "question_alone pilot "
         "participants trials "
         "classes methods "
         "comparison warnings "
@@ -187,6 +188,8 @@ TEST_CASE("Every table of a simulated report is stamped and fits the terminal") 
     std::string line;
     std::string last;
     std::getline(text, line);
+    CHECK(line.starts_with("simulated on: "));
+    std::getline(text, line);
     CHECK(line.starts_with("SIMULATED"));
     while (std::getline(text, line)) {
       CHECK(analysis::display_width(line) <= width);
@@ -212,9 +215,9 @@ TEST_CASE("The terminal's report keeps its layout") {
   study.close_and_unblind();
   const std::string text = terminal_text(
       analysis::identification::make_report(analysis::load_outcomes(study.store(), study.key())));
-  CHECK(
-      text ==
-      R"(SIMULATED: these numbers come from simulated participants. They say what a model of a hand and of a
+  CHECK(text ==
+        R"(simulated on: ideal device (no such device is sold)
+SIMULATED: these numbers come from simulated participants. They say what a model of a hand and of a
 sense of touch does, not what people do.
 Report of the study pair [SIMULATED]
 
