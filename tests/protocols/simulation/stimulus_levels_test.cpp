@@ -47,8 +47,9 @@ TEST_CASE("a plane without texture is as strong as the blank one") {
       CHECK(stimulus[i].db == simulation::kNoLevelDb);
     }
   }
-  // No device, no texture: nothing; encoder steps and friction are felt where there are any.
-  CHECK(found.blank[0].db < -60.0);
+  // No device, no texture: what is left of the landing; encoder steps and friction are felt where
+  // there are any.
+  CHECK(found.blank[0].db < -40.0);
   CHECK(found.blank[2].db > -20.0);
 }
 
