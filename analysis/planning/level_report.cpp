@@ -20,6 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using simulation::LevelBand;
 using simulation::LevelRange;
+using simulation::name_of_stimulus;
 using simulation::PlaneLevels;
 using simulation::StimulusLevel;
 using simulation::StimulusLevels;
@@ -43,14 +44,6 @@ constexpr const char* kWhoseItIs =
     "Provisional: until a detection study of pilots takes the curve's place (docs/perception.md). "
     "The curves are other people's, passive and steady; active movement raises thresholds. Whether "
     "people feel by them is open until human data that were not fitted are predicted.";
-
-std::string name_of_stimulus(const design::Study& study, const design::StimulusIndex& index) {
-  const design::StudyClass& shown = study.classes[index.class_index];
-  std::string name = shown.label;
-  if (shown.images.size() > 1) name += fmt::format(" {}", index.exemplar + 1);
-  if (study.presented_methods() > 1) name += ", " + study.methods[index.method].label;
-  return name;
-}
 
 std::vector<std::string> devices_of(const StimulusLevels& levels) {
   std::vector<std::string> devices;

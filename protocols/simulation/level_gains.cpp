@@ -118,16 +118,6 @@ std::string levers(const design::Study& study, std::span<const engine::FieldView
   return text;
 }
 
-std::string name_of(const design::Study& study, const design::StimulusIndex& stimulus) {
-  const design::StudyClass& shown = study.classes[static_cast<std::size_t>(stimulus.class_index)];
-  std::string name = shown.label;
-  if (shown.images.size() > 1) name += fmt::format(" {}", stimulus.exemplar + 1);
-  if (study.presented_methods() > 1) {
-    name += ", " + study.methods[static_cast<std::size_t>(stimulus.method)].label;
-  }
-  return name;
-}
-
 }  // namespace
 
 void apply(const LevelCurve& curve, StimulusLevels& levels) {
@@ -152,15 +142,15 @@ LevelledGains gains_at_level(const design::StudyCodes& key,
   const double wanted_db = study.level.value().db;
   const double bound = stiffness_bound(study.rendering, device);
   const LevelMeter meter(study, device, curve, jobs);
-  const Fields most = largest(fields, study.rendering, device, bound);
-  const std::vector<double> of_most = meter.levels(most);
+  const Fields max_fields = largest(fields, study.rendering, device, bound);
+  const std::vector<double> max_levels = meter.levels(max_fields);
   LevelledGains result;
-  Fields chosen = most;
+  Fields chosen = max_fields;
   std::vector<double> factors(fields.size(), 1.0);
-  std::vector<double> levels = of_most;
-  const auto place = weakest(of_most);
+  std::vector<double> levels = max_levels;
+  const auto place = weakest(max_levels);
   const bool all_alike = study.rendering.equalise == engine::Equalise::level;
-  const double target_db = place ? std::min(wanted_db, of_most[*place]) : wanted_db;
+  const double target_db = place ? std::min(wanted_db, max_levels[*place]) : wanted_db;
   for (int attempt = 0; place && attempt < kMaxTries; ++attempt) {
     const double weakest_db = levels[*weakest(levels)];
     double farthest_db = 0.0;
@@ -168,7 +158,7 @@ LevelledGains gains_at_level(const design::StudyCodes& key,
       if (levels[i] == kNoLevelDb) continue;
       const double more_db = target_db - (all_alike ? levels[i] : weakest_db);
       factors[i] = std::min(1.0, factors[i] * std::pow(10.0, more_db / 20.0));
-      chosen[i].gains = engine::scaled(most[i].gains, factors[i]);
+      chosen[i].gains = engine::scaled(max_fields[i].gains, factors[i]);
       farthest_db = std::max(farthest_db, std::abs(more_db));
     }
     if (farthest_db < kNearDb) break;
@@ -177,12 +167,13 @@ LevelledGains gains_at_level(const design::StudyCodes& key,
   for (const engine::FieldWithGains& field : chosen) {
     result.gains.of_field.push_back(field.gains);
   }
-  if (place && of_most[*place] < wanted_db - kNearDb) {
+  if (place && max_levels[*place] < wanted_db - kNearDb) {
     result.remarks.push_back(fmt::format(
         "/rendering/gains/level_db: {:g} dB by {} is out of reach on {}: {} has {:.1f} dB at "
         "{:g} N/mm; {}",
-        wanted_db, study.level->curve, device.name, name_of(study, key.stimuli[*place].stimulus),
-        of_most[*place], bound, levers(study, fields, device, meter)));
+        wanted_db, study.level->curve, device.name,
+        name_of_stimulus(study, key.stimuli[*place].stimulus), max_levels[*place], bound,
+        levers(study, fields, device, meter)));
   }
   return result;
 }

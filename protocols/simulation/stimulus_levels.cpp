@@ -19,6 +19,8 @@
 #include <span>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace touchtrial::simulation {
 namespace {
 
@@ -324,6 +326,14 @@ StimulusLevels levels_of(const design::StudyCodes& key, const session::StimulusS
   result.levels = std::move(found.levels);
   result.blank = std::move(found.blank);
   return result;
+}
+
+std::string name_of_stimulus(const design::Study& study, const design::StimulusIndex& index) {
+  const design::StudyClass& shown = study.classes[index.class_index];
+  std::string name = shown.label;
+  if (shown.images.size() > 1) name += fmt::format(" {}", index.exemplar + 1);
+  if (study.presented_methods() > 1) name += ", " + study.methods[index.method].label;
+  return name;
 }
 
 LevelRange range_on(const PlaneLevels& levels, const std::string& device) {

@@ -90,6 +90,10 @@ struct FieldLevels {
                                        const std::vector<device::DeviceModel>& devices, int jobs,
                                        std::uint64_t seed = 1);
 
+/// \return a stimulus in a few words: its class, and exemplar and method where there are several
+[[nodiscard]] std::string name_of_stimulus(const design::Study& study,
+                                           const design::StimulusIndex& index);
+
 /// The least and the greatest level of a plane on a device, over the curves.
 struct LevelRange {
   double low_db = 0.0;
