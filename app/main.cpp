@@ -6,7 +6,6 @@
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
 #include "core/version.hpp"
-#include "engine/fourier/planning.hpp"
 #include "protocols/registration/registration.hpp"
 #include "protocols/store/damage.hpp"
 
@@ -134,7 +133,6 @@ int parse_and_run(int argc, char** argv) {
   set_up_log();
   registration::register_protocols();
   answer_for_passphrases();
-  engine::use_measured_plans(engine::user_cache_folder());
   CLI::App program("A psychophysics runner for textures that are felt.", "touchtrial");
   program.set_version_flag("--version", version_line());
   program.require_subcommand(1);

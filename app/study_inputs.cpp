@@ -10,9 +10,9 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/public_keys.hpp"
+#include "core/user_folders.hpp"
 #include "device/device_settings.hpp"
 #include "device/registry.hpp"
-#include "engine/fourier/planning.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
@@ -268,7 +268,7 @@ namespace {
 
 /// Of design::PrivateNotes; empty if the user has no cache.
 std::filesystem::path notes_folder() {
-  const std::filesystem::path cache = engine::user_cache_folder();
+  const std::filesystem::path cache = user_cache_folder();
   return cache.empty() ? cache : cache / "notes";
 }
 

@@ -2,11 +2,11 @@
 
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
+#include "core/user_folders.hpp"
 #include "device/registry.hpp"
 #include "device/scaled_device.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace touchtrial::device {
 namespace {
@@ -289,12 +289,6 @@ DeviceUse read_driver(const std::string& driver, const JsonValue& place, const f
   return reader->value(place, folder, settings);
 }
 
-std::optional<fs::path> absolute_path_in(const char* variable) {
-  const char* text = std::getenv(variable);
-  if (text == nullptr || !fs::path(text).is_absolute()) return std::nullopt;
-  return fs::path(text);
-}
-
 void tighten(double& limit, const std::optional<double>& lab) {
   if (lab) limit = std::min(limit, *lab);
 }
@@ -359,10 +353,8 @@ DeviceSettings read_device_settings(const fs::path& file) {
 }
 
 fs::path default_device_settings_path() {
-  const fs::path file = fs::path("touchtrial") / "devices.json";
-  if (const auto config = absolute_path_in("XDG_CONFIG_HOME")) return *config / file;
-  const auto home = absolute_path_in("HOME");
-  return home ? *home / ".config" / file : fs::path();
+  const fs::path folder = user_config_folder();
+  return folder.empty() ? folder : folder / "devices.json";
 }
 
 DeviceSettings device_settings_for(const fs::path& named) {
