@@ -20,7 +20,6 @@ else()
   add_library(touchtrial_zstd ALIAS PkgConfig::zstd)
 endif()
 pkg_check_modules(nlopt REQUIRED IMPORTED_TARGET GLOBAL nlopt)
-pkg_check_modules(rapidjson REQUIRED RapidJSON)  # headers alone
 
 # Whether a Python module is linked, not a program.
 set(LINKS_A_MODULE "$<STREQUAL:$<TARGET_PROPERTY:TYPE>,MODULE_LIBRARY>")
