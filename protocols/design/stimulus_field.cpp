@@ -17,7 +17,7 @@ constexpr std::string_view kComputation = "touchtrial field 3";
 /// The rendering options that the field's bytes depend on. Gains are not among them, because they
 /// are applied when the field is felt.
 std::string rendering_text(const engine::RenderingOptions& rendering) {
-  nlohmann::json text{{"model", word_for(kModelNames, rendering.model)},
+  nlohmann::json text{{"model", name_in(kModelNames, rendering.model)},
                       {"pitch_mm", rendering.pitch_mm},
                       {"filter_mm", rendering.filter_mm}};
   if (rendering.model == engine::ModelKind::paper) text["neighbourhood"] = rendering.neighbourhood;

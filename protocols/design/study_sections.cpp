@@ -159,21 +159,21 @@ TrialOptions read_trials(const JsonValue& place) {
 
 nlohmann::json to_json(const TrialOptions& trials) {
   nlohmann::json text = {{"repeats", trials.repeats},
-                         {"order", word_for(kTrialOrderNames, trials.order)},
+                         {"order", name_in(kTrialOrderNames, trials.order)},
                          {"explore_limit_s", trials.explore_limit_s},
-                         {"on_timeout", word_for(kOnTimeoutNames, trials.on_timeout)},
+                         {"on_timeout", name_in(kOnTimeoutNames, trials.on_timeout)},
                          {"practice", trials.practice},
                          {"break_every", trials.break_every},
                          {"catch", trials.catch_trials},
                          {"lead_in", trials.lead_in},
-                         {"blocks", word_for(kBlocksNames, trials.blocks)}};
+                         {"blocks", name_in(kBlocksNames, trials.blocks)}};
   const TrialOptions usual;
   if (trials.max_run != usual.max_run) text["max_run"] = trials.max_run;
   if (trials.break_after_min != usual.break_after_min) {
     text["break_after_min"] = trials.break_after_min;
   }
   if (trials.on_interruption != usual.on_interruption) {
-    text["on_interruption"] = word_for(kOnInterruptionNames, trials.on_interruption);
+    text["on_interruption"] = name_in(kOnInterruptionNames, trials.on_interruption);
   }
   if (trials.resume_within_h != usual.resume_within_h) {
     text["resume_within_h"] = trials.resume_within_h;
@@ -236,7 +236,7 @@ VisitPlan read_visits(const JsonValue& place) {
 nlohmann::json to_json(const VisitPlan& visits) {
   nlohmann::json text = {{"count", visits.count},
                          {"least_days", visits.least_days},
-                         {"methods", word_for(kVisitMethodsNames, visits.methods)}};
+                         {"methods", name_in(kVisitMethodsNames, visits.methods)}};
   if (visits.most_days) text["most_days"] = *visits.most_days;
   return text;
 }
