@@ -94,7 +94,7 @@ void add_device_options(CLI::App& command, RunOptions& options) {
   command.add_flag("--console", options.console, "Open a window for the experimenter too");
   command
       .add_option("--console-monitor", options.console_monitor,
-                  "Monitor of the experimenter's window, from 1")
+                  "Monitor of the experimenter's window")
       ->check(CLI::Range(1, 16));
   command.add_flag("!--no-sound", options.sound, "Play neither masking noise nor tones");
   add_window_options(command, options.monitor, options.window_px);
