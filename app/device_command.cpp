@@ -221,7 +221,6 @@ void add_device_command(CLI::App& program, Action& action) {
   add_device_accept_command(*device, action);
   add_device_monitor_command(*device, action);
   add_device_models_command(*device, action);
-  add_device_compensation_command(*device, action);
   add_device_conform_command(*device, action);
 }
 
