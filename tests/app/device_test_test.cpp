@@ -488,7 +488,9 @@ TEST_CASE("device bring-up that leaves out every step asks its questions, and it
       {"device", "bring-up", "--json", "--read", folder.path("dhd-bring-up.json").string()});
   CHECK(read.exit_code == 0);
   const json verdict = json::parse(read.output);
-  CHECK(verdict.at("settled") == json::array({"force_button"}));
+  // The library's file is named libfake_dhd.so.
+  CHECK_FALSE(verdict.at("stand_in").get<std::string>().empty());
+  CHECK(verdict.at("settled") == json::array());
   CHECK(verdict.at("open").size() > 5);
   // Nothing is replaced.
   const ProgramResult again =
