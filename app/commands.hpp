@@ -76,9 +76,7 @@ void add_device_test_command(CLI::App& device, Action& action);
 void add_device_fit_command(CLI::App& device, Action& action);
 void add_device_accept_command(CLI::App& device, Action& action);
 void add_device_bring_up_command(CLI::App& device, Action& action);
-void add_device_monitor_command(CLI::App& device, Action& action);
 void add_device_conform_command(CLI::App& device, Action& action);
-void add_device_compensation_command(CLI::App& device, Action& action);
 
 /// \name Files
 /// Every variable must live as long as the command.

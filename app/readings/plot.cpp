@@ -1,4 +1,4 @@
-#include "app/monitor/plot.hpp"
+#include "app/readings/plot.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "app/windows/pointer_window.hpp"
+#include "app/readings/readings_window.hpp"
 
 #include "app/windows/glfw_support.hpp"
 #include "core/errors.hpp"
@@ -13,7 +13,6 @@
 #include <functional>
 #include <memory>
 
-#include <GLFW/glfw3.h>
 #include <stdlib.h>
 
 namespace touchtrial {
@@ -67,15 +66,15 @@ struct PilotStation {
   bool attend_until(const std::function<bool(const device::ServoState&)>& is_as_wanted) {
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(5);
     while (std::chrono::steady_clock::now() < give_up) {
-      window->draw_frame();
+      window->draw({mouse.info(), "watch", states.get()}, history);
       if (is_as_wanted(states.get())) return true;
     }
     return false;
   }
 
   device::PointerExchange exchange;
-  std::unique_ptr<app::PointerWindow> window =
-      std::make_unique<app::PointerWindow>(exchange, Vec2{100.0, 80.0});
+  std::unique_ptr<app::ReadingsWindow> window = std::make_unique<app::ReadingsWindow>(exchange);
+  app::ReadingsHistory history{device::kServoRateHz};
   device::PacedClock clock{device::PacedClock::Time{}};
   device::MouseDevice mouse{exchange, clock};
   LastWritten last{mouse};
@@ -95,10 +94,9 @@ TEST_CASE(
     "go ends it") {
   const auto screen = VirtualScreen::open();
   PilotStation station;
-  const Vec2 corner = station.window->plane_corner();
-  const double mm_per_unit = station.window->mm_per_unit();
+  CHECK(station.attend_until([](const device::ServoState& s) { return s.sample.ready; }));
   const Vec2 where_mm = {30.0, 50.0};
-  const Vec2 at = corner + (1.0 / mm_per_unit) * where_mm;
+  const Vec2 at = station.window->at(where_mm);
   screen->move_pointer(static_cast<int>(at.x), static_cast<int>(at.y));
   CHECK(station.attend_until(
       [&](const device::ServoState& s) { return is_near(s.sample.position_mm, where_mm); }));
@@ -116,7 +114,8 @@ TEST_CASE(
 TEST_CASE("a window that closes under a pressed stylus ends the servo with zero force") {
   const auto screen = VirtualScreen::open();
   PilotStation station;
-  const Vec2 at = station.window->plane_corner() + Vec2{50.0, 50.0};
+  CHECK(station.attend_until([](const device::ServoState& s) { return s.sample.ready; }));
+  const Vec2 at = station.window->at({20.0, 20.0});
   screen->move_pointer(static_cast<int>(at.x), static_cast<int>(at.y));
   screen->press();
   CHECK(station.attend_until([](const device::ServoState& s) { return s.force_n.z > 0.65; }));
@@ -126,14 +125,6 @@ TEST_CASE("a window that closes under a pressed stylus ends the servo with zero 
   CHECK(station.report.device_fault == device::DeviceFault::link_lost);
   CHECK(station.last.force_n_ == Vec3{});
   screen->release();
-}
-
-TEST_CASE("the pointer itself is hidden, so that only the stylus shows where the hand is") {
-  const auto screen = VirtualScreen::open();
-  device::PointerExchange exchange;
-  app::PointerWindow window(exchange, {50.0, 50.0});
-  for (int frame = 0; frame < 5; ++frame) window.draw_frame();
-  CHECK(glfwGetInputMode(glfwGetCurrentContext(), GLFW_CURSOR) == GLFW_CURSOR_HIDDEN);
 }
 
 TEST_CASE("the space bar requests a stop") {
@@ -153,7 +144,7 @@ TEST_CASE("without a display the window says what to do about it") {
   ::unsetenv("DISPLAY");
   ::unsetenv("WAYLAND_DISPLAY");
   device::PointerExchange exchange;
-  CHECK_THROWS_WITH(app::PointerWindow(exchange, {50.0, 50.0}), holds_text("graphical session"));
+  CHECK_THROWS_WITH(app::ReadingsWindow{exchange}, holds_text("graphical session"));
 }
 
 TEST_CASE("a monitor's stated size is used only if it can be true") {

@@ -1,7 +1,7 @@
 /// \file Plots of the last seconds, with axes and units.
 #pragma once
 
-#include "app/monitor/monitor_run.hpp"
+#include "app/readings/history.hpp"
 #include "app/windows/look.hpp"
 
 #include <string>
