@@ -129,8 +129,8 @@ std::vector<StudyClass> read_classes(const JsonValue& place, int fewest, std::si
 TrialOptions read_trials(const JsonValue& place) {
   const JsonObject object =
       place.object({"repeats", "order", "explore_limit_s", "on_timeout", "practice", "break_every",
-                    "break_after_min", "catch", "lead_in", "blocks", "max_run", "on_interruption",
-                    "resume_within_h", "validity", "answer_after"});
+                    "break_after_min", "catch", "lead_in", "blocks", "max_run", "rove_db",
+                    "on_interruption", "resume_within_h", "validity", "answer_after"});
   TrialOptions options;
   read_count(object, "repeats", 1, 1000, options.repeats);
   read_count(object, "break_every", 0, 10'000, options.break_every);
@@ -141,6 +141,7 @@ TrialOptions read_trials(const JsonValue& place) {
   if (const auto member = object.find("explore_limit_s")) {
     options.explore_limit_s = member->number({.low = 0.0, .high = 3600.0, .open_low = true});
   }
+  if (const auto member = object.find("rove_db")) options.rove_db = member->number({0.0, 40.0});
   if (const auto member = object.find("break_after_min")) {
     options.break_after_min = member->number({0.0, 240.0});
   }
@@ -169,6 +170,7 @@ nlohmann::json to_json(const TrialOptions& trials) {
                          {"blocks", name_in(kBlocksNames, trials.blocks)}};
   const TrialOptions usual;
   if (trials.max_run != usual.max_run) text["max_run"] = trials.max_run;
+  if (trials.rove_db != usual.rove_db) text["rove_db"] = trials.rove_db;
   if (trials.break_after_min != usual.break_after_min) {
     text["break_after_min"] = trials.break_after_min;
   }

@@ -130,10 +130,10 @@ void check_registration(const JsonValue& file, const Study& study);
 
 /// The sections in the form of the study file, with every key explicit. A method has only the keys
 /// that belong to it, "control" if it has one, and "label" if it is not the default. The trials
-/// have "max_run", "on_interruption", "resume_within_h", "validity" and "answer_after" only if
-/// these differ from their defaults, as the session has "texts", "text_scale" and "high_contrast",
-/// and a registration has the keys of its analysis only if it has one, so that studies sealed
-/// before these keys existed keep their seals. Equal options give equal JSON.
+/// have "max_run", "rove_db", "on_interruption", "resume_within_h", "validity" and "answer_after"
+/// only if these differ from their defaults, as the session has "texts", "text_scale" and
+/// "high_contrast", and a registration has the keys of its analysis only if it has one, so that
+/// studies sealed before these keys existed keep their seals. Equal options give equal JSON.
 [[nodiscard]] nlohmann::json to_json(const engine::ExtractionOptions& method);
 [[nodiscard]] nlohmann::json to_json(const StudyMethod& method);
 [[nodiscard]] nlohmann::json to_json(const engine::RenderingOptions& rendering);

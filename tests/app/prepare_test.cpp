@@ -251,4 +251,9 @@ TEST_CASE("thresholds of pilots take the curve's place, and a file that is none 
   const ProgramResult missing = prepare("missing.db");
   CHECK(missing.exit_code != 0);
   CHECK_THAT(missing.errors, holds_text("missing.db"));
+  std::filesystem::rename(study.path() / "pilots.db.key", study.path() / "elsewhere.key");
+  const ProgramResult without_key = prepare("pilots.db");
+  CHECK(without_key.exit_code == 2);
+  CHECK_THAT(without_key.errors, holds_text("/rendering/gains/curve: ") &&
+                                     holds_text(study.in("pilots.db.key")) && !holds_text("--key"));
 }

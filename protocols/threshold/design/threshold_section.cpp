@@ -357,6 +357,9 @@ void check_section(const JsonValue& file, const Study& study) {
   if (trials.catch_trials > 0) {
     refuse_trials("/catch", "belongs to other protocols; use /threshold/catch");
   }
+  if (trials.rove_db > 0.0) {
+    refuse_trials("/rove_db", "belongs to other protocols; use /threshold/rove_db");
+  }
   if (trials.lead_in > 0) refuse_trials("/lead_in", "must be 0: a track has no lead-in");
   if (trials.on_interruption != OnInterruption::repeat) {
     refuse_trials("/on_interruption",

@@ -84,6 +84,7 @@ TEST_CASE("every key of a full study is read") {
                         {"lead_in", 2},
                         {"blocks", "mixed"},
                         {"max_run", 4},
+                        {"rove_db", 2.5},
                         {"on_interruption", "leave-out"},
                         {"resume_within_h", 2.5}};
   document["seed"] = 9007199254740992;
@@ -115,6 +116,7 @@ TEST_CASE("every key of a full study is read") {
                                     .lead_in = 2,
                                     .blocks = design::Blocks::mixed,
                                     .max_run = 4,
+                                    .rove_db = 2.5,
                                     .on_interruption = design::OnInterruption::leave_out,
                                     .resume_within_h = 2.5};
   CHECK(study.trials == trials);
