@@ -151,7 +151,12 @@ TEST_CASE("dhd: without compensation, force comes on once the library has shed t
   LoadedDhd fake;
   fake->arm_mass_kg = 0.3;
   device::DhdSettings settings = settings_of_fake();
-  settings.gravity_compensation = false;
+  SECTION("as set") {
+    settings.gravity_compensation = false;
+  }
+  SECTION("on a Falcon, whose force nothing switches off") {
+    fake->system_type = 60;
+  }
   device::DhdDevice device = opened(fake, settings);
   double most_n = 0.0;
   REQUIRE(eventually([&] {
