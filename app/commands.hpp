@@ -62,7 +62,7 @@ void add_key_command(CLI::App& program, Action& action);
 void add_key_check_command(CLI::App& keys, Action& action);
 /// exclude, replace, withdraw, note.
 void add_people_commands(CLI::App& program, Action& action);
-/// close, unblind, migrate.
+/// close, unblind.
 void add_study_end_commands(CLI::App& program, Action& action);
 void add_merge_command(CLI::App& program, Action& action);
 void add_power_command(CLI::App& program, Action& action);

@@ -18,7 +18,6 @@
 #include "protocols/collect/server_address.hpp"
 #include "protocols/design/key_protection.hpp"
 #include "protocols/session/stimulus_source.hpp"
-#include "protocols/simulation/kept_levels.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -266,25 +265,16 @@ design::StudyKey simulated_key(const design::Study& study,
 
 namespace {
 
-/// Of design::PrivateNotes; empty if the user has no cache.
-std::filesystem::path notes_folder() {
-  const std::filesystem::path cache = user_cache_folder();
-  return cache.empty() ? cache : cache / "notes";
-}
-
 /// The gains of a study that states its level.
-design::LevelStage level_stage(const design::StudyKey& key) {
+design::LevelGains level_gains(const design::StudyKey& key) {
   if (!key.study.level) return {};
   const device::DeviceModel device = simulation::device_of(key.study);
   const simulation::LevelCurve curve = curve_of(key.study, device);
-  const std::string identity = device::device_model_json(device) +
-                               std::string(engine::name_of(curve.curve)) +
-                               number_text(curve.pilots_db.value_or(0.0));
-  return {identity, [=, &key](std::span<const engine::FieldView> fields) {
-            simulation::LevelledGains found =
-                simulation::gains_at_level(key, fields, device, curve, cores());
-            return std::pair(std::move(found.gains), std::move(found.remarks));
-          }};
+  return [=, &key](std::span<const engine::FieldView> fields) {
+    simulation::LevelledGains found =
+        simulation::gains_at_level(key, fields, device, curve, cores());
+    return std::pair(std::move(found.gains), std::move(found.remarks));
+  };
 }
 
 /// Levels by the pilots of the laboratory, if the study names some and they can be read.
@@ -307,8 +297,7 @@ int cores() {
 }
 
 design::PrepareReport prepare_here(const design::StudyKey& key, design::PrepareOptions options) {
-  options.notes = notes_folder();
-  options.level = level_stage(key);
+  options.level_gains = level_gains(key);
   return design::prepare_pack(key, key.pack_folder, progress_bar("preparing"), options);
 }
 
@@ -342,13 +331,6 @@ simulation::StimulusLevels levels_of_pack(const design::StudyCodes& key) {
   const session::StimulusSource source(pack, key.study.rendering);
   return by_pilots(
       simulation::levels_of(key, source, simulation::level_devices(key.study), cores()), key.study);
-}
-
-simulation::StimulusLevels levels_as_prepared(const design::StudyKey& key) {
-  return by_pilots(
-      simulation::kept_levels_of(key, engine::Pack(key.pack_folder),
-                                 simulation::level_devices(key.study), cores(), notes_folder()),
-      key.study);
 }
 
 std::unique_ptr<const analysis::Results> with_levels(

@@ -52,8 +52,7 @@ engine::TextureField practice_field(const Study& study, std::size_t index,
     method.control_seed = RandomStream(study.seed, purpose).bits();
   }
   std::optional<TakenTexture> taken;
-  return build_field(practice_image(study, index, plane), method, study.rendering, taken, false,
-                     nullptr)
+  return build_field(practice_image(study, index, plane), method, study.rendering, taken, false)
       .field;
 }
 

@@ -1,6 +1,5 @@
-/// \file The tables of a study as data, and rows of derived tables as values of their columns.
-/// SQLite's and a server's tables, the check of a file's schema, and the statements on whole rows
-/// are all made from it. What each column means: docs/data-dictionary.md, "Database".
+/// \file The tables of a study on a server as data, and rows of derived tables as values of their
+/// columns. What each column means: docs/data-dictionary.md, "Database".
 #pragma once
 
 #include "protocols/store/fold.hpp"
@@ -14,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-namespace touchtrial::store {
+namespace touchtrial::collect {
 
 /// Counts every change of the tables, in files and on servers.
 inline constexpr int kSchemaVersion = 6;
@@ -87,16 +86,17 @@ using Cells = std::vector<Cell>;
 /// When a row of sessions has a value in own_session.
 enum class OwnNumber { if_other, always };
 
-[[nodiscard]] Cells session_cells(const SessionRow& row, OwnNumber own = OwnNumber::if_other);
-[[nodiscard]] Cells trial_cells(const TrialRow& row);
+[[nodiscard]] Cells session_cells(const store::SessionRow& row,
+                                  OwnNumber own = OwnNumber::if_other);
+[[nodiscard]] Cells trial_cells(const store::TrialRow& row);
 
 /// Reads the columns of one row of a derived table.
 /// \param cell  gives the value of a column by its place in the row, from 0, and its type
 [[nodiscard]] Cells cells_of(Table table, const std::function<Cell(int, ColumnType)>& cell);
 
 /// \throws EventFault if a cell holds a value that no event can give rise to
-[[nodiscard]] SessionRow session_row(std::span<const Cell> cells);
+[[nodiscard]] store::SessionRow session_row(std::span<const Cell> cells);
 /// \throws the same
-[[nodiscard]] TrialRow trial_row(std::span<const Cell> cells);
+[[nodiscard]] store::TrialRow trial_row(std::span<const Cell> cells);
 
-}  // namespace touchtrial::store
+}  // namespace touchtrial::collect

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial::engine {
+namespace touchtrial::reference {
 
 /// A circle at a constant height, as a polygon.
 /// \param centre_mm  its z is the height
@@ -26,7 +26,7 @@ namespace touchtrial::engine {
 /// and with the second at a landing, where the force has a kink: some 1e-6 mJ by default.
 /// Thread-safe. Cost: two force evaluations a step.
 /// \param step_mm  longest step, > 0
-[[nodiscard]] double loop_work_mj(const RenderingModel& model, std::span<const Vec3> corners_mm,
-                                  double step_mm = 0.005);
+[[nodiscard]] double loop_work_mj(const engine::RenderingModel& model,
+                                  std::span<const Vec3> corners_mm, double step_mm = 0.005);
 
-}  // namespace touchtrial::engine
+}  // namespace touchtrial::reference

@@ -1,14 +1,14 @@
-#include "engine/rendering/loop_work.hpp"
+#include "engine/reference/loop_work.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace touchtrial::engine {
+namespace touchtrial::reference {
 namespace {
 
-double side_work_mj(const RenderingModel& model, Bristle& touch, Vec3 from_mm, Vec3 to_mm,
-                    double step_mm) {
+double side_work_mj(const engine::RenderingModel& model, engine::Bristle& touch, Vec3 from_mm,
+                    Vec3 to_mm, double step_mm) {
   const Vec3 way_mm = to_mm - from_mm;
   const double steps = std::max(1.0, std::ceil(norm(way_mm) / step_mm));
   const auto along_n = [&](double share) {
@@ -40,8 +40,9 @@ std::vector<Vec3> press_slide_lift_path(Vec2 from_mm, Vec2 to_mm, double top_mm,
           {to_mm.x, to_mm.y, top_mm}};
 }
 
-double loop_work_mj(const RenderingModel& model, std::span<const Vec3> corners_mm, double step_mm) {
-  Bristle touch;
+double loop_work_mj(const engine::RenderingModel& model, std::span<const Vec3> corners_mm,
+                    double step_mm) {
+  engine::Bristle touch;
   double work_mj = 0.0;
   for (std::size_t i = 0; i < corners_mm.size(); ++i) {
     const Vec3 next_mm = corners_mm[(i + 1) % corners_mm.size()];
@@ -50,4 +51,4 @@ double loop_work_mj(const RenderingModel& model, std::span<const Vec3> corners_m
   return work_mj;
 }
 
-}  // namespace touchtrial::engine
+}  // namespace touchtrial::reference

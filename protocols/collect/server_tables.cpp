@@ -1,4 +1,4 @@
-#include "protocols/store/tables.hpp"
+#include "protocols/collect/server_tables.hpp"
 
 #include "core/text.hpp"
 #include "protocols/store/damage.hpp"
@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-namespace touchtrial::store {
+namespace touchtrial::collect {
 namespace {
 
 using enum ColumnType;
@@ -144,8 +144,8 @@ class CellReader {
   }
   [[noreturn]] void refuse() const {
     const auto* const session = std::get_if<std::int64_t>(&cells_.front());
-    throw EventFault(
-        session == nullptr ? 0 : *session, kNoEvent,
+    throw store::EventFault(
+        session == nullptr ? 0 : *session, store::kNoEvent,
         std::string("derived table ") + table_ + " holds a value that no event gives rise to");
   }
 
@@ -195,12 +195,12 @@ std::string add_visits_sql(std::string_view integer) {
          create_indices_sql(table_definition(Table::sessions));
 }
 
-Cells session_cells(const SessionRow& row, OwnNumber own) {
+Cells session_cells(const store::SessionRow& row, OwnNumber own) {
   const bool says_own = own == OwnNumber::always || row.own_session != row.session;
   return {std::int64_t{row.session},
           row.participant,
           std::int64_t{row.enrolment},
-          state_cell(kSessionStates, row.state),
+          state_cell(store::kSessionStates, row.state),
           cell_of(row.simulated),
           cell_of(row.pilot),
           cell_of(row.excluded),
@@ -213,11 +213,11 @@ Cells session_cells(const SessionRow& row, OwnNumber own) {
           std::int64_t{row.visit}};
 }
 
-Cells trial_cells(const TrialRow& row) {
+Cells trial_cells(const store::TrialRow& row) {
   return {std::int64_t{row.session},
           std::int64_t{row.trial},
           std::int64_t{row.block},
-          state_cell(kTrialStates, row.state),
+          state_cell(store::kTrialStates, row.state),
           cell_of(row.valid),
           cell_of(row.hand.contact),
           cell_of(row.hand.path),
@@ -237,14 +237,14 @@ Cells cells_of(Table table, const std::function<Cell(int, ColumnType)>& cell) {
   return cells;
 }
 
-SessionRow session_row(std::span<const Cell> cells) {
+store::SessionRow session_row(std::span<const Cell> cells) {
   CellReader row(cells, "sessions");
   const int session = row.whole();
   // Members are initialised in the order of the columns.
   return {.session = session,
           .participant = row.text(),
           .enrolment = row.whole(),
-          .state = row.state<SessionState>(kSessionStates),
+          .state = row.state<store::SessionState>(store::kSessionStates),
           .simulated = row.flag(),
           .pilot = row.flag(),
           .excluded = row.flag(),
@@ -257,13 +257,13 @@ SessionRow session_row(std::span<const Cell> cells) {
           .visit = row.whole()};
 }
 
-TrialRow trial_row(std::span<const Cell> cells) {
+store::TrialRow trial_row(std::span<const Cell> cells) {
   CellReader trial(cells, "trials");
-  TrialRow row;
+  store::TrialRow row;
   row.session = trial.whole();
   row.trial = trial.whole();
   row.block = trial.whole();
-  row.state = trial.state<TrialState>(kTrialStates);
+  row.state = trial.state<store::TrialState>(store::kTrialStates);
   row.valid = trial.flag();
   row.hand.contact = trial.flag();
   row.hand.path = trial.flag();
@@ -275,4 +275,4 @@ TrialRow trial_row(std::span<const Cell> cells) {
   return row;
 }
 
-}  // namespace touchtrial::store
+}  // namespace touchtrial::collect
