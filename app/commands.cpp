@@ -113,14 +113,7 @@ void add_study_argument(CLI::App& command, std::filesystem::path& study) {
 
 CLI::Option* add_database_argument(CLI::App& command, std::filesystem::path& database,
                                    const std::string& meaning) {
-  return command.add_option("DB", database, meaning)->required();
-}
-
-void add_study_place_argument(CLI::App& command, std::filesystem::path& place) {
-  add_database_argument(command, place, "Database of the study, or its postgresql:// address")
-      ->check(refusing("password=",
-                       "a password does not belong on the command line; write "
-                       "postgresql://USER@HOST/DATABASE, and put the password into ~/.pgpass"));
+  return command.add_option("DB", database, meaning)->required()->check(place_validator());
 }
 
 CLI::Option* add_accept_loss_option(CLI::App& command, std::string& reason) {
@@ -171,8 +164,8 @@ void add_on_option(CLI::App& command, std::string& model) {
 
 CLI::Validator place_validator() {
   return refusing("://",
-                  "is an address, not a file; sync writes to a study on a server, and report, "
-                  "export, verify and merge read one");
+                  "is an address, not a file; make a file of what is there with touchtrial merge "
+                  "ADDRESS -o all.db");
 }
 
 CLI::Option* add_driver_argument(CLI::App& command, const std::string& name, std::string& driver) {

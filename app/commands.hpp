@@ -87,12 +87,9 @@ void add_device_conform_command(CLI::App& device, Action& action);
 [[nodiscard]] std::vector<std::string> protocols_of_new_studies();
 /// STUDY, required.
 void add_study_argument(CLI::App& command, std::filesystem::path& study);
-/// DB, required: a database file.
+/// DB, required: a database file, and no address.
 CLI::Option* add_database_argument(CLI::App& command, std::filesystem::path& database,
                                    const std::string& meaning = "Database of the study");
-/// DB, required: a database file, or an address such as postgresql://HOST/NAME. Refuses passwords,
-/// which libpq's own notation may contain.
-void add_study_place_argument(CLI::App& command, std::filesystem::path& place);
 /// --key, see key_of_database; and --passphrase-file, see app/passphrases.hpp.
 CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key,
                             const std::string& meaning =

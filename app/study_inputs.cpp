@@ -14,8 +14,6 @@
 #include "device/device_settings.hpp"
 #include "device/registry.hpp"
 #include "engine/pack/pack.hpp"
-#include "protocols/collect/collect.hpp"
-#include "protocols/collect/server_address.hpp"
 #include "protocols/design/key_protection.hpp"
 #include "protocols/session/stimulus_source.hpp"
 
@@ -106,9 +104,6 @@ std::filesystem::path key_in_use(const std::filesystem::path& database,
 design::StudyKey key_of_database(const store::StudyStore& store,
                                  const std::filesystem::path& database,
                                  const std::filesystem::path& given) {
-  if (given.empty() && collect::is_address(database.string())) {
-    throw FileError("a study on a server has no key beside it; name the study's key with --key");
-  }
   const std::filesystem::path path = key_in_use(database, given);
   const bool is_beside = path == key_path_for(database, {});
   if (is_beside && !is_there(path)) {
@@ -122,9 +117,9 @@ design::StudyKey key_of_database(const store::StudyStore& store,
     analysis::require_key_of(store, key);
   } catch (const VerificationError& wrong) {
     throw VerificationError(path.string() + ": is not the key of " +
-                            one_line(collect::study_name(database.string())) + ": " + wrong.what());
+                            one_line(database.filename().string()) + ": " + wrong.what());
   }
-  if (!is_beside && !collect::is_address(database.string())) keep_place_of_key(database, path);
+  if (!is_beside) keep_place_of_key(database, path);
   key.pack_folder = design::pack_in_reach(key, database);
   return key;
 }
@@ -137,7 +132,6 @@ analysis::Outcomes outcomes_of(const store::StudyStore& store, const design::Stu
 }
 
 std::vector<store::PersonalRecord> consents_beside(const std::filesystem::path& database) {
-  if (collect::is_address(database.string())) return {};
   const std::filesystem::path path = store::personal_data_path(database);
   if (!is_there(path)) return {};
   return store::PersonalData(path).all();

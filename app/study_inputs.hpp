@@ -47,7 +47,7 @@ namespace touchtrial::app {
                                              const design::StudyKey& key,
                                              const std::string& participant = {});
 
-/// Every consent in the personal data beside a database; none beside a study on a server.
+/// Every consent in the personal data beside a database.
 /// \throws FileError if others may read the personal data
 /// \throws StoreError if they cannot be read
 [[nodiscard]] std::vector<store::PersonalRecord> consents_beside(

@@ -1,4 +1,4 @@
-# What `cmake --install` lays where, by component: program, doc, development (and python, in python/).
+# What `cmake --install` lays where, by component: program, postgres, doc, development (and python, in python/).
 # Nothing of it knows its prefix: the tree runs from wherever it is moved. The packages are made of
 # the same components: cmake/Packages.cmake.
 include(GNUInstallDirs)
@@ -6,6 +6,8 @@ include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 
 install(TARGETS touchtrial RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
+# Where the program looks for it: protocols/collect/bundle_module.cpp.
+install(TARGETS touchtrial_postgres LIBRARY DESTINATION lib/touchtrial COMPONENT postgres)
 
 # The ready studies, and what they name: `touchtrial examples` copies them (app/shipped_files.cpp).
 set(shipped "${CMAKE_INSTALL_DATADIR}/touchtrial")

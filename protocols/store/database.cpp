@@ -220,8 +220,8 @@ void make_empty_file(const std::filesystem::path& path) {
 void refuse_address(const std::filesystem::path& path) {
   if (path.string().find("://") == std::string::npos) return;
   throw StoreError(
-      "an address is no file: a study on a server is written by sync, and read by report, export, "
-      "verify and merge");
+      "an address is no file: make a file of what is there with `touchtrial merge ADDRESS -o "
+      "all.db`");
 }
 
 }  // namespace

@@ -61,6 +61,10 @@ def main(work):
     check("no pack is made in the installation",
           inside.returncode == 2 and "touchtrial examples" in inside.stderr and not list(own.parent.glob("*.pack")))
 
+    server = subprocess.run([program, "merge", f"postgresql:///study?host={work}", "-o", work / "all.db"],
+                            capture_output=True, text=True)
+    check("merge finds the module for servers", server.returncode == 1 and "cannot connect" in server.stderr)
+
     run(program, "examples", work / "mine")
     studies = sorted((work / "mine" / "config").glob("*.json"))
     ready = [study for study in studies if study.name != "devices.json"]
