@@ -1,6 +1,5 @@
-/// \file Sensitivity of tasks without a fixed question: "same or different", and "which of three is
-/// odd". Source: docs/procedures.md, "d'"; Macmillan, Creelman 2005, chapter 9; Ennis 1993;
-/// Frijters, Kooistra, Vereijken 1980. Standard "which interval" tasks: d_prime.hpp.
+/// \file Sensitivity in the task "same or different". Source: docs/procedures.md, "d'"; Macmillan,
+/// Creelman 2005, chapter 9. Standard "which interval" tasks: d_prime.hpp.
 #pragma once
 
 #include <optional>
@@ -31,24 +30,5 @@ struct SameDifferentFit {
 /// share correct is Phi((z(hits) - z(false alarms)) / 2), and d' = 2 z((1 + sqrt(2 share - 1)) /
 /// 2). The criterion is -(z(hits) + z(false alarms)) / 2. Result and errors as above.
 [[nodiscard]] std::optional<SameDifferentFit> independent_d_prime(const SameDifferent& shares);
-
-/// How the odd one of three is found. The odd stimulus is the stronger or the weaker one, both
-/// equally likely.
-enum class OddOneRule {
-  differencing,  ///< the impression that is farthest from the other two; for roved stimuli
-  independent,   ///< the most likely one, of two fixed stimuli
-};
-
-/// The share correct of an unbiased observer in the triangle test. With X the odd impression, Y and
-/// Z the others, centred between the stimuli, the independent observer is right if Y and Z are
-/// below 0 and below X, or above both.
-/// \return 1/3 .. 1, 1/3 at d' = 0; error below 1e-9
-/// \throws std::invalid_argument if d is not finite
-[[nodiscard]] double odd_one_share_of(double d_prime, OddOneRule rule);
-
-/// Its inverse, for the odd one out.
-/// \return nothing at 1; 0 at 1/3 or less
-/// \throws std::invalid_argument if the share is not in [0, 1]
-[[nodiscard]] std::optional<double> odd_one_d_prime(double share, OddOneRule rule);
 
 }  // namespace touchtrial::analysis

@@ -1,5 +1,5 @@
-/// \file The sections of the report's JSON. Private to protocols/identification, because it exposes
-/// the JSON library.
+/// \file Measures of one method in the report's JSON. Private to protocols/identification, because it
+/// exposes the JSON library.
 #pragma once
 
 #include "protocols/identification/analysis/report.hpp"
@@ -12,9 +12,6 @@
 
 namespace touchtrial::analysis::identification {
 
-[[nodiscard]] nlohmann::ordered_json method_object(const MethodReport& method,
-                                                   const std::vector<std::string>& classes);
-[[nodiscard]] nlohmann::ordered_json choice_object(const ChoiceModel& model);
 [[nodiscard]] nlohmann::ordered_json reaction_array(const std::vector<ReactionTimes>& reaction,
                                                     const std::vector<std::string>& classes);
 [[nodiscard]] nlohmann::ordered_json unbiased_object(const MethodReport& method,
@@ -26,7 +23,5 @@ namespace touchtrial::analysis::identification {
     const std::optional<ConfidenceReport>& confidence);
 [[nodiscard]] nlohmann::ordered_json breakdowns_object(const std::vector<Breakdown>& breakdowns);
 [[nodiscard]] nlohmann::ordered_json robustness_array(const std::vector<SubsetAccuracy>& subsets);
-[[nodiscard]] nlohmann::ordered_json pairs_array(const StudyReport& report);
-[[nodiscard]] nlohmann::ordered_json together_object(const MethodsTogether& together);
 
 }  // namespace touchtrial::analysis::identification
