@@ -2,6 +2,7 @@
 // by row and compares.
 #include "bench/inputs.hpp"
 #include "bench/rows.hpp"
+#include "core/errors.hpp"
 #include "engine/fourier/planning.hpp"
 #include "tests/engine/simd/targets.hpp"
 
@@ -78,7 +79,6 @@ class MadeCase {
 
 void register_case(const std::string& name, Case one, const Row& row, const Goal& goal,
                    const Arguments& arguments) {
-  if (!arguments.name.empty() && arguments.name != row.what && arguments.name != name) return;
   if (one.simd_target.empty()) one.simd_target = arguments.target;
   const auto made = std::make_shared<MadeCase>(one, row, goal);
   if (arguments.runs > 0) return made->run(arguments.runs);
@@ -92,15 +92,21 @@ void register_case(const std::string& name, Case one, const Row& row, const Goal
   registered->Repetitions(once ? 1 : one.is_slow ? kSlowRepetitions : kRepetitions);
 }
 
-void register_rows(const Rows& rows, const Arguments& arguments) {
+/// \return whether a row or a case has the name
+bool register_rows(const Rows& rows, const Arguments& arguments) {
+  bool found = false;
   for (const Row& row : rows) {
     const auto add = [&](const std::string& who, const Case& one, const Goal& goal) {
-      register_case(row.what + " | " + who, one, row, goal, arguments);
+      const std::string name = row.what + " | " + who;
+      if (!arguments.name.empty() && arguments.name != row.what && arguments.name != name) return;
+      found = true;
+      register_case(name, one, row, goal, arguments);
     };
     add(row.ours.who, row.ours, row.goal);
     for (const Case& peer : row.peers) add(peer.who, peer, {});
     for (const Case& bound : row.bounds) add("bound: " + bound.who, bound, {});
   }
+  return found;
 }
 
 void run(Arguments arguments) {
@@ -113,11 +119,16 @@ void run(Arguments arguments) {
   benchmark::AddCustomContext("compiler", TOUCHTRIAL_COMPILER);
   benchmark::AddCustomContext("opencv", CV_VERSION);
   benchmark::AddCustomContext("instruction_set", instruction_set_of(scope.simd_targets.front()));
+  bool found = false;
   for (const Rows& rows : {extraction_rows(scope), metric_rows(scope), servo_rows(),
                            error_rows(scope), study_rows()}) {
-    register_rows(rows, arguments);
+    found = register_rows(rows, arguments) || found;
   }
-  benchmark::RunSpecifiedBenchmarks();
+  if (!found) {
+    throw UsageError(arguments.name +
+                     ": is no row and no case; --benchmark_list_tests=true lists them");
+  }
+  if (arguments.runs == 0) benchmark::RunSpecifiedBenchmarks();
 }
 
 /// \return 0 done, 1 failed, 2 bad arguments
