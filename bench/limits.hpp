@@ -2,8 +2,6 @@
 /// nothing of the engine, so that they do not become faster or slower with it.
 #pragma once
 
-#include "core/plane.hpp"
-
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -12,12 +10,6 @@ namespace touchtrial::bench {
 
 /// How samples are written: through the caches, or past them.
 enum class Writing { through_caches, past_caches };
-
-/// Reads all bytes. \return their sum, so that no read can be left out
-[[nodiscard]] std::uint64_t read_bytes(std::span<const std::uint8_t> bytes);
-
-/// Writes one number to all samples.
-void write_samples(std::span<float> samples, Writing how);
 
 /// Writes every byte as a float: what any extraction must read and write.
 /// \pre as many bytes as samples

@@ -1,4 +1,4 @@
-#include "bench/limits/limits.hpp"
+#include "bench/limits.hpp"
 
 #include <array>
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 // Compiled once for every target: this file includes itself.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bench/limits/limits.cpp"
+#define HWY_TARGET_INCLUDE "bench/limits.cpp"
 
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
@@ -21,69 +21,25 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Reals = hn::ScalableTag<float>;
 
-std::uint64_t sum_of_bytes(const std::uint8_t* bytes, std::size_t count) {
-  const hn::ScalableTag<std::uint8_t> d;
-  const hn::Repartition<std::uint64_t, decltype(d)> wide;
-  auto sum = hn::Zero(wide);
-  auto other = hn::Zero(wide);
-  std::size_t i = 0;
-  for (const std::size_t step = 2 * hn::Lanes(d); i + step <= count; i += step) {
-    sum = hn::Add(sum, hn::SumsOf8(hn::LoadU(d, bytes + i)));
-    other = hn::Add(other, hn::SumsOf8(hn::LoadU(d, bytes + i + hn::Lanes(d))));
-  }
-  std::uint64_t total = hn::GetLane(hn::SumOfLanes(wide, hn::Add(sum, other)));
-  for (; i < count; ++i) total += bytes[i];
-  return total;
-}
-
-template <bool kPastCaches, class D, class V>
-HWY_INLINE void put(V v, D d, float* to) {
-  if constexpr (kPastCaches) {
-    hn::Stream(v, d, to);
-  } else {
-    hn::StoreU(v, d, to);
-  }
-}
-
-/// Calls of_block(d, i) for whole vectors, and of_one(i) for the samples before the first address
-/// that is a multiple of a cache line, and behind the last vector.
-template <class OfBlock, class OfOne>
-HWY_INLINE void for_aligned(const float* samples, std::size_t count, const OfBlock& of_block,
-                            const OfOne& of_one) {
-  const Reals d;
-  std::size_t i = 0;
-  while (i < count && reinterpret_cast<std::uintptr_t>(samples + i) % 64 != 0) of_one(i++);
-  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) of_block(i);
-  while (i < count) of_one(i++);
-}
-
-template <bool kPastCaches>
-HWY_INLINE void write_all(float* samples, std::size_t count) {
-  const Reals d;
-  const auto one = hn::Set(d, 1.0F);
-  for_aligned(
-      samples, count, [&](std::size_t i) HWY_ATTR { put<kPastCaches>(one, d, samples + i); },
-      [&](std::size_t i) { samples[i] = 1.0F; });
-  if (kPastCaches) hwy::FlushStream();
-}
-
+/// Whole vectors from the first address that is a multiple of a cache line on.
 template <bool kPastCaches>
 HWY_INLINE void stream_all(const std::uint8_t* bytes, float* samples, std::size_t count) {
   const Reals d;
   const hn::RebindToSigned<Reals> integers;
   const hn::Rebind<std::uint8_t, Reals> narrow;
-  for_aligned(
-      samples, count,
-      [&](std::size_t i) HWY_ATTR {
-        const auto v = hn::PromoteTo(integers, hn::LoadU(narrow, bytes + i));
-        put<kPastCaches>(hn::ConvertTo(d, v), d, samples + i);
-      },
-      [&](std::size_t i) { samples[i] = bytes[i]; });
+  std::size_t i = 0;
+  for (; i < count && reinterpret_cast<std::uintptr_t>(samples + i) % 64 != 0; ++i)
+    samples[i] = bytes[i];
+  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+    const auto v = hn::ConvertTo(d, hn::PromoteTo(integers, hn::LoadU(narrow, bytes + i)));
+    if constexpr (kPastCaches) {
+      hn::Stream(v, d, samples + i);
+    } else {
+      hn::StoreU(v, d, samples + i);
+    }
+  }
+  for (; i < count; ++i) samples[i] = bytes[i];
   if (kPastCaches) hwy::FlushStream();
-}
-
-void write(float* samples, std::size_t count, bool past_caches) {
-  past_caches ? write_all<true>(samples, count) : write_all<false>(samples, count);
 }
 
 void copy(const std::uint8_t* bytes, float* samples, std::size_t count, bool past_caches) {
@@ -204,20 +160,10 @@ HWY_AFTER_NAMESPACE();
 namespace touchtrial::bench {
 namespace {
 
-HWY_EXPORT(sum_of_bytes);
-HWY_EXPORT(write);
 HWY_EXPORT(copy);
 HWY_EXPORT(arithmetic);
 
 }  // namespace
-
-std::uint64_t read_bytes(std::span<const std::uint8_t> bytes) {
-  return HWY_DYNAMIC_DISPATCH(sum_of_bytes)(bytes.data(), bytes.size());
-}
-
-void write_samples(std::span<float> samples, Writing how) {
-  HWY_DYNAMIC_DISPATCH(write)(samples.data(), samples.size(), how == Writing::past_caches);
-}
 
 void stream(std::span<const std::uint8_t> bytes, std::span<float> samples, Writing how) {
   HWY_DYNAMIC_DISPATCH(copy)
