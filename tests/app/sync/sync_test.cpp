@@ -162,9 +162,9 @@ TEST_CASE(
   send_all(url);
   shared_server().ask(database,
                       "ALTER TABLE touchtrial_bundles DROP CONSTRAINT arrived_whole; "
-                      "UPDATE touchtrial_bundles SET session = '\\x00' WHERE bundle = 3");
+                      "UPDATE touchtrial_bundles SET session = '\\x00' WHERE bundle = 2");
   check_refused(stations().run({"merge", url, "-o", stations().in("never.db")}), 3,
-                "bundle 3, sent by postgres");
+                "bundle 2, sent by postgres");
   CHECK_FALSE(fs::exists(stations().in("never.db")));
 }
 
