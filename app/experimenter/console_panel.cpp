@@ -20,8 +20,6 @@ constexpr PackedColour kInk = 0xFF202020;
 constexpr PackedColour kGround = 0xFFF6F4F2;
 constexpr float kMargin = 20.0F;
 constexpr float kButtonHeight = 44.0F;
-/// More than ImGui takes to give a field the keyboard.
-constexpr int kPicturesToSettle = 10;
 
 /// Light, like the participant's window.
 class Look {
@@ -222,8 +220,8 @@ void ConsolePanel::draw(Vec2 size, float density, bool may_write) {
   ImGui::End();
   // An action or answer of this picture may have begun another line.
   const ExperimenterView now = desk_.view();
-  if (now.questions != questions_) settling_ = kPicturesToSettle;
-  if (!may_write || now.question.kind != Kind::text) settling_ = 0;
+  if (now.questions != questions_) wants_keyboard_ = true;
+  if (!may_write || now.question.kind != Kind::text) wants_keyboard_ = false;
   is_writing_ = is_writing_ || is_settling();
 }
 
@@ -244,7 +242,7 @@ void ConsolePanel::draw_actions(const ExperimenterView& view, float density) {
 
 void ConsolePanel::draw_question(const ExperimenterView& view, float density, bool may_write) {
   if (std::exchange(questions_, view.questions) != view.questions) {
-    is_begun_ = true;
+    wants_keyboard_ = true;
     text_.fill('\0');
   }
   const ExperimenterQuestion& question = view.question;
@@ -288,18 +286,17 @@ bool ConsolePanel::draw_line(const ExperimenterQuestion& question, float density
   ImGui::PushID(static_cast<int>(questions_));
   // Room for the list of suggestions beside it.
   ImGui::SetNextItemWidth(question.choices.empty() ? -1.0F : -50.0F * density);
-  if (is_begun_ && may_write) ImGui::SetKeyboardFocusHere();
+  if (wants_keyboard_ && may_write) ImGui::SetKeyboardFocusHere();
   const bool is_ended =
       ImGui::InputText("##text", text_.data(), text_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
   is_writing_ = ImGui::IsItemActive();
-  settling_ = is_writing_ ? 0 : std::max(0, settling_ - 1);
+  if (is_writing_) wants_keyboard_ = false;
   if (!question.choices.empty()) {
     ImGui::SameLine();
     draw_suggestions(question, text_);
   }
   ImGui::PopID();
   ImGui::EndDisabled();
-  is_begun_ = false;
   // After the plane, the experimenter selects the field again: the next keys may be an answer.
   if (is_writing_ && !may_write) ImGui::SetWindowFocus(nullptr);
   is_writing_ = is_writing_ && may_write;

@@ -24,8 +24,8 @@ class ConsolePanel {
   void draw(Vec2 size, float density, bool may_write);
   /// Whether a field takes letters.
   [[nodiscard]] bool is_writing() const noexcept { return is_writing_; }
-  /// Whether a new field will take letters after a few pictures. Until then they have to wait.
-  [[nodiscard]] bool is_settling() const noexcept { return settling_ > 0; }
+  /// Whether a new field is about to take letters. Until then they have to wait.
+  [[nodiscard]] bool is_settling() const noexcept { return wants_keyboard_; }
 
  private:
   void draw_actions(const ExperimenterView& view, float density);
@@ -35,9 +35,8 @@ class ConsolePanel {
   [[nodiscard]] bool draw_line(const ExperimenterQuestion& question, float density, bool may_write);
 
   ExperimenterDesk& desk_;
-  bool is_begun_ = false;  ///< the field needs the keyboard focus
+  bool wants_keyboard_ = false;  ///< a new field, which ImGui has not made active yet
   bool is_writing_ = false;
-  int settling_ = 0;           ///< pictures in which a new field may become active
   std::size_t questions_ = 0;  ///< as of the view, when text_ was begun
   std::array<char, 501> text_{};
 };

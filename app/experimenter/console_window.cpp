@@ -375,7 +375,8 @@ void ConsoleWindow::end_drawing() {
 bool ConsoleWindow::wants_picture() const {
   const std::lock_guard lock(state_->mutex);
   if (state_->surface.width_px <= 0) return false;
-  return state_->frames_due > 0 || !state_->events.empty() || state_->picture_wanted;
+  return state_->frames_due > 0 || !state_->events.empty() || state_->picture_wanted ||
+         state_->panel.is_settling();
 }
 
 void ConsoleWindow::draw() {
