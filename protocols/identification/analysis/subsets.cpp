@@ -252,8 +252,8 @@ std::vector<SubsetAccuracy> robustness(const Outcomes& outcomes, int method) {
 
 namespace {
 
-double seconds_between(std::chrono::nanoseconds from, std::chrono::nanoseconds to) {
-  return std::chrono::duration<double>(to - from).count();
+double seconds(std::chrono::nanoseconds time) {
+  return std::chrono::duration<double>(time).count();
 }
 
 /// The reaction times of one class, in seconds.
@@ -262,8 +262,8 @@ struct Times {
   std::vector<double> from_contact;
 
   void add(const store::TrialRow& row) {
-    from_plane_on.push_back(seconds_between(row.presented_at, *row.answered_at));
-    if (row.contact_at) from_contact.push_back(seconds_between(*row.contact_at, *row.answered_at));
+    if (const auto time = row.reaction_time()) from_plane_on.push_back(seconds(*time));
+    if (const auto time = row.from_contact()) from_contact.push_back(seconds(*time));
   }
 };
 
