@@ -1,9 +1,11 @@
 #include "analysis/looks.hpp"
 
 #include "analysis/collection.hpp"
+#include "core/named.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 
@@ -168,17 +170,12 @@ std::set<int> of_other_kind(const store::StudyStore& store) {
 }  // namespace
 
 std::string name_of(LookKind kind) {
-  switch (kind) {
-    case LookKind::final:
-      return "final";
-    case LookKind::registered:
-      return "registered";
-    case LookKind::unregistered:
-      return "unregistered";
-    case LookKind::person:
-      break;
-  }
-  return "one participant";
+  using enum LookKind;
+  static constexpr auto kNames = std::to_array<Named<LookKind>>({{"final", final},
+                                                                 {"registered", registered},
+                                                                 {"unregistered", unregistered},
+                                                                 {"one participant", person}});
+  return std::string(name_in(kNames, kind));
 }
 
 LookRecord look_record(const store::StudyStore& store, const design::StudyKey& key) {

@@ -85,6 +85,7 @@ TrialOutcome outcome_of(const store::TrialRow& row, const SessionOutcome& sessio
   trial.group = session.group;
   trial.row = row;
   trial.stimulus = presentation.stimulus;
+  trial.gain_db = presentation.gain_db;
   trial.kind = presentation.kind;
   if (row.track && row.level && row.target) {
     trial.chosen = {*row.track, *row.level, *row.target};

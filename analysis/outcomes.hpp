@@ -28,6 +28,7 @@ struct TrialOutcome {
   std::string participant;
   store::TrialRow row;
   design::StimulusIndex stimulus;  ///< without meaning for a catch trial
+  double gain_db = 0.0;            ///< design::Presentation::gain_db
   design::PresentationKind kind = design::PresentationKind::scored;
   std::optional<design::ChosenLevel> chosen{};  ///< by an adaptive order
   bool scored = false;                          ///< by the schedule; not a lead-in or catch trial

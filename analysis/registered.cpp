@@ -2,10 +2,12 @@
 
 #include "analysis/statistics/group_sequential.hpp"
 #include "analysis/text_figures.hpp"
+#include "core/named.hpp"
 #include "core/text.hpp"
 #include "core/utc.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -35,17 +37,13 @@ int completed_participants(const Outcomes& outcomes) {
 }  // namespace
 
 std::string name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::supported:
-      return "supported";
-    case Verdict::not_supported:
-      return "not supported";
-    case Verdict::undecided:
-      return "undecided";
-    case Verdict::not_registered:
-      break;
-  }
-  return "not registered";
+  using enum Verdict;
+  static constexpr auto kNames =
+      std::to_array<Named<Verdict>>({{"supported", supported},
+                                     {"not supported", not_supported},
+                                     {"undecided", undecided},
+                                     {"not registered", not_registered}});
+  return std::string(name_in(kNames, verdict));
 }
 
 StudyCourse course_of(const Outcomes& outcomes, int analysed) {

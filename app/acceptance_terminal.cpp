@@ -106,7 +106,7 @@ AcceptanceTerminal::AcceptanceTerminal(const std::string& driver,
                                        const device::DeviceSettings& settings,
                                        device::Accelerometer* accelerometer)
     : accelerometer_(accelerometer),
-      opened_(driver, settings, {100.0, 100.0}),
+      opened_(driver, settings),
       limits_(limits_of(opened_.device(), settings.use_of(driver))),
       run_(opened_, with_motors(opened_.device()), limits_, device::kServoRateHz, false) {
   tell(

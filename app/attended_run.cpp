@@ -9,6 +9,7 @@
 #include "device/servo/servo_thread.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -36,16 +37,21 @@ constexpr int kAnswerPollMs = 100;
 /// A key that is held repeats sooner than this, even for the first time (660 ms by default in X).
 constexpr std::chrono::nanoseconds kFreshPress = 1s;
 
-class DiscardingSink final : public device::SampleSink {
- public:
-  void record(const device::ServoSample& /*sample*/) noexcept override {}
-};
+/// A window that is blocked for two seconds loses no sample.
+constexpr double kRingS = 2.0;
 
-class NoForce final : public device::ForceSource {
+/// For the window's history, and for whoever else wants the samples.
+class SharedSink final : public device::SampleSink {
  public:
-  [[nodiscard]] Vec3 force_n(const device::DeviceSample& /*sample*/) noexcept override {
-    return {};
+  SharedSink(device::SampleRing& ring, device::SampleSink* other) : ring_(ring), other_(other) {}
+  void record(const device::ServoSample& sample) noexcept override {
+    ring_.record(sample);
+    if (other_ != nullptr) other_->record(sample);
   }
+
+ private:
+  device::RingSink ring_;
+  device::SampleSink* other_;
 };
 
 device::ServoOptions options_for(const device::SafetyLimits& limits, double rate_hz) {
@@ -96,9 +102,9 @@ std::optional<std::string> attended_answer(const std::string& question) {
 }
 
 OpenedDevice::OpenedDevice(const std::string& driver, const device::DeviceSettings& settings,
-                           Vec2 plane_mm) {
-  if (driver == device::kMouseDriver) {
-    window_ = std::make_unique<PointerWindow>(exchange_, plane_mm);
+                           bool with_window) {
+  if (with_window) window_ = std::make_unique<ReadingsWindow>(exchange_);
+  if (with_window && driver == device::kMouseDriver) {
     device_ = std::make_unique<device::MouseDevice>(exchange_, clock_);
   } else {
     device_ = device::open_device(driver, settings);
@@ -107,16 +113,16 @@ OpenedDevice::OpenedDevice(const std::string& driver, const device::DeviceSettin
 
 OpenedDevice::~OpenedDevice() = default;
 
-void OpenedDevice::attend() {
+void OpenedDevice::attend(const LiveReadings& now, const ReadingsHistory& history) {
   if (window_) {
-    window_->draw_frame();
+    window_->draw(now, history);
   } else {
     std::this_thread::sleep_for(std::chrono::milliseconds(16));
   }
 }
 
 bool OpenedDevice::stop_asked() const {
-  return window_ && (window_->stop_asked() || window_->close_asked());
+  return window_ && window_->stop_asked();
 }
 
 AttendedRun::AttendedRun(OpenedDevice& opened, device::HapticDevice& device,
@@ -126,9 +132,13 @@ AttendedRun::AttendedRun(OpenedDevice& opened, device::HapticDevice& device,
       options_(options_for(limits, rate_hz)),
       max_force_n_(limits.max_force_n),
       recorder_(kRecordedS, rate_hz),
+      ring_(static_cast<std::size_t>(kRingS * rate_hz)),
+      history_(rate_hz),
+      shown_info_(device.info()),
       watchdog_(device, control_, heartbeat_, device::Watchdog::silence_for(device.info())),
       signals_(device, control_),
       on_terminal_(::isatty(STDERR_FILENO) != 0) {
+  if (&device != &opened.device()) shown_info_.workspace.reset();
   if (!keys) return;
   device::StopOnSignals::before_dying(TerminalKeys::restore);
   keys_.emplace();
@@ -157,15 +167,13 @@ std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
                                  .recorder = &recorder_,
                                  .heat = &heat_,
                                  .parameters = &parameters_};
+  SharedSink samples(ring_, sink);
   device::RunningServo running(thread_, control_, [&] {
-    DiscardingSink discarding;
     device::PacedClock clock(device::PacedClock::usual_spin(thread_.scheduling().policy));
-    report = device::run_servo(
-        device_, force, sink == nullptr ? static_cast<device::SampleSink&>(discarding) : *sink,
-        options_, clock, hooks);
+    report = device::run_servo(device_, force, samples, options_, clock, hooks);
   });
   while (running.runs()) {
-    opened_.attend();
+    opened_.attend(collect(phase), history_);
     take_keys();
     if (is_done && is_done()) control_.finish();
     show(phase);
@@ -258,6 +266,16 @@ void AttendedRun::show(const PhaseName& phase) {
   std::fflush(stderr);
   shown_at_ = now;
   shown_tick_ = newest.tick;
+}
+
+LiveReadings AttendedRun::collect(const PhaseName& phase) {
+  std::array<device::ServoSample, 256> samples;
+  while (const std::size_t count = ring_.pop(samples)) {
+    for (std::size_t i = 0; i < count; ++i) history_.add(samples[i]);
+  }
+  const device::ServoState& newest = state_.get();
+  history_.add_lateness(newest.lateness_us);
+  return {shown_info_, phase(newest.tick), newest, options_.rate_hz};
 }
 
 void AttendedRun::end_line() {

@@ -2,14 +2,16 @@
 /// a terminal: live numbers, keys, watchdog, signals.
 #pragma once
 
+#include "app/readings/history.hpp"
+#include "app/readings/readings_window.hpp"
 #include "app/terminal_keys.hpp"
-#include "app/windows/pointer_window.hpp"
 #include "device/device_settings.hpp"
 #include "device/haptic_device.hpp"
 #include "device/mouse/mouse_device.hpp"
 #include "device/platform/stop_signals.hpp"
 #include "device/safety/watchdog.hpp"
 #include "device/servo/flight_recorder.hpp"
+#include "device/servo/sample_ring.hpp"
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_clock.hpp"
 #include "device/servo/servo_thread.hpp"
@@ -23,29 +25,31 @@
 
 namespace touchtrial::app {
 
-/// A device of any driver of the registry; "mouse" comes with a PointerWindow. Belongs to the main
-/// thread, which must call `attend` repeatedly while a servo runs the device on another thread: a
-/// window that is not attended to counts as a hand that lets go.
+/// A device of any driver of the registry, with a window of its readings or without. Belongs to the
+/// main thread, which must call `attend` repeatedly while a servo runs the device on another
+/// thread: a window that is not attended to counts as a hand that lets go.
 class OpenedDevice {
  public:
-  /// \param plane_mm  sides of the plane that a window shows, > 0
-  /// \throws as open_device
-  /// \throws DeviceError if the device needs a window and none can be opened
-  OpenedDevice(const std::string& driver, const device::DeviceSettings& settings, Vec2 plane_mm);
+  /// \param with_window  whether to show one, which the device "mouse" needs
+  /// \throws as open_device; DeviceError if no window can be opened
+  OpenedDevice(const std::string& driver, const device::DeviceSettings& settings,
+               bool with_window = false);
   ~OpenedDevice();
   OpenedDevice(const OpenedDevice&) = delete;
   OpenedDevice& operator=(const OpenedDevice&) = delete;
 
   [[nodiscard]] device::HapticDevice& device() noexcept { return *device_; }
   /// Draws one picture of the window. Takes about 16 ms, with or without a window.
-  void attend();
+  void attend(const LiveReadings& now, const ReadingsHistory& history);
+  /// Null: there is none.
+  [[nodiscard]] ReadingsWindow* window() noexcept { return window_.get(); }
   /// Whether the person pressed the space bar in the window, or closed it.
   [[nodiscard]] bool stop_asked() const;
 
  private:
   device::PointerExchange exchange_;
   device::PacedClock clock_{device::PacedClock::Time{}};
-  std::unique_ptr<PointerWindow> window_;
+  std::unique_ptr<ReadingsWindow> window_;
   std::unique_ptr<device::HapticDevice> device_;
 };
 
@@ -64,6 +68,13 @@ enum class AttendedStop {
 /// \return nothing if a signal asked the program to end
 /// \throws UsageError at the end of the input
 [[nodiscard]] std::optional<std::string> attended_answer(const std::string& question);
+
+class NoForce final : public device::ForceSource {
+ public:
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& /*sample*/) noexcept override {
+    return {};
+  }
+};
 
 /// The time within which a person can home a device.
 inline constexpr double kReadyLimitS = 120.0;
@@ -118,6 +129,8 @@ class AttendedRun {
   void take_keys();
   void take_strength(char key);
   void show(const PhaseName& phase);
+  /// \return what the window shows now
+  [[nodiscard]] LiveReadings collect(const PhaseName& phase);
   void end_line();
 
   OpenedDevice& opened_;
@@ -130,6 +143,9 @@ class AttendedRun {
   device::MotorHeat heat_;
   std::atomic<std::int64_t> heartbeat_{0};
   device::FlightRecorder recorder_;
+  device::SampleRing ring_;  ///< from the servo to the history
+  ReadingsHistory history_;
+  device::DeviceInfo shown_info_;  ///< without a workspace where `device_` is placed
   device::ServoThread thread_;
   device::Watchdog watchdog_;
   device::StopOnSignals signals_;

@@ -2,6 +2,7 @@
 
 #include "app/console.hpp"
 #include "app/passphrases.hpp"
+#include "app/reference/pages.hpp"
 #include "app/study_inputs.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
@@ -9,6 +10,7 @@
 #include "protocols/design/protocol.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <string_view>
 #include <thread>
 
@@ -17,6 +19,9 @@
 
 namespace touchtrial::app {
 namespace {
+
+/// The group of commands that were put into none.
+constexpr const char* kParsersOwnGroup = "Subcommands";
 
 /// \param unwanted  text that a value must not contain
 CLI::Validator refusing(const std::string& unwanted, const std::string& message) {
@@ -43,37 +48,46 @@ std::pair<int, int> size_of(const std::string& text) {
   return size;
 }
 
+struct CommandGroup {
+  const char* name;
+  std::vector<void (*)(CLI::App&, Action&)> add;
+};
+
+/// As the help shows them.
+const std::vector<CommandGroup>& command_groups() {
+  static const std::vector<CommandGroup> groups = {
+      {"Design a study",
+       {add_new_command, add_examples_commands, add_stimuli_command, add_extract_command,
+        add_evaluate_command, add_paper_command, add_procedure_command, add_preview_command,
+        add_prepare_command, add_simulate_command, add_power_command, add_prereg_command,
+        add_plan_command}},
+      {"Run sessions",
+       {add_run_command, add_status_command, add_consent_command, add_people_commands,
+        add_screen_command}},
+      {"Look at results",
+       {add_study_end_commands, add_report_command, add_export_command, add_fit_command}},
+      {"Care for devices, keys and data",
+       {add_device_command, add_key_command, add_verify_command, add_sync_command,
+        add_merge_command, add_reference_command}}};
+  return groups;
+}
+
 }  // namespace
 
 void add_commands(CLI::App& program, Action& action) {
-  add_extract_command(program, action);
-  add_evaluate_command(program, action);
-  add_paper_command(program, action);
-  add_stimuli_command(program, action);
-  add_new_command(program, action);
-  add_examples_commands(program, action);
-  add_preview_command(program, action);
-  add_prepare_command(program, action);
-  add_prereg_command(program, action);
-  add_simulate_command(program, action);
-  add_plan_command(program, action);
-  add_key_command(program, action);
-  add_run_command(program, action);
-  add_consent_command(program, action);
-  add_status_command(program, action);
-  add_people_commands(program, action);
-  add_study_end_commands(program, action);
-  add_sync_command(program, action);
-  add_verify_command(program, action);
-  add_report_command(program, action);
-  add_export_command(program, action);
-  add_fit_command(program, action);
-  add_merge_command(program, action);
-  add_power_command(program, action);
-  add_procedure_command(program, action);
-  add_device_command(program, action);
-  add_screen_command(program, action);
-  add_reference_command(program, action);
+  program.formatter(std::make_shared<PageFormatter>());
+  program.footer(
+      "Start here:\n"
+      "  touchtrial demo          both experiments with simulated people\n"
+      "  touchtrial new           a study of your own\n"
+      "  touchtrial help COMMAND  more about a command");
+  for (const CommandGroup& group : command_groups()) {
+    for (const auto& add : group.add) add(program, action);
+    for (CLI::App* command : program.get_subcommands(
+             [](const CLI::App* one) { return one->get_group() == kParsersOwnGroup; })) {
+      command->group(group.name);
+    }
+  }
 }
 
 int run_command(const std::vector<std::string>& words) {
@@ -99,14 +113,7 @@ void add_study_argument(CLI::App& command, std::filesystem::path& study) {
 
 CLI::Option* add_database_argument(CLI::App& command, std::filesystem::path& database,
                                    const std::string& meaning) {
-  return command.add_option("DB", database, meaning)->required();
-}
-
-void add_study_place_argument(CLI::App& command, std::filesystem::path& place) {
-  add_database_argument(command, place, "Database of the study, or its postgresql:// address")
-      ->check(refusing("password=",
-                       "a password does not belong on the command line; write "
-                       "postgresql://USER@HOST/DATABASE, and put the password into ~/.pgpass"));
+  return command.add_option("DB", database, meaning)->required()->check(place_validator());
 }
 
 CLI::Option* add_accept_loss_option(CLI::App& command, std::string& reason) {
@@ -157,8 +164,8 @@ void add_on_option(CLI::App& command, std::string& model) {
 
 CLI::Validator place_validator() {
   return refusing("://",
-                  "is an address, not a file; sync writes to a study on a server, and report, "
-                  "export, verify and merge read one");
+                  "is an address, not a file; make a file of what is there with touchtrial merge "
+                  "ADDRESS -o all.db");
 }
 
 CLI::Option* add_driver_argument(CLI::App& command, const std::string& name, std::string& driver) {
@@ -181,7 +188,7 @@ void add_settings_option(CLI::App& command, std::filesystem::path& settings) {
 void add_window_options(CLI::App& command, int& monitor,
                         std::optional<std::pair<int, int>>& size_px,
                         const std::string& size_meaning) {
-  command.add_option("--monitor", monitor, "Monitor of the participant's window, from 1")
+  command.add_option("--monitor", monitor, "Monitor of the participant's window")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
   command.add_option_function<std::string>(

@@ -62,7 +62,7 @@ void add_key_command(CLI::App& program, Action& action);
 void add_key_check_command(CLI::App& keys, Action& action);
 /// exclude, replace, withdraw, note.
 void add_people_commands(CLI::App& program, Action& action);
-/// close, unblind, migrate.
+/// close, unblind.
 void add_study_end_commands(CLI::App& program, Action& action);
 void add_merge_command(CLI::App& program, Action& action);
 void add_power_command(CLI::App& program, Action& action);
@@ -76,9 +76,7 @@ void add_device_test_command(CLI::App& device, Action& action);
 void add_device_fit_command(CLI::App& device, Action& action);
 void add_device_accept_command(CLI::App& device, Action& action);
 void add_device_bring_up_command(CLI::App& device, Action& action);
-void add_device_monitor_command(CLI::App& device, Action& action);
 void add_device_conform_command(CLI::App& device, Action& action);
-void add_device_compensation_command(CLI::App& device, Action& action);
 
 /// \name Files
 /// Every variable must live as long as the command.
@@ -89,12 +87,9 @@ void add_device_compensation_command(CLI::App& device, Action& action);
 [[nodiscard]] std::vector<std::string> protocols_of_new_studies();
 /// STUDY, required.
 void add_study_argument(CLI::App& command, std::filesystem::path& study);
-/// DB, required: a database file.
+/// DB, required: a database file, and no address.
 CLI::Option* add_database_argument(CLI::App& command, std::filesystem::path& database,
                                    const std::string& meaning = "Database of the study");
-/// DB, required: a database file, or an address such as postgresql://HOST/NAME. Refuses passwords,
-/// which libpq's own notation may contain.
-void add_study_place_argument(CLI::App& command, std::filesystem::path& place);
 /// --key, see key_of_database; and --passphrase-file, see app/passphrases.hpp.
 CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key,
                             const std::string& meaning =

@@ -41,8 +41,6 @@ struct ConsentArguments {
   std::filesystem::path database;
   store::PersonalRecord record;
   std::string details;  ///< "-": read them from standard input
-  std::string refused;  ///< what earlier versions took from the command line
-  bool on_command_line = false;
   bool yes = false;
   bool show = false;
   bool list = false;
@@ -117,11 +115,6 @@ void read_details(store::PersonalRecord& record) {
 }
 
 int record_consent(const ConsentArguments& arguments) {
-  if (arguments.on_command_line) {
-    throw UsageError(
-        "consent: every user of this machine can read the command line in the list of programs; "
-        "give age, gender and contact with --details -, which asks for them");
-  }
   store::PersonalRecord record = arguments.record;
   if (record.participant.empty() || record.consent_version.empty()) {
     throw UsageError(
@@ -246,14 +239,7 @@ void add_consent_command(CLI::App& program, Action& action) {
                    "-: ask for age, gender and contact, or read them from standard input in lines "
                    "\"age: 34\"")
       ->check(CLI::IsMember({"-"}));
-  constexpr std::array kEarlierOptions = {"--age", "--gender", "--contact"};
-  for (const char* const option : kEarlierOptions) {
-    command->add_option(option, arguments->refused)->expected(0, 1)->group("");  // not in the help
-  }
   command->callback([=, &action] {
-    for (const char* const option : kEarlierOptions) {
-      arguments->on_command_line |= command->count(option) > 0;
-    }
     action = [=] {
       if (arguments->list) return list_consents(*arguments);
       return arguments->show ? show_consents(*arguments) : record_consent(*arguments);

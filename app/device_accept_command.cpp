@@ -53,54 +53,6 @@ struct AcceptArguments {
   bool json = false;
 };
 
-/// A number with its interval and unit, or "not measured".
-std::string measured_words(const std::optional<device::Measured>& measured, int digits,
-                           const char* unit, double factor = 1.0) {
-  if (!measured) return "not measured";
-  return fmt::format("{:.{}f} +- {:.{}f} {}", factor * measured->value, digits,
-                     factor * measured->error, digits, unit);
-}
-
-std::string acceptance_summary(const device::Certificate& certificate) {
-  std::string text;
-  if (!certificate.emulated.empty()) {
-    text += "REHEARSAL on an emulated device (" + certificate.emulated +
-            "): proves the program, not a device\n";
-  }
-  if (certificate.rest) {
-    text += fmt::format("at rest:      noise {:.4f} mm, drift {:.3f} mm\n",
-                        certificate.rest->noise_mm, certificate.rest->drift_mm);
-  }
-  text += "encoder step: " + measured_words(certificate.step_mm, 4, "mm") + "\n";
-  for (const device::AxisResult& axis : certificate.axes) {
-    text += fmt::format(
-        "axis {}:       delivered force {}; friction {}; mass {}; delay {}\n",
-        device::name_of(axis.axis), measured_words(axis.scale(), 1, "% of the command", 100.0),
-        measured_words(axis.friction_n, 3, "N"), measured_words(axis.mass_kg, 3, "kg"),
-        measured_words(axis.delay_ms, 1, "ms"));
-  }
-  if (certificate.wall) {
-    text += fmt::format(
-        "wall:         stable at {:.2f} N/mm{}; ended by {}\n", certificate.wall->stable_n_per_mm,
-        certificate.wall->oscillates_n_per_mm > 0.0
-            ? fmt::format(", swings at {:.2f} N/mm", certificate.wall->oscillates_n_per_mm)
-            : "",
-        certificate.wall->ended);
-  }
-  for (const device::SpectrumResult& spectrum : certificate.spectra) {
-    text += fmt::format("{}: {:.4f} m/s2 at the stylus\n", spectrum.felt, spectrum.all_m_s2());
-  }
-  for (const device::Observation& one : certificate.observed) {
-    text += one.what + ": " + one.saw + "\n";
-  }
-  if (!certificate.not_measured.empty()) text += "not measured:\n";
-  for (const device::NotMeasured& one : certificate.not_measured) {
-    text += "  " + one.what + ": " + one.why + "\n";
-  }
-  for (const std::string& failure : certificate.failures()) text += "FAILED: " + failure + "\n";
-  return text + (certificate.passed() ? "passed\n" : "FAILED\n");
-}
-
 /// A model's name as a part of a file's.
 std::string file_word(std::string name) {
   for (char& letter : name) {
@@ -243,9 +195,9 @@ int write_results(const AcceptArguments& arguments, const AcceptanceFiles& files
   if (arguments.json) {
     print(json);
   } else {
-    print(acceptance_summary(certificate) + fmt::format("{}: SHA-256 {}\n",
-                                                        files.certificate.string(),
-                                                        to_hex(sha256_of_file(files.certificate))));
+    print(acceptance_text(certificate, columns_of_output()) +
+          fmt::format("{}: SHA-256 {}\n", files.certificate.string(),
+                      to_hex(sha256_of_file(files.certificate))));
   }
   return certificate.passed() ? 0 : kRefused;
 }

@@ -229,10 +229,16 @@ analysis::Table spectra_table(const std::vector<device::SpectrumResult>& spectra
   return table;
 }
 
-analysis::Section results_of(const device::Acceptance& acceptance) {
+analysis::Section results_of(const device::Certificate& certificate) {
   analysis::Section section{"results", "Results", {}};
-  section.blocks.emplace_back(table_of_axes(acceptance.certificate));
-  section.blocks.emplace_back(device_figures(acceptance.certificate));
+  section.blocks.emplace_back(table_of_axes(certificate));
+  section.blocks.emplace_back(device_figures(certificate));
+  if (!certificate.spectra.empty()) section.blocks.emplace_back(spectra_table(certificate.spectra));
+  return section;
+}
+
+analysis::Section curves_of(const device::Acceptance& acceptance) {
+  analysis::Section section{"curves", "Curves", {}};
   add_lines(section, lines_picture({"friction",
                                     "Slow strokes: commanded force without the load over the "
                                     "handle's place. Half the height of a loop is friction.",
@@ -247,7 +253,6 @@ analysis::Section results_of(const device::Acceptance& acceptance) {
                            "Bend over delay, a line for each axis.", "delay, ms", "bend, mm"},
                           lines_of(acceptance.curves, &device::AxisCurves::by_delay)));
   const std::vector<device::SpectrumResult>& spectra = acceptance.certificate.spectra;
-  if (!spectra.empty()) section.blocks.emplace_back(spectra_table(spectra));
   add_lines(section, spectra_picture(spectra));
   constexpr std::size_t kSideBySide = 7;
   for (std::size_t at = 0; at < spectra.size(); at += kSideBySide) {
@@ -268,20 +273,17 @@ analysis::Section verdict_of(const device::Certificate& certificate) {
       failures.empty() ? "Passed." : "Failed."});
   if (!failures.empty()) section.blocks.emplace_back(analysis::Warnings{failures, "Why"});
   if (!certificate.not_measured.empty()) {
-    analysis::Definitions missing;
+    analysis::Warnings missing{{}, "Not measured"};
     for (const device::NotMeasured& one : certificate.not_measured) {
-      missing.entries.emplace_back(one.what, one.why);
+      missing.sentences.push_back(one.what + ": " + one.why);
     }
-    section.blocks.emplace_back(analysis::Subheading{"not-measured", "Not measured"});
     section.blocks.emplace_back(std::move(missing));
   }
   return section;
 }
 
-}  // namespace
-
-std::string acceptance_page(const device::Acceptance& acceptance) {
-  const device::Certificate& certificate = acceptance.certificate;
+/// Without its curves.
+analysis::Document document_of(const device::Certificate& certificate) {
   analysis::Document document;
   document.title = "Acceptance of " + certificate.driver +
                    (certificate.model.empty() ? "" : ", " + certificate.model);
@@ -297,9 +299,23 @@ std::string acceptance_page(const device::Acceptance& acceptance) {
                              {"made", utc_text(certificate.made.time_since_epoch())},
                              {"program", certificate.program}};
   document.about = "This certificate";
-  document.sections = {verdict_of(certificate), results_of(acceptance)};
+  document.sections = {verdict_of(certificate), results_of(certificate)};
   document.colophon = "The numbers are in the JSON file beside this page, which sessions read.";
+  return document;
+}
+
+}  // namespace
+
+std::string acceptance_page(const device::Acceptance& acceptance) {
+  analysis::Document document = document_of(acceptance.certificate);
+  if (analysis::Section curves = curves_of(acceptance); !curves.blocks.empty()) {
+    document.sections.push_back(std::move(curves));
+  }
   return analysis::page_html(document);
+}
+
+std::string acceptance_text(const device::Certificate& certificate, std::size_t width) {
+  return analysis::document_text(document_of(certificate), width);
 }
 
 }  // namespace touchtrial::app

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace touchtrial::app {
@@ -25,6 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kEndedEarly = 1;
+constexpr std::size_t kPrinted = 3;  ///< numbers of a finding; of more their count
 
 struct BringUpArguments {
   std::string program;  ///< what `--version` prints
@@ -47,69 +49,24 @@ device::DeviceSettings settings_of(const BringUpArguments& arguments) {
   return settings;
 }
 
-std::string step_lines(const device::BringUp& record) {
-  std::string text = "steps not done:";
-  bool any = false;
+std::string steps_line(const device::BringUp& record) {
+  std::vector<std::string> open;
   for (std::size_t i = 0; i < device::kBringUpSteps; ++i) {
     if (record.outcomes.at(i) == device::StepOutcome::done) continue;
-    text += (any ? ", " : " ") + std::string(name_of(static_cast<device::BringUpStep>(i))) + " (" +
-            std::string(name_of(record.outcomes.at(i))) + ")";
-    any = true;
+    open.push_back(fmt::format("{} ({})", name_of(static_cast<device::BringUpStep>(i)),
+                               name_of(record.outcomes.at(i))));
   }
-  return any ? text + "\n" : "";
+  return open.empty() ? "" : fmt::format("steps not done: {}\n", fmt::join(open, ", "));
 }
 
-std::string measured_lines(const device::BringUp& record) {
-  std::string text;
-  if (record.loop) {
-    text += fmt::format(
-        "loop: {:.1f} ticks in a second, {:.0f} new readings, longest gap {:.0f} ms; late p50 "
-        "{:.0f} "
-        "us, p99 {:.0f} us, worst {:.0f} us\n",
-        record.loop->rate_hz, record.loop->readings_hz, record.loop->longest_gap_ms,
-        record.loop->p50_us, record.loop->p99_us, record.loop->worst_us);
+std::string finding_line(const device::Finding& finding) {
+  std::string value = finding.word;
+  if (finding.numbers.size() > kPrinted) {
+    value = fmt::format("{} values", finding.numbers.size());
+  } else if (!finding.numbers.empty()) {
+    value = fmt::format("{:.4g} {}", fmt::join(finding.numbers, ", "), finding.unit);
   }
-  if (record.rest) {
-    text += fmt::format("rest: noise {:.4f} mm, drift {:.3f} mm\n", record.rest->noise_mm,
-                        record.rest->drift_mm);
-  }
-  if (record.step_mm) text += fmt::format("step: {:.4f} mm\n", record.step_mm->value);
-  for (const device::CarriedWay& way : record.ways) {
-    text += fmt::format("carried along {}: read {:+.1f}, {:+.1f}, {:+.1f} mm{}{}\n",
-                        device::name_of(way.axis), way.moved_mm.x, way.moved_mm.y, way.moved_mm.z,
-                        way.ruler_mm ? fmt::format(", ruler {:.0f} mm", *way.ruler_mm) : "",
-                        way.is_right() ? "" : ": WRONG");
-  }
-  for (const device::FeltPush& push : record.pushes) {
-    text += fmt::format("push {:+.1f} N along {}: felt {}{}\n", push.force_n,
-                        device::name_of(push.axis), name_of(push.felt),
-                        push.is_wrong() ? ": WRONG" : "");
-  }
-  if (record.reached) {
-    const device::Workspace& r = *record.reached;
-    text += fmt::format("reached: x {:.0f} to {:.0f}, y {:.0f} to {:.0f}, z {:.0f} to {:.0f} mm\n",
-                        r.least_mm.x, r.greatest_mm.x, r.least_mm.y, r.greatest_mm.y, r.least_mm.z,
-                        r.greatest_mm.z);
-  }
-  if (record.weight && record.weight->weight) {
-    const auto scale = record.weight->scale();
-    text += fmt::format("weight: delivers {:.0f} +- {:.0f} % of the command\n",
-                        100.0 * scale->value, 100.0 * scale->error);
-  }
-  if (record.wall) {
-    text +=
-        fmt::format("wall of {:.2f} N/mm: {}; {} ticks recorded\n", record.wall->stiffness_n_per_mm,
-                    record.wall->swung ? "swung" : "steady", record.wall->ms.size());
-  }
-  const auto silence = [&](const char* when, const std::optional<device::SilenceSeen>& seen) {
-    if (!seen) return;
-    text += fmt::format("force when {}: {}; the run ended as {}, {}\n", when, name_of(seen->force),
-                        seen->ended, seen->fault);
-  };
-  silence("the program stopped", record.program_silent);
-  silence("the cable was pulled", record.cable_silent);
-  for (const auto& [fact, answer] : record.answers) text += fact + ": " + answer + "\n";
-  return text;
+  return fmt::format("{}: {}: {}\n", name_of(finding.step), finding.name, value);
 }
 
 std::string identity_line(const device::BringUp& record) {
@@ -154,15 +111,22 @@ int read_file_of_bring_up(const BringUpArguments& arguments) {
   const Verdict verdict = verdict_of(record);
   if (arguments.json) {
     print(json_text(nlohmann::ordered_json{{"driver", record.driver},
+                                           {"stand_in", record.stand_in},
                                            {"ended", name_of(record.ended)},
                                            {"settled", ids_of(verdict.settled)},
                                            {"open", ids_of(verdict.open)}}));
-  } else {
-    print(identity_line(record) + "ended: " + std::string(name_of(record.ended)) +
-          (record.why.empty() ? "" : ": " + record.why) + "\n" + step_lines(record) +
-          measured_lines(record) + facts_text(verdict.settled, "settled by this file") +
-          facts_text(verdict.open, "still unverified"));
+    return 0;
   }
+  std::string text = identity_line(record);
+  if (!record.stand_in.empty()) {
+    text += "STAND-IN, NO HARDWARE: " + record.stand_in + "; it settles no fact\n";
+  }
+  text += fmt::format("ended: {}{}{}\n", name_of(record.ended), record.why.empty() ? "" : ": ",
+                      record.why);
+  text += steps_line(record);
+  for (const device::Finding& finding : record.findings) text += finding_line(finding);
+  print(text + facts_text(verdict.settled, "settled by this file") +
+        facts_text(verdict.open, "still unverified"));
   return 0;
 }
 
@@ -193,8 +157,10 @@ int lead(const BringUpArguments& arguments, const fs::path& out) {
     std::fprintf(stderr, "what there is so far: %s\n", out.string().c_str());
   };
   try {
-    AcceptanceTerminal terminal(arguments.driver, settings_of(arguments));
+    const device::DeviceSettings settings = settings_of(arguments);
+    AcceptanceTerminal terminal(arguments.driver, settings);
     record = device::bring_up_of(terminal.info());
+    record->stand_in = device::stand_in_of(terminal.info(), settings);
     record->program = arguments.program;
     record->scheduling = std::string(device::name_of(terminal.scheduling().policy));
     record->memory_locked = terminal.scheduling().memory_locked;
@@ -212,7 +178,7 @@ int lead(const BringUpArguments& arguments, const fs::path& out) {
     keep("the input ended");
     throw;
   }
-  print("send this file to the project: " + out.string() + "\n" + step_lines(*record));
+  print("send this file to the project: " + out.string() + "\n" + steps_line(*record));
   return record->ended == device::BringUpEnd::complete ? 0 : kEndedEarly;
 }
 

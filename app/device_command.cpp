@@ -209,9 +209,7 @@ void add_device_models_command(CLI::App& device, Action& action) {
 
 void add_device_command(CLI::App& program, Action& action) {
   CLI::App* device = program.add_subcommand(
-      "device",
-      "Force-feedback devices: list, test, calibrate and monitor them; fit a study; check a "
-      "driver");
+      "device", "Force-feedback devices: list, test and accept them; fit a study; check a driver");
   device->require_subcommand(1);
   add_device_list_command(*device, action);
   add_device_initialise_command(*device, action);
@@ -219,9 +217,7 @@ void add_device_command(CLI::App& program, Action& action) {
   add_device_fit_command(*device, action);
   add_device_bring_up_command(*device, action);
   add_device_accept_command(*device, action);
-  add_device_monitor_command(*device, action);
   add_device_models_command(*device, action);
-  add_device_compensation_command(*device, action);
   add_device_conform_command(*device, action);
 }
 

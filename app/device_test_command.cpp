@@ -1,4 +1,5 @@
-// device test: a person feels a plain wall, and then a texture.
+// device test: live readings of a device while a person feels a plain wall, and then a texture; or
+// without any force.
 #include "app/attended_run.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
@@ -7,16 +8,19 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "device/haptic_device.hpp"
+#include "device/mouse/mouse_device.hpp"
 #include "device/platform/realtime.hpp"
 #include "device/registry.hpp"
 #include "device/servo/force_sequence.hpp"
 #include "device/servo/servo.hpp"
 #include "device/workspace_fit.hpp"
+#include "engine/pictures/colour_image.hpp"
 #include "protocols/session/exploration.hpp"
 
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,7 +35,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct TestPhase {
-  std::string name;  ///< "wall" or "texture"
+  std::string name;  ///< "watch", "wall" or "texture"
   device::ForceSequence::Part felt;
 };
 
@@ -162,27 +166,36 @@ constexpr double kBlendS = 0.2;
 constexpr int kPlacedSidePx = 200;
 /// 100 mm, for devices whose plane may have any size.
 constexpr int kFreeSidePx = 500;
+constexpr double kTestS = 30.0;
+/// Longer than anybody watches.
+constexpr double kWatchS = 7.0 * 86'400.0;
 
 struct TestArguments {
   std::string driver;
   fs::path settings;
-  double seconds = 30.0;
+  double seconds = 0.0;  ///< 0: kTestS or kWatchS
   double rate_hz = device::kServoRateHz;
+  bool watch = false;
   bool wall_only = false;
+  bool window = false;
+  fs::path screenshot;
   bool json = false;
   fs::path fault_record;
 };
 
-/// The device for the servo: placed, if it has a frame of its own.
+/// The device for the servo: placed, if it has a frame of its own and is to be felt.
 class DeviceForTest {
  public:
   DeviceForTest(const TestArguments& arguments, const device::DeviceSettings& settings)
       : use_(settings.use_of(arguments.driver)),
-        opened_(arguments.driver, settings, {kFreeSideMm, kFreeSideMm}),
-        texture_(opened_.device().info().workspace ? kPlacedSidePx : kFreeSidePx,
-                 opened_.device().info().max_stiffness_n_per_mm) {
-    const device::WorkspaceFit fit =
-        device::fit_plane(texture_.plane(), opened_.device().info().workspace, use_);
+        opened_(arguments.driver, settings,
+                arguments.window || arguments.driver == device::kMouseDriver) {
+    ReadingsWindow* const window = opened_.window();
+    if (window != nullptr && !arguments.screenshot.empty()) window->window().keep_pictures();
+    if (arguments.watch) return;
+    const device::DeviceInfo info = opened_.device().info();
+    texture_.emplace(info.workspace ? kPlacedSidePx : kFreeSidePx, info.max_stiffness_n_per_mm);
+    const device::WorkspaceFit fit = device::fit_plane(texture_->plane(), info.workspace, use_);
     if (fit.placement) placed_.emplace(opened_.device(), *fit.placement);
   }
 
@@ -190,23 +203,39 @@ class DeviceForTest {
   [[nodiscard]] device::HapticDevice& device() noexcept {
     return placed_ ? static_cast<device::HapticDevice&>(*placed_) : opened_.device();
   }
-  [[nodiscard]] const TestTexture& texture() const noexcept { return texture_; }
+  [[nodiscard]] const TestTexture& texture() const { return texture_.value(); }
   [[nodiscard]] device::SafetyLimits limits() const noexcept {
     return device::stricter_of({}, use_.limits);
   }
 
  private:
-  static constexpr double kFreeSideMm = kFreeSidePx * PlaneGeometry{}.pitch_mm;
-
   device::DeviceUse use_;
   OpenedDevice opened_;
-  TestTexture texture_;
+  std::optional<TestTexture> texture_;
   std::optional<device::PlacedDevice> placed_;
 };
 
 fs::path record_path(const TestArguments& arguments) {
   return arguments.fault_record.empty() ? fs::path("device-test-" + arguments.driver + "-fault.csv")
                                         : arguments.fault_record;
+}
+
+constexpr const char* kKeys =
+    "q ends, space releases the force, Ctrl-C halts at once; shown: time, position ({}), force, "
+    "ticks "
+    "per second, lateness\n";
+
+/// One run without force, in the device's own frame, ready or not.
+void watch(const TestArguments& arguments, device::HapticDevice& device, AttendedRun& run,
+           DeviceTest& test) {
+  const std::string advice = readiness_in_words(device.readiness());
+  if (!advice.empty()) std::fprintf(stderr, "%s: %s\n", arguments.driver.c_str(), advice.c_str());
+  std::fputs(fmt::format(kKeys, "right, up, towards you").c_str(), stderr);
+  NoForce none;
+  device::ForceSequence counted(none, none, std::numeric_limits<std::int64_t>::max(), 1);
+  const double seconds = arguments.seconds > 0.0 ? arguments.seconds : kWatchS;
+  test.run = run.run([](std::int64_t) { return "watch"; }, counted, seconds, {}, &counted);
+  if (test.run) test.phases.push_back({"watch", counted.first()});
 }
 
 /// One run: the wall, and then the texture unless only the wall is wanted.
@@ -216,18 +245,17 @@ void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun&
   const engine::RenderingModel texture = shown.texture();
   session::ModelForce first(wall);
   session::ModelForce second(texture);
-  const double change_s = arguments.seconds * (arguments.wall_only ? 2.0 : 0.5);
+  const double seconds = arguments.seconds > 0.0 ? arguments.seconds : kTestS;
+  const double change_s = seconds * (arguments.wall_only ? 2.0 : 0.5);
   device::ForceSequence sequence(first, second, std::llround(change_s * arguments.rate_hz),
                                  std::llround(kBlendS * arguments.rate_hz));
   const auto phase = [&](std::int64_t tick) {
     return sequence.is_second(tick) ? "texture" : "wall";
   };
   std::fputs(
-      "q ends the test, space releases the force, - and + change its strength, Ctrl-C halts at "
-      "once\n"
-      "shown: time, position (right, down, off the plane), force, ticks per second, lateness\n",
+      (fmt::format(kKeys, "right, down, off the plane") + "- and + change the strength\n").c_str(),
       stderr);
-  test.run = run.run(phase, sequence, arguments.seconds, {}, &sequence);
+  test.run = run.run(phase, sequence, seconds, {}, &sequence);
   if (!test.run) return;
   test.phases.push_back({"wall", sequence.first()});
   if (sequence.second().ticks > 0) test.phases.push_back({"texture", sequence.second()});
@@ -243,24 +271,33 @@ int outcome_of(const DeviceTest& test, const AttendedRun& run) {
   }
   if (!test.run || test.run->end != device::ServoEnd::fault) return 0;
   throw DeviceError(one_line(test.device.name + ": fault in the phase '" + test.phases.back().name +
-                             "': " + fault_names(*test.run) + "; the last seconds are in " +
-                             test.fault_record.string()));
+                             "': " + fault_names(*test.run) + ": " + fault_in_words(*test.run) +
+                             "; the last seconds are in " + test.fault_record.string()));
 }
 
 int test_device(const TestArguments& arguments) {
   const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   DeviceForTest tested(arguments, settings);
   AttendedRun run(tested.opened(), tested.device(), tested.limits(), arguments.rate_hz);
-  run.wait_until_ready(kReadyLimitS);
-  run.let_choose_strength();
   DeviceTest test;
-  test.device = tested.device().info();
-  feel(arguments, tested.texture(), run, test);
+  if (arguments.watch) {
+    test.device = tested.device().info();
+    watch(arguments, tested.device(), run, test);
+  } else {
+    run.wait_until_ready(kReadyLimitS);
+    run.let_choose_strength();
+    test.device = tested.device().info();
+    feel(arguments, tested.texture(), run, test);
+  }
   test.scheduling = run.scheduling();
   test.quit = run.stop() == AttendedStop::quit;
   if (test.run && test.run->end == device::ServoEnd::fault && run.stop() != AttendedStop::signal) {
     test.fault_record = record_path(arguments);
     replace_file(test.fault_record, run.flight_record());
+  }
+  if (ReadingsWindow* const window = tested.opened().window();
+      window != nullptr && test.run && !arguments.screenshot.empty()) {
+    replace_file(arguments.screenshot, engine::png_bytes(window->window().picture()));
   }
   print(arguments.json ? test_json(test) : test_text(test));
   return outcome_of(test, run);
@@ -271,14 +308,24 @@ int test_device(const TestArguments& arguments) {
 void add_device_test_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<TestArguments>();
   CLI::App* command = device.add_subcommand(
-      "test", "Try a device: homing, a plain wall, a texture; q stops, space releases the force");
+      "test",
+      "Show a device's live readings while you feel a plain wall and a texture, or, with --watch, "
+      "without force");
   add_driver_argument(*command, "NAME", arguments->driver)->required();
   add_settings_option(*command, arguments->settings);
-  command->add_option("--seconds", arguments->seconds, "Duration of wall and texture together, s")
-      ->check(finite_range(0.1, 3600.0))
-      ->capture_default_str();
+  command
+      ->add_option("--seconds", arguments->seconds,
+                   "Duration, s (default: 30 for wall and texture together; --watch: until q)")
+      ->check(finite_range(0.1, 3600.0));
+  CLI::Option* watch =
+      command->add_flag("--watch", arguments->watch, "Readings alone, in the device's own frame");
   add_rate_option(*command, arguments->rate_hz);
-  command->add_flag("--wall-only", arguments->wall_only, "No texture");
+  command->add_flag("--wall-only", arguments->wall_only, "No texture")->excludes(watch);
+  CLI::Option* window = command->add_flag("--window", arguments->window,
+                                          "Graphs in a window, which the device mouse always has");
+  command
+      ->add_option("--screenshot", arguments->screenshot, "Write the window's last picture as PNG")
+      ->needs(window);
   add_json_flag(*command, arguments->json);
   command->add_option("--fault-record", arguments->fault_record,
                       "CSV file for the last seconds before a fault (default: "

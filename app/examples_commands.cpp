@@ -81,9 +81,7 @@ void add_examples_commands(CLI::App& program, Action& action) {
 
   auto arguments = std::make_shared<DemoArguments>();
   CLI::App* demo = program.add_subcommand(
-      "demo",
-      "Run participants who are simulated on a modelled 3D Systems Touch through both "
-      "experiments, and print and write their reports");
+      "demo", "Run both experiments with simulated people on a modelled Touch, and write reports");
   demo->add_option("FOLDER", arguments->folder, "New folder for studies, databases and reports")
       ->capture_default_str();
   demo->add_option("--participants", arguments->participants,

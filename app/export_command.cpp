@@ -8,8 +8,6 @@
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
-#include "protocols/collect/collect.hpp"
-#include "protocols/collect/server_address.hpp"
 #include "protocols/store/personal_data.hpp"
 #include "protocols/store/study_store.hpp"
 
@@ -47,11 +45,6 @@ void require_fitting(const ExportArguments& arguments) {
   if (for_bids && arguments.format != "bids") {
     throw UsageError(
         "--traces, --with-stimuli, --with-database and --institution belong to --format bids");
-  }
-  if (arguments.with_database && collect::is_address(arguments.database.string())) {
-    throw UsageError(
-        "--with-database: the study is on a server; make a file of it with `touchtrial merge`, and "
-        "export that");
   }
   const bool for_datasets =
       !dataset.authors.empty() || !dataset.license.empty() || arguments.with_texts;
@@ -149,7 +142,8 @@ std::vector<fs::path> export_all(const ExportArguments& arguments, const store::
 
 int export_study(const ExportArguments& arguments) {
   require_fitting(arguments);
-  const store::StudyStore store = collect::open_study(arguments.database.string());
+  const store::StudyStore store =
+      store::StudyStore::open(arguments.database, store::StudyStore::Access::read_only);
   const std::vector<fs::path> files = arguments.safety ? export_safety_record(arguments, store)
                                       : arguments.participant.empty()
                                           ? export_all(arguments, store)
@@ -180,7 +174,7 @@ void add_dataset_options(CLI::App& command, ExportArguments& arguments) {
 void add_export_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = program.add_subcommand("export", "Write a study's data for other programs");
-  add_study_place_argument(*command, arguments->database);
+  add_database_argument(*command, arguments->database);
   CLI::Option* format = command->add_option("--format", arguments->format, "What to write");
   format->check(CLI::IsMember({"csv", "json", "bids", "psych-ds", "r", "events"}))
       ->capture_default_str();

@@ -3,10 +3,10 @@
 #include "app/commit.hpp"
 #include "app/console.hpp"
 #include "app/passphrases.hpp"
+#include "app/reference/pages.hpp"
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
 #include "core/version.hpp"
-#include "engine/fourier/planning.hpp"
 #include "protocols/registration/registration.hpp"
 #include "protocols/store/damage.hpp"
 
@@ -14,6 +14,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iterator>
 #include <memory>
 #include <new>
 #include <sstream>
@@ -61,40 +62,22 @@ void set_up_log() {
   spdlog::set_default_logger(logger);
 }
 
-/// What is wrong with the first word if it should be a command and is not; else empty.
-std::string unknown_command(const CLI::App& program, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-' || argv[1][0] == '\0') return "";
-  std::vector<std::string> names;
-  for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
-  const std::vector<std::string_view> known(names.begin(), names.end());
-  if (std::find(known.begin(), known.end(), argv[1]) != known.end()) return "";
-  const auto nearest = nearest_name(argv[1], known);
-  return std::string(argv[1]) + ": is not a command; " +
-         (nearest ? "did you mean " + std::string(*nearest) + "?" : "see touchtrial --help");
-}
-
-/// The command that was parsed so far, for instance "touchtrial stimuli import".
-std::string command_so_far(const CLI::App& program) {
-  std::string words = program.get_name();
-  for (auto commands = program.get_subcommands(); !commands.empty();
-       commands = commands.front()->get_subcommands()) {
-    words += " " + commands.front()->get_name();
-  }
-  return words;
+/// The command that was parsed so far.
+const CLI::App& command_so_far(const CLI::App& program) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  return *command;
 }
 
 /// What is wrong with the first option that the command does not have, if one of its own is near;
 /// else empty. A missing option is often a misspelt one.
-std::string misspelt_option(const CLI::App& program) {
-  const CLI::App* command = &program;
-  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+std::string misspelt_option(const CLI::App& command) {
   std::vector<std::string> names;
-  for (const CLI::Option* option : command->get_options()) {
-    if (option->get_group().empty()) continue;  // not in the help
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const CLI::Option* option : options_of(command)) {
+    if (option->nonpositional()) std::ranges::move(names_of(*option), std::back_inserter(names));
   }
   const std::vector<std::string_view> known(names.begin(), names.end());
-  for (const std::string& word : command->remaining()) {
+  for (const std::string& word : command.remaining()) {
     const std::string given = word.substr(0, word.find('='));
     if (!given.starts_with("--")) continue;
     if (const auto nearest = nearest_name(given, known)) {
@@ -134,15 +117,14 @@ int parse_and_run(int argc, char** argv) {
   set_up_log();
   registration::register_protocols();
   answer_for_passphrases();
-  engine::use_measured_plans(engine::user_cache_folder());
   CLI::App program("A psychophysics runner for textures that are felt.", "touchtrial");
   program.set_version_flag("--version", version_line());
   program.require_subcommand(1);
   program.fallthrough(false);
   Action action;
   add_commands(program, action);
-  const std::string unknown = unknown_command(program, argc, argv);
-  if (!unknown.empty()) return complain(kBadInput, unknown);
+  const bool has_command = argc > 1 && argv[1][0] != '-' && argv[1][0] != '\0';
+  if (has_command) static_cast<void>(command_named(program, argv[1]));
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -151,9 +133,10 @@ int parse_and_run(int argc, char** argv) {
     print(text.str());
     return code;
   } catch (const CLI::ParseError& error) {
-    const std::string misspelt = misspelt_option(program);
+    const CLI::App& command = command_so_far(program);
+    const std::string misspelt = misspelt_option(command);
     return complain(kBadInput, (misspelt.empty() ? error.what() : misspelt) + "; see " +
-                                   command_so_far(program) + " --help");
+                                   words_of(command) + " --help");
   }
   return action();
 }

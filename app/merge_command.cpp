@@ -5,9 +5,7 @@
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/collect/collect.hpp"
-#include "protocols/collect/server_address.hpp"
-#include "protocols/collect/stations.hpp"
+#include "protocols/collect/bundle_table.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/personal_data.hpp"
@@ -45,10 +43,11 @@ collect::Stations stations_of(const std::vector<fs::path>& databases) {
   collect::Stations stations;
   for (const fs::path& database : databases) {
     const std::string where = database.string();
-    const bool is_on_server = collect::is_address(where);
+    // What is no file name may hold a password, and goes where no message repeats it.
+    const bool is_on_server = where.find("://") != std::string::npos;
     if (!is_on_server) require_head_beside(database);
     collect::Stations those = is_on_server
-                                  ? collect::stations_of_server(collect::ServerAddress(where))
+                                  ? collect::stations_of_table(collect::open_bundle_table(where))
                                   : collect::stations_of_file(database);
     for (auto& station : those) stations.push_back(std::move(station));
   }
@@ -113,21 +112,6 @@ std::optional<design::StudyKey> key_to_write(const MergeArguments& arguments,
   return key;
 }
 
-void warn_of(const collect::CollectReport& report) {
-  for (const collect::SessionLeftOut& session : report.left_out) {
-    spdlog::warn(
-        "{}", one_line(fmt::format(
-                  "{}: session {} (participant {}) {}", session.station, session.session,
-                  session.participant,
-                  session.cut_short ? "was replaced or withdrawn before it ended: it cannot be "
-                                      "continued, and is not in the merged study"
-                                    : "has not ended and is left out; merge again when it has")));
-  }
-  for (const std::string& name : report.superfluous) {
-    spdlog::warn("{}", one_line(name + ": has no finished session that the others do not have"));
-  }
-}
-
 std::string summary_of(const MergeArguments& arguments, const collect::CollectReport& report,
                        std::size_t consents, bool key) {
   const std::string key_path = key_path_for(arguments.target, {}).string();
@@ -166,7 +150,11 @@ int merge(const MergeArguments& arguments) {
   const std::optional<design::StudyKey> key = key_to_write(arguments, stations);
   const collect::CollectReport report =
       collect::collect_into_file(std::move(stations), arguments.target, progress_bar("merging"));
-  warn_of(report);
+  for (const collect::SessionLeftOut& session : report.left_out)
+    spdlog::warn("{}", session.words());
+  for (const std::string& name : report.superfluous) {
+    spdlog::warn("{}", one_line(name + ": has no finished session that the others do not have"));
+  }
   if (key) design::save_study_key(key_path_for(arguments.target, {}), *key);
   print(summary_of(arguments, report, merge_consents(arguments), key.has_value()));
   return 0;

@@ -2,6 +2,7 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/made_folder.hpp"
+#include "app/new_study_template.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
@@ -310,137 +311,6 @@ void add_practice(NewStudy& study, int size_px) {
   if (study.practice.size() < 2) study.practice.clear();
 }
 
-constexpr const char* kStudyText =
-    R"(// Written by `touchtrial new`. Change what you like until the first participant comes, and run
-// `touchtrial prepare` again. Every key, with its range and default: docs/study-file.md. A key that
-// is left out has its default. Comments mean nothing to the program.
-{
-  // Name in tables and file names.
-  "study": {name},
-  // The participant's task.
-  "protocol": {protocol},
-  // The textures to tell apart: a label, and pictures of one size. Of several pictures of a texture
-  // each presentation takes the next.
-  "classes": [
-    {classes}
-  ],
-  // How a texture is extracted from its picture: docs/method.md.
-  "methods": [
-    {methods}
-  ],
-  // How a texture becomes force.
-  "rendering": {
-    // "paper": the model of the source paper. "surface": no closed path of the hand gains energy.
-    "model": "paper",
-{device}    // Size of a picture's pixel on the plane, mm.
-    "pitch_mm": 0.2,
-    // "budget": forces as strong as the plane's stiffness allows, in one scale for all textures.
-    "gains": "budget",
-    // "rms": all stimuli equally strong, so that strength alone tells nothing. "none": as they are.
-    "equalise": {equalise},
-    // No force is larger, N. The device's own limit holds as well.
-    "max_force_n": 3.3
-  },
-  // What a participant feels, and how often.
-  "trials": {
-    // Scored presentations of each texture with each method.
-    "repeats": 5,
-    // "shuffled": every order is equally likely. Others: docs/study-file.md, "Orders".
-    "order": "shuffled",
-    // "mixed": the methods in random turns. "by-method": one after the other.
-    "blocks": "mixed",
-    // The longest exploration, s. Then "fade": the force fades, and the participant still answers;
-    // or "no-response": the trial ends without an answer and counts as wrong.
-    "explore_limit_s": 60,
-    "on_timeout": "fade",
-    // Presentations in a practice round. 0: no practice.
-    "practice": {practice_trials},
-    // Trials between breaks. 0: no breaks.
-    "break_every": 10,
-    // Presentations of a plane without texture among the others, not scored.
-    "catch": 0
-  },
-{practice}{visits}{groups}  // What a participant reads and is asked.
-  "session": {
-    // Language of all that the participant reads.
-    "language": {language},
-    // Pages of instructions of your own, by language: {"en": ["first page", "second page"]}.
-    // Empty: the program's.
-    "instructions": {},
-    // "curtain": hand and device are hidden, pictures are visible. "blindfold": answers are spoken.
-    "sight": "curtain",
-    // Noise in the headphones that covers the device's sound.
-    "masking": {"wanted": true, "level_dbfs": -30},
-    // Whether to ask the handedness inventory, and the program's closing questions.
-    "handedness": true,
-    "closing": true,
-    // Your own closing questions, such as {"id": "age", "kind": "number", "text": {"en": "Age?"}}.
-    "closing_questions": [],
-    // Levels of confidence to choose from with each answer, 2 to 9. 0: not asked.
-    "confidence": 0,
-    // What to tick before a session, in addition to the program's list.
-    "day_sheet": [],
-    // Version of the consent form, and number of the ethics committee's approval.
-    "consent_version": {consent},
-    "ethics_number": ""
-  },
-  // What is deposited before the first participant; `touchtrial prereg` writes the page. First for
-  // readers, then the same for the program, which holds its reports against it.
-  "registration": {
-    "hypothesis": {hypothesis},
-    "participants": {people},
-    "stopping_rule": {stopping_rule},
-    "exclusions": "A session is left out if it was stopped early or the participant withdraws. Trials that do not meet the validity rule are analysed with and without them.",
-    "primary_test": {primary_test},
-{analysis}    "alpha": 0.05,
-    // The smallest value worth having.
-    "smallest_effect": {effect},
-    // Numbers of participants at which outcomes are looked at before the end.
-    "looks": [],
-    // Why a session is left out, besides that it was stopped or its participant withdrew.
-    "exclusion_rules": {"deviations": []}
-  },
-  // Neither participant nor experimenter knows what is presented.
-  "blinding": "double",
-  // Decides simulations alone, never what people get.
-  "seed": {seed}
-}
-)";
-
-constexpr const char* kDeviceText =
-    R"(    // The device that the study is for: levels are stated for it, and simulated hands hold it.
-    "device": {name},
-)";
-
-constexpr const char* kNoDeviceText =
-    R"(    // No "device" is named: simulated hands hold an ideal one, which nobody sells, and so no
-    // simulated accuracy or number of participants holds for a real one.
-)";
-
-constexpr const char* kPracticeText =
-    R"(  // Textures for learning the task; none of them is in the study.
-  "practice": {
-    "classes": [
-      {practice_classes}
-    ],
-    // Right answers of a round that end practice, and the largest number of rounds.
-    "criterion": 4,
-    "rounds": 2
-  },
-)";
-
-constexpr const char* kVisitsText =
-    R"(  // How often each participant comes, and the least days from one visit to the next. "most_days":
-  // after which a visit is late. "methods": "divided" presents as many of the methods at each visit.
-  "visits": {"count": {count}, "least_days": {least_days}},
-)";
-
-constexpr const char* kGroupsText =
-    R"(  // Into which participants are dealt at random. "open": whether the experimenter knows who is in
-  // which; otherwise the holder of the key sees it with `touchtrial plan --groups`.
-  "groups": {"labels": {labels}, "open": false},
-)";
-
 /// The list's entries, one a line.
 std::string lines_of(const Json& list, const std::string& indent) {
   std::string text;
@@ -450,18 +320,38 @@ std::string lines_of(const Json& list, const std::string& indent) {
 
 using Fillings = std::map<std::string, std::string, std::less<>>;
 
-/// \param text  with names in braces, each of which gets its filling
-std::string filled_in(std::string_view text, const Fillings& fillings) {
+/// A line of the template with its fillings in place of their names in braces.
+std::string filled_line(std::string_view line, const Fillings& fillings) {
   std::string filled;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = text[at] == '{' ? text.find('}', at) : text.npos;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t end = line[at] == '{' ? line.find('}', at) : line.npos;
     const auto found =
-        end == text.npos ? fillings.end() : fillings.find(text.substr(at + 1, end - at - 1));
+        end == line.npos ? fillings.end() : fillings.find(line.substr(at + 1, end - at - 1));
     if (found == fillings.end()) {
-      filled += text[at++];
+      filled += line[at++];
     } else {
       filled += found->second;
       at = end + 1;
+    }
+  }
+  return filled + "\n";
+}
+
+/// The template of new_study.json.in. Lines between "#if NAME" and "#else" or "#end" stand if NAME
+/// has a filling, those between "#else" and "#end" if it has none.
+std::string filled_in(const std::string& text, const Fillings& fillings) {
+  std::string filled;
+  std::istringstream lines(text);
+  bool stands = true;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("#if ")) {
+      stands = fillings.contains(std::string_view(line).substr(4));
+    } else if (line == "#else") {
+      stands = !stands;
+    } else if (line == "#end") {
+      stands = true;
+    } else if (stands) {
+      filled += filled_line(line, fillings);
     }
   }
   return filled;
@@ -471,88 +361,38 @@ std::string in_json(const std::string& text) {
   return Json(text).dump();
 }
 
-/// What is about the question that decides.
-Fillings question_fillings(const NewArguments& arguments, std::size_t classes) {
+/// The share of right answers, or of a difference of methods, that is worth having.
+double effect_of(const NewArguments& arguments, std::size_t classes) {
   const double points = *number_in<double>(arguments.answers.at("--worth"));
-  if (methods_of(arguments.answers) > 1) {
-    return {
-        {"methods",
-         "{\"name\": \"adaptive\", \"radius\": 2},\n"
-         "    {\"name\": \"tv-gabor\", \"lambda\": 0.01}"},
-        {"equalise", "\"rms\""},
-        {"hypothesis",
-         in_json("Participants name textures of the method adaptive more often correctly than "
-                 "those of tv-gabor.")},
-        {"primary_test",
-         in_json(fmt::format("Difference of the shares of correct answers between the two "
-                             "methods within participants, two-sided exact sign-flip "
-                             "permutation test, alpha 0.05, led by the 95 % t interval of "
-                             "their mean. {:g} points are the smallest difference worth having.",
-                             points))},
-        {"analysis",
-         "    \"estimand\": \"difference\",\n"
-         "    \"methods\": [\"adaptive\", \"tv-gabor\"],\n"
-         "    \"test\": \"sign-flip\",\n    \"sides\": \"two\",\n"},
-        {"effect", number_text(points / 100.0)}};
-  }
+  if (methods_of(arguments.answers) > 1) return points / 100.0;
   const double chance = 1.0 / static_cast<double>(classes);
-  const double least = std::min(1.0, std::round(1000.0 * chance + 10.0 * points) / 1000.0);
-  return {{"methods", "{\"name\": \"adaptive\", \"radius\": 2}"},
-          {"equalise", "\"none\""},
-          {"hypothesis",
-           in_json(fmt::format("Participants tell the {0} textures apart by touch better than by "
-                               "chance (one in {0}).",
-                               classes))},
-          {"primary_test",
-           in_json(fmt::format("Mean over participants of the share of correct answers against "
-                               "chance: one-sample t test of participants' shares, one-sided, "
-                               "alpha 0.05, led by its 95 % interval. A mean of {:g} is the "
-                               "smallest worth having.",
-                               least))},
-          {"analysis",
-           "    \"estimand\": \"mean-accuracy\",\n    \"test\": \"t\",\n"
-           "    \"sides\": \"one\",\n"},
-          {"effect", number_text(least)}};
+  return std::min(1.0, std::round(1000.0 * chance + 10.0 * points) / 1000.0);
 }
 
 std::string study_text(const NewArguments& arguments, const NewStudy& study) {
   const Answers& answers = arguments.answers;
-  const int people = *number_in<int>(answers.at("--people"));
-  Fillings fillings = question_fillings(arguments, study.classes.size());
-  const std::string practice =
-      study.practice.empty()
-          ? ""
-          : filled_in(kPracticeText, {{"practice_classes", lines_of(study.practice, "      ")}});
-  const std::string& device = answers.at("--device");
-  const int visits = visits_of(answers);
-  const std::vector<std::string> groups = groups_in(answers.at("--groups"));
-  fillings.insert(
-      {{"visits",
-        visits > 1
-            ? filled_in(kVisitsText,
-                        {{"count", std::to_string(visits)},
-                         {"least_days", number_text(*number_in<double>(answers.at("--between")))}})
-            : ""},
-       {"groups", groups.empty() ? "" : filled_in(kGroupsText, {{"labels", Json(groups).dump()}})},
-       {"name", in_json(answers.at("--name"))},
-       {"protocol", in_json(answers.at("--protocol"))},
-       {"device",
-        device.empty() ? kNoDeviceText : filled_in(kDeviceText, {{"name", in_json(device)}})},
-       {"classes", lines_of(study.classes, "    ")},
-       {"practice_trials", study.practice.empty() ? "0" : "5"},
-       {"practice", practice},
-       {"language", in_json(answers.at("--language"))},
-       {"consent", in_json(answers.at("--consent"))},
-       {"people", std::to_string(people)},
-       {"stopping_rule",
-        in_json(visits > 1 ? fmt::format("Collecting ends when {} participants have completed all "
-                                         "{} visits; outcomes are not looked at before.",
-                                         people, visits)
-                           : fmt::format("Collecting ends when {} sessions are complete; outcomes "
-                                         "are not looked at before.",
-                                         people))},
-       {"seed", std::to_string(study.seed)}});
-  return filled_in(kStudyText, fillings);
+  Fillings fillings = {{"name", in_json(answers.at("--name"))},
+                       {"protocol", in_json(answers.at("--protocol"))},
+                       {"classes", lines_of(study.classes, "    ")},
+                       {"number_of_classes", std::to_string(study.classes.size())},
+                       {"language", in_json(answers.at("--language"))},
+                       {"consent", in_json(answers.at("--consent"))},
+                       {"people", std::to_string(*number_in<int>(answers.at("--people")))},
+                       {"worth", fmt::format("{:g}", *number_in<double>(answers.at("--worth")))},
+                       {"effect", number_text(effect_of(arguments, study.classes.size()))},
+                       {"visits", std::to_string(visits_of(answers))},
+                       {"seed", std::to_string(study.seed)}};
+  if (methods_of(answers) > 1) fillings["compares"] = "";
+  if (!answers.at("--device").empty()) fillings["device"] = in_json(answers.at("--device"));
+  if (!study.practice.empty()) fillings["practice"] = lines_of(study.practice, "      ");
+  if (const auto groups = groups_in(answers.at("--groups")); !groups.empty()) {
+    fillings["groups"] = Json(groups).dump();
+  }
+  if (visits_of(answers) > 1) {
+    fillings["several_visits"] = "";
+    fillings["between"] = number_text(*number_in<double>(answers.at("--between")));
+  }
+  return filled_in(new_study_template(), fillings);
 }
 
 std::string next_steps(const NewArguments& arguments, const NewStudy& study) {

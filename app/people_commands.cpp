@@ -119,12 +119,11 @@ int note(const PeopleArguments& arguments) {
 constexpr const char* kOtherCopies =
     "destroy every other copy of the database too (backups, snapshots, files that were sent): the "
     "participant's data can still be read in them\n"
-    "if the database was pushed to a server, run `touchtrial sync` now: until then the key is "
-    "there, "
-    "and in the server's backups\n";
+    "if the database was sent to a server, run `touchtrial sync` now, which names the rows that hold "
+    "the key there: until their owner deletes them it is there, and in the server's backups\n";
 /// Goes into the withdrawal's event.
 constexpr const char* kNotErased =
-    "other copies and backups; the key on a server, until the next sync";
+    "other copies and backups; the key on a server, until its row is deleted";
 
 /// Removes personal data even if an interrupted withdrawal destroyed the key before.
 bool remove_person(const PeopleArguments& arguments) {

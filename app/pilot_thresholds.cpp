@@ -4,7 +4,6 @@
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "engine/pack/pack.hpp"
-#include "protocols/collect/collect.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/stimulus_levels.hpp"
 #include "protocols/store/study_store.hpp"
@@ -88,7 +87,12 @@ std::vector<std::pair<std::string, double>> means_by_standard(const design::Stud
 
 double pilots_db(const design::Study& study, const device::DeviceModel& device) {
   const std::filesystem::path database = study.folder / study.level->curve;
-  const store::StudyStore store = collect::open_study(database.string());
+  const store::StudyStore store =
+      store::StudyStore::open(database, store::StudyStore::Access::read_only);
+  if (!is_there(key_in_use(database, {}))) {
+    refuse(study, "has no key beside it; put the key of its study there as " +
+                      key_path_for(database, {}).string());
+  }
   const design::StudyKey key = key_of_database(store, database, {});
   const auto means = means_by_standard(study, report_of(study, store, key));
   const engine::Pack pack(key.pack_folder);

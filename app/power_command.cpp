@@ -1,5 +1,4 @@
-// power: simulates a study many times, in one process or in shards. The files of a run (progress,
-// shards, results): docs/power.md.
+// power: simulates a study many times, in one process or in shards.
 #include "analysis/planning/power_progress.hpp"
 #include "analysis/planning/power_report.hpp"
 #include "analysis/planning/rehearsed_study.hpp"
@@ -9,6 +8,7 @@
 #include "analysis/text_figures.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/power_files.hpp"
 #include "app/study_inputs.hpp"
 #include "app/threshold_power.hpp"
 #include "core/errors.hpp"
@@ -22,13 +22,11 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -39,127 +37,6 @@ namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<fs::path> shards_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("shard-") && name.ends_with(".json")) files.push_back(entry.path());
-  }
-  if (files.empty()) {
-    throw FileError(
-        one_line(folder.string()) +
-        ": contains no shard of a power run (shard-*.json); give the --out folder of the shards");
-  }
-  std::ranges::sort(files);
-  return files;
-}
-
-void draw(const fs::path& folder, const analysis::Figure& figure, analysis::FigureFormat format,
-          const char* name) {
-  replace_file(folder / name, analysis::drawn(figure, format));
-}
-
-/// A shard as it is typed: "3/16".
-/// \throws UsageError if the text is anything else, or not 1 <= number <= count <= 10,000
-planning::Shard shard_named(std::string_view text) {
-  const std::size_t slash = text.find('/');
-  if (slash != std::string_view::npos && slash > 0 && slash + 1 < text.size()) {
-    const auto number = number_in<int>(text.substr(0, slash));
-    const auto count = number_in<int>(text.substr(slash + 1));
-    if (number && count && *number >= 1 && *number <= *count && *count <= planning::kMostShards) {
-      return {*number, *count};
-    }
-  }
-  throw UsageError(one_line(
-      fmt::format("--shard: '{}' is not a shard; give its number and the count, from 1/1 to {}/{}",
-                  text.substr(0, 60), planning::kMostShards, planning::kMostShards)));
-}
-
-/// The file of a run's progress: "power-progress.json" in its folder.
-fs::path progress_file(const fs::path& folder) {
-  return folder / "power-progress.json";
-}
-
-/// The file of a shard, even of the only one: "shard-0003-of-0016.json".
-fs::path shard_file(const fs::path& folder, const planning::Shard& shard) {
-  return folder / fmt::format("shard-{:04}-of-{:04}.json", shard.number, shard.count);
-}
-
-/// The progress of a run in a file, or `fresh` if there is no file.
-/// \param resume  whether the file may exist
-/// \throws FileError if the file exists and may not, is malformed, or belongs to another run
-planning::PowerProgress taken_up(const fs::path& file, planning::PowerProgress fresh, bool resume) {
-  if (!is_there(file)) return fresh;
-  if (!resume) {
-    throw FileError(one_line(file.string()) +
-                    ": exists already; continue it with --resume, or give another --out");
-  }
-  planning::PowerProgress kept = planning::load_progress(file);
-  const std::string difference =
-      kept.shard == fresh.shard ? planning::first_difference(kept, fresh) : "--shard";
-  if (!difference.empty()) {
-    throw FileError(one_line(file.string()) + ": belongs to another run (" + difference +
-                    " differs); resume it with its own arguments, or give another --out");
-  }
-  return kept;
-}
-
-/// Writes progress as often as it costs little time, and always when it is complete.
-class ProgressKeeper {
- public:
-  explicit ProgressKeeper(fs::path file) : file_(std::move(file)) {}
-  /// \throws FileError if the file cannot be written
-  void keep(const planning::PowerProgress& progress) {
-    constexpr std::chrono::seconds kAtLeast{2};
-    constexpr int kShare = 20;  // writing takes at most 1/20 of the time
-    const Clock::time_point begun = Clock::now();
-    if (begun < next_ && !planning::is_complete(progress)) return;
-    replace_file(file_, planning::progress_json(progress));
-    const Clock::time_point written = Clock::now();
-    next_ = written + std::max<Clock::duration>(kAtLeast, kShare * (written - begun));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  fs::path file_;
-  Clock::time_point next_{};  ///< the earliest time of the next write
-};
-
-/// Loads shards from files and from folders, of which it takes every "shard-*.json" by name.
-/// \throws FileError if a folder contains no shard, or a file cannot be read
-std::vector<std::pair<fs::path, planning::PowerProgress>> load_shards(
-    const std::vector<fs::path>& places) {
-  std::vector<std::pair<fs::path, planning::PowerProgress>> shards;
-  for (const fs::path& place : places) {
-    std::error_code error;
-    const bool is_folder = fs::is_directory(place, error);
-    for (const fs::path& file : is_folder ? shards_in(place) : std::vector{place}) {
-      shards.emplace_back(file, planning::load_progress(file));
-    }
-  }
-  return shards;
-}
-
-/// Writes power.json, power.csv, power.md, power.svg and power.pdf. Without gnuplot it warns, and
-/// omits the last two.
-/// \throws FileError if a file cannot be written
-void write_power_results(const fs::path& folder, const planning::PowerReport& report) {
-  replace_file(folder / "power.json", planning::power_json(report));
-  replace_file(folder / "power.csv", planning::power_csv(report));
-  replace_file(folder / "power.md", planning::power_markdown(report));
-  const analysis::Figure figure = planning::power_figure(report);
-  try {
-    draw(folder, figure, analysis::FigureFormat::svg, "power.svg");
-    draw(folder, figure, analysis::FigureFormat::pdf, "power.pdf");
-  } catch (const FileError&) {
-    throw;
-  } catch (const Error& error) {
-    spdlog::warn("without figures: {}", error.what());
-  }
-}
 
 struct PowerArguments {
   fs::path study;
@@ -565,8 +442,7 @@ void add_power_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<PowerArguments>();
   CLI::App* command = program.add_subcommand(
       "power",
-      "Estimate power, type-I error and interval width of a study for an assumed sensitivity; of a "
-      "study of thresholds, the interval of a mean threshold and the power of a difference");
+      "Estimate a study's power, type-I error and interval widths by simulating it many times");
   command->add_option("STUDY", arguments->study, "Study file");
   add_plan_options(*command, *arguments);
   const std::vector<CLI::Option*> of_a_run = command->get_options(

@@ -10,14 +10,11 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/design/key_protection.hpp"
-#include "protocols/design/loop_work_report.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/design/study.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -34,95 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Sums over stages, by their state.
-struct Totals {
-  std::array<int, 3> stages{};           ///< by StageState
-  std::array<std::uint64_t, 3> bytes{};  ///< by StageState
-  double seconds = 0.0;
-  std::uint64_t written = 0;  ///< bytes, to the pack's folder
-};
-
-bool is_file(const engine::Stage& stage) {
-  return stage.name == "write field" || stage.name == "pack.json";
-}
-
-void add_stages(const std::vector<engine::Stage>& stages, Totals& totals) {
-  for (const engine::Stage& stage : stages) {
-    const auto state = static_cast<std::size_t>(stage.state);
-    ++totals.stages[state];
-    totals.bytes[state] += stage.bytes;
-    totals.seconds += stage.seconds;
-    if (is_file(stage) && stage.state == engine::StageState::computed)
-      totals.written += stage.bytes;
-  }
-}
-
-Totals totals_of(const design::PrepareReport& report) {
-  Totals totals;
-  for (const design::PreparedStimulus& stimulus : report.stimuli)
-    add_stages(stimulus.stages, totals);
-  add_stages(report.study_stages, totals);
-  const auto skipped = static_cast<std::size_t>(engine::StageState::skipped);
-  for (const design::SkippedWork& work : report.skipped) {
-    ++totals.stages[skipped];
-    totals.bytes[skipped] += work.bytes;
-  }
-  return totals;
-}
-
-std::string bytes_text(std::uint64_t bytes) {
-  constexpr double kKilo = 1e3;
-  const auto number = static_cast<double>(bytes);
-  if (number < 10 * kKilo) return fmt::format("{} B", bytes);
-  if (number < 10 * kKilo * kKilo) return fmt::format("{:.0f} kB", number / kKilo);
-  return fmt::format("{:.0f} MB", number / kKilo / kKilo);
-}
-
-std::string row(std::string_view name, std::string_view state, const std::string& time,
-                std::uint64_t bytes, const std::string& why) {
-  return fmt::format("  {:<15} {:<9} {:>9} {:>9}  {}\n", name, state, time, bytes_text(bytes), why);
-}
-
-std::string rows_of(const std::vector<engine::Stage>& stages) {
-  std::string text;
-  for (const engine::Stage& stage : stages) {
-    const std::string time = stage.state == engine::StageState::skipped
-                                 ? ""
-                                 : fmt::format("{:.1f} ms", 1e3 * stage.seconds);
-    text += row(stage.name, name_of(stage.state), time, stage.bytes, stage.why);
-  }
-  return text;
-}
-
-std::string stimulus_text(const design::PreparedStimulus& stimulus) {
-  return fmt::format("{}, exemplar {}, {}: {}\n", stimulus.class_label, stimulus.exemplar + 1,
-                     stimulus.method, stimulus.reused ? "reused" : "built") +
-         rows_of(stimulus.stages);
-}
-
-std::string totals_text(const Totals& totals) {
-  const auto of = [](engine::StageState state) { return static_cast<std::size_t>(state); };
-  return fmt::format(
-      "computed {} stages in {:.0f} ms, {} written; reused {}, {}; skipped {}, {} not made\n",
-      totals.stages[of(engine::StageState::computed)], 1e3 * totals.seconds,
-      bytes_text(totals.written), totals.stages[of(engine::StageState::reused)],
-      bytes_text(totals.bytes[of(engine::StageState::reused)]),
-      totals.stages[of(engine::StageState::skipped)],
-      bytes_text(totals.bytes[of(engine::StageState::skipped)]));
-}
-
-Json stages_json(const std::vector<engine::Stage>& stages) {
-  Json list = Json::array();
-  for (const engine::Stage& stage : stages) {
-    list.push_back({{"stage", stage.name},
-                    {"state", name_of(stage.state)},
-                    {"why", stage.why},
-                    {"seconds", stage.seconds},
-                    {"bytes", stage.bytes}});
-  }
-  return list;
-}
-
 Json statistics_json(const engine::FieldStatistics& statistics) {
   return {{"tangential_rms_n", statistics.tangential_rms_n},
           {"tangential_p999_n", statistics.tangential_p999_n},
@@ -133,42 +41,17 @@ Json statistics_json(const engine::FieldStatistics& statistics) {
 }
 
 Json stimulus_json(const design::PreparedStimulus& stimulus) {
-  Json object = {{"class", stimulus.class_label},
-                 {"exemplar", stimulus.exemplar + 1},
-                 {"method", stimulus.method},
-                 {"state", stimulus.reused ? "reused" : "built"},
-                 {"seconds", stimulus.seconds},
-                 {"bytes", stimulus.bytes},
-                 {"gains",
-                  {{"tangential_n", stimulus.gains.tangential_n},
-                   {"normal_n", stimulus.gains.normal_n},
-                   {"height_mm", stimulus.gains.height_mm}}},
-                 {"statistics", statistics_json(stimulus.statistics)}};
-  if (!stimulus.stages.empty()) object["stages"] = stages_json(stimulus.stages);
-  return object;
-}
-
-Json totals_json(const Totals& totals) {
-  Json object = {{"seconds", totals.seconds}, {"bytes_written", totals.written}};
-  for (const engine::StageState state :
-       {engine::StageState::computed, engine::StageState::reused, engine::StageState::skipped}) {
-    const auto i = static_cast<std::size_t>(state);
-    object[std::string(name_of(state))] = {{"stages", totals.stages[i]},
-                                           {"bytes", totals.bytes[i]}};
-  }
-  return object;
-}
-
-/// A block of stages for each stimulus and one for the study, with a line of totals. The report
-/// must have its stages (PrepareOptions::explain).
-std::string explanation_text(const design::PrepareReport& report) {
-  std::string text;
-  for (const design::PreparedStimulus& stimulus : report.stimuli) text += stimulus_text(stimulus);
-  text += "all stimuli\n" + rows_of(report.study_stages);
-  for (const design::SkippedWork& work : report.skipped) {
-    text += row("fields", "skipped", "", work.bytes, work.what + ": " + work.why);
-  }
-  return text + totals_text(totals_of(report));
+  return {{"class", stimulus.class_label},
+          {"exemplar", stimulus.exemplar + 1},
+          {"method", stimulus.method},
+          {"state", stimulus.reused ? "reused" : "built"},
+          {"seconds", stimulus.seconds},
+          {"bytes", stimulus.bytes},
+          {"gains",
+           {{"tangential_n", stimulus.gains.tangential_n},
+            {"normal_n", stimulus.gains.normal_n},
+            {"height_mm", stimulus.gains.height_mm}}},
+          {"statistics", statistics_json(stimulus.statistics)}};
 }
 
 // A hand strokes a plane of this size from a forearm's rest.
@@ -215,8 +98,7 @@ const simulation::PlaneLevels& levels_of(const design::PreparedStimulus& stimulu
   return levels.levels[place];
 }
 
-/// The whole report, with its stages if it has any. Fields: docs/data-dictionary.md,
-/// "prepare --json".
+/// The whole report. Fields: docs/data-dictionary.md, "What `prepare` did".
 std::string prepare_json(const design::PrepareReport& report, const design::PackPlace& place,
                          const PlaneGeometry& plane, const design::Study& study,
                          const simulation::StimulusLevels& levels) {
@@ -230,31 +112,25 @@ std::string prepare_json(const design::PrepareReport& report, const design::Pack
   for (const design::SkippedWork& work : report.skipped) {
     skipped.push_back({{"what", work.what}, {"why", work.why}, {"bytes", work.bytes}});
   }
-  Json object = {{"pack", place.pack.string()},
-                 {"key", place.key.string()},
-                 {"plane",
-                  {{"width_mm", plane.width_mm()},
-                   {"height_mm", plane.height_mm()},
-                   {"remark", remark_on(plane)}}},
-                 {"stimuli", stimuli},
-                 {"blank", {{"levels", Json::parse(planning::levels_json(levels.blank))}}},
-                 {"provisional", levels.provisional},
-                 {"differences", Json::parse(planning::differences_json(study, levels))},
-                 {"skipped", skipped},
-                 {"warnings", report.warnings}};
-  if (!report.study_stages.empty()) {
-    object["stages"] = stages_json(report.study_stages);
-    object["totals"] = totals_json(totals_of(report));
-  }
+  const Json object = {{"pack", place.pack.string()},
+                       {"key", place.key.string()},
+                       {"plane",
+                        {{"width_mm", plane.width_mm()},
+                         {"height_mm", plane.height_mm()},
+                         {"remark", remark_on(plane)}}},
+                       {"stimuli", stimuli},
+                       {"blank", {{"levels", Json::parse(planning::levels_json(levels.blank))}}},
+                       {"provisional", levels.provisional},
+                       {"differences", Json::parse(planning::differences_json(study, levels))},
+                       {"skipped", skipped},
+                       {"warnings", report.warnings}};
   return json_text(object);
 }
 
 struct PrepareArguments {
   fs::path study;
   fs::path pack;
-  bool explain = false;
   bool json = false;
-  bool loop_work = false;
   bool passphrase = false;
 };
 
@@ -371,19 +247,6 @@ std::string line_of_totals(const design::PrepareReport& report) {
   return text + "\n";
 }
 
-/// The energy that a hand could gain round closed loops, under both models.
-std::string loop_work_table(const design::Study& study) {
-  std::string text = fmt::format("\n{:<8} {:>6} {:>12} {:>12} {:>14} {:>14}\n", "model", "loops",
-                                 "plane median", "plane worst", "press median", "press worst");
-  for (const design::ModelLoopWork& work : design::loop_work_of(study)) {
-    text += fmt::format("{:<8} {:>6} {:>9.2g} mJ {:>9.2g} mJ {:>11.2g} mJ {:>11.2g} mJ\n",
-                        design::name_of(work.model), work.loops_of_each_kind, work.planar.median_mj,
-                        work.planar.worst_mj, work.press_slide_lift.median_mj,
-                        work.press_slide_lift.worst_mj);
-  }
-  return text + "work round closed loops: circles at constant depth, and press, slide, lift\n";
-}
-
 /// Without the warnings, which are printed as such.
 std::string levels_text(const design::Study& study, const simulation::StimulusLevels& levels) {
   analysis::Document document;
@@ -421,8 +284,8 @@ int prepare(const PrepareArguments& arguments) {
   key.pack_folder = place.pack;
   save_key(arguments, key, place.key);
   save_station_files(key, place);
-  design::PrepareReport report = prepare_here(key, {.explain = arguments.explain});
-  const simulation::StimulusLevels levels = levels_as_prepared(key);
+  design::PrepareReport report = prepare_here(key, {});
+  const simulation::StimulusLevels levels = levels_of_pack(key);
   for (std::string& warning : planning::level_warnings(study, levels)) {
     report.warnings.push_back(std::move(warning));
   }
@@ -431,10 +294,8 @@ int prepare(const PrepareArguments& arguments) {
     print(prepare_json(report, place, plane, study, levels));
     return 0;
   }
-  print((arguments.explain ? explanation_text(report) + "\n" : "") + table_of(report) +
-        gains_of(report, study.rendering.model) + levels_text(study, levels) +
+  print(table_of(report) + gains_of(report, study.rendering.model) + levels_text(study, levels) +
         line_of_totals(report) + plane_text(plane) + places_text(key, place));
-  if (arguments.loop_work) print(loop_work_table(study));
   return 0;
 }
 
@@ -447,18 +308,11 @@ void add_prepare_command(CLI::App& program, Action& action) {
   add_study_argument(*command, arguments->study);
   command->add_option("--pack", arguments->pack,
                       "Folder of the pack; the key is beside it (default: <study>.pack)");
-  command->add_flag("--explain", arguments->explain,
-                    "Report for each stage what was computed, reused or skipped, why, and at what "
-                    "cost");
   command->add_flag("--passphrase", arguments->passphrase,
                     "Protect the key by a passphrase, which is asked for, or is the first line of "
                     "--passphrase-file");
   add_passphrase_option(*command);
-  CLI::Option* json = add_json_flag(*command, arguments->json);
-  command
-      ->add_flag("--loop-work", arguments->loop_work,
-                 "Report how much energy a hand could gain round closed loops under each model")
-      ->excludes(json);
+  add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return prepare(*arguments); }; });
 }
 

@@ -52,10 +52,7 @@ void add_procedure_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ProcedureArguments>();
   CLI::App* command = program.add_subcommand(
       "procedure",
-      "Show as JSON which levels a track of a threshold study presents after a list of answers, "
-      "and "
-      "what it then believes. One track by itself; orders of constant stimuli are those of a fixed "
-      "stream of random numbers, and no participant's");
+      "Replay answers through one adaptive track; print its levels and posterior as JSON");
   add_study_argument(*command, arguments->study);
   command
       ->add_option("--answers", arguments->answers,

@@ -1,31 +1,34 @@
-// reference: what packages and documentation are made of; not in the help.
+// reference: what packages, documentation and shells take from the parser; not in the help. help:
+// as --help.
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/reference/reference_pages.hpp"
+#include "app/reference/completion.hpp"
+#include "app/reference/pages.hpp"
 #include "core/files.hpp"
 
 #include <filesystem>
 #include <memory>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-int write_reference(const CommandDefinition& program, const fs::path& folder) {
-  for (const char* part : {"man", "commands", "completion"}) make_folder(folder / part);
-  for (const CommandDefinition* command : every_command(program)) {
-    replace_file(folder / "man" / fmt::format("{}.1", fmt::join(command->words, "-")),
-                 man_page(program, *command));
-    const std::string name = command->path().empty() ? "index" : command->path("-");
-    replace_file(folder / "commands" / (name + ".md"), markdown_page(*command));
+int write_reference(const CLI::App& program, const fs::path& folder) {
+  for (const char* part : {"man", "commands"}) make_folder(folder / part);
+  for (const CLI::App* command : every_command(program)) {
+    const std::string words = words_of(*command, "-");
+    const std::string name = command == &program ? "index" : words.substr(words.find('-') + 1);
+    replace_file(folder / "man" / (words + ".1"), page_of(*command, PageFormat::man));
+    replace_file(folder / "commands" / (name + ".md"), page_of(*command, PageFormat::markdown));
   }
-  replace_file(folder / "completion" / "touchtrial", bash_completion(program));
-  replace_file(folder / "completion" / "_touchtrial", zsh_completion(program));
-  replace_file(folder / "completion" / "touchtrial.fish", fish_completion(program));
+  return 0;
+}
+
+int show_help(const CLI::App& program, const std::vector<std::string>& words) {
+  const CLI::App* command = &program;
+  for (const std::string& word : words) command = &command_named(*command, word);
+  print(page_of(*command, PageFormat::help));
   return 0;
 }
 
@@ -33,15 +36,26 @@ int write_reference(const CommandDefinition& program, const fs::path& folder) {
 
 void add_reference_command(CLI::App& program, Action& action) {
   auto folder = std::make_shared<fs::path>();
-  CLI::App* command = program.add_subcommand(
-      "reference", "Write manual pages, pages in Markdown, and completions for bash, zsh and fish");
-  command->group("");
-  command->add_option("--out", *folder, "Folder")->required();
-  command->callback([=, &program, &action] {
-    action = [=, definition = definition_of(program)] {
-      return write_reference(definition, *folder);
+  auto is_table = std::make_shared<bool>(false);
+  CLI::App* reference = program.add_subcommand(
+      "reference",
+      "Write manual pages and pages in Markdown, or the table that shells complete from");
+  reference->group("");
+  CLI::Option* out = reference->add_option("--out", *folder, "Folder");
+  reference->add_flag("--table", *is_table, "Print the table instead")->excludes(out);
+  reference->callback([=, &program, &action] {
+    if (out->count() == 0 && !*is_table) throw CLI::RequiredError("--out or --table");
+    action = [=, &program] {
+      if (!*is_table) return write_reference(program, *folder);
+      print(completion_table(program));
+      return 0;
     };
   });
+  auto words = std::make_shared<std::vector<std::string>>();
+  CLI::App* help = program.add_subcommand("help", "Show the help of a command, as --help does");
+  help->add_option("COMMAND", *words, "Words of the command, for instance device accept");
+  help->callback(
+      [=, &program, &action] { action = [=, &program] { return show_help(program, *words); }; });
 }
 
 }  // namespace touchtrial::app

@@ -10,7 +10,6 @@
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/collect/collect.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <algorithm>
@@ -44,7 +43,7 @@ void write_report(const ReportArguments& arguments, const analysis::ReportFiles&
 analysis::Provenance provenance_for(const store::StudyStore& store,
                                     const ReportArguments& arguments) {
   analysis::Provenance provenance =
-      analysis::provenance_of(store, collect::study_name(arguments.database.string()));
+      analysis::provenance_of(store, arguments.database.filename().string());
   if (arguments.is_public) provenance.state.unblinding_reason.clear();
   return provenance;
 }
@@ -52,7 +51,7 @@ analysis::Provenance provenance_for(const store::StudyStore& store,
 /// Refuses --trial and --cues yes, which show what was presented, and --public.
 void refuse_while_blind(const store::StudyState& state, const ReportArguments& arguments) {
   const std::string place =
-      one_line(collect::study_name(arguments.database.string())) + ": " + blind_words(state);
+      one_line(arguments.database.filename().string()) + ": " + blind_words(state);
   if (arguments.is_public) {
     throw UsageError(place + ", and only results are published; omit --public");
   }
@@ -137,7 +136,8 @@ std::unique_ptr<const analysis::Results> with_levels_if_any(
 }
 
 int report(const ReportArguments& arguments) {
-  const store::StudyStore store = collect::open_study(arguments.database.string());
+  const store::StudyStore store =
+      store::StudyStore::open(arguments.database, store::StudyStore::Access::read_only);
   if (!arguments.folder.empty()) {
     analysis::refuse_other_study(arguments.folder, store.commitment().study);
     analysis::refuse_strangers(arguments.folder);
@@ -164,7 +164,7 @@ void add_report_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* command = program.add_subcommand(
       "report", "Accuracy tables; before unblinding, only the quality of the data");
-  add_study_place_argument(*command, arguments->database);
+  add_database_argument(*command, arguments->database);
   add_key_option(*command, arguments->key);
   CLI::Option* json = add_json_flag(*command, arguments->json);
   CLI::Option* folder = command->add_option("-o,--out", arguments->folder,

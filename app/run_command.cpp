@@ -97,7 +97,7 @@ void add_device_options(CLI::App& command, RunOptions& options) {
   command.add_flag("--console", options.console, "Open a window for the experimenter too");
   command
       .add_option("--console-monitor", options.console_monitor,
-                  "Monitor of the experimenter's window, from 1")
+                  "Monitor of the experimenter's window")
       ->check(CLI::Range(1, 16));
   command.add_flag("!--no-sound", options.sound, "Play neither masking noise nor tones");
   add_window_options(command, options.monitor, options.window_px);
@@ -107,13 +107,6 @@ void add_device_options(CLI::App& command, RunOptions& options) {
       ->check(finite_range(1.0, design::kLargestTextScale));
   command.add_flag("--high-contrast", options.high_contrast,
                    "Black on white for this participant; recorded");
-}
-
-/// Refused whatever else is asked: nobody has seen what a shaped force does to a real tip.
-void refuse_compensation() {
-  throw UsageError(
-      "run: --compensate: forces are shaped in simulations alone; people need an accelerometer's "
-      "certificate of this very device first, and no session takes one yet; leave the option out");
 }
 
 void add_simulation_options(CLI::App& command, RunOptions& options) {
@@ -134,12 +127,8 @@ void add_run_command(CLI::App& program, Action& action) {
   add_session_options(*command, *options);
   add_device_options(*command, *options);
   add_simulation_options(*command, *options);
-  auto compensate = std::make_shared<bool>(false);
-  command->add_flag("--compensate", *compensate,
-                    "Refused: shape forces for the device's mass (touchtrial device compensation)");
   command->callback([=, &action] {
     action = [=] {
-      if (*compensate) refuse_compensation();
       check(*options);
       return run_study_session(*options);
     };

@@ -7,9 +7,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/utc.hpp"
-#include "protocols/collect/collect.hpp"
 #include "protocols/collect/enrolment_balance.hpp"
-#include "protocols/collect/server_address.hpp"
 #include "protocols/design/key_protection.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/store/personal_data.hpp"
@@ -273,8 +271,7 @@ std::vector<analysis::NextCommand> next_commands(const StatusArguments& argument
                                                  const FilesBeside& beside,
                                                  const DatabaseWords& words,
                                                  const analysis::StudyStatus& status) {
-  const bool records = status.stations == 0 && !status.state.closed && !status.simulated &&
-                       !collect::is_address(arguments.database.string());
+  const bool records = status.stations == 0 && !status.state.closed && !status.simulated;
   if (!records) return {};
   const std::optional<NextSession> session = next_session(status);
   if (!session) return {};
@@ -323,10 +320,9 @@ int show_before(const StatusArguments& arguments) {
 }
 
 int show_status(const StatusArguments& arguments) {
-  if (!collect::is_address(arguments.database.string()) && !is_there(arguments.database)) {
-    return show_before(arguments);
-  }
-  const store::StudyStore store = collect::open_study(arguments.database.string());
+  if (!is_there(arguments.database)) return show_before(arguments);
+  const store::StudyStore store =
+      store::StudyStore::open(arguments.database, store::StudyStore::Access::read_only);
   const FilesBeside beside = files_beside(arguments, store.commitment());
   analysis::StudyStatus status = analysis::status_of(store, sources_for(arguments, beside));
   status.balance = balance_of(store);
@@ -340,7 +336,7 @@ void add_status_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<StatusArguments>();
   CLI::App* command = program.add_subcommand(
       "status", "Who is done, who is open, what is left to do, and the next participant's command");
-  add_study_place_argument(*command, arguments->database);
+  add_database_argument(*command, arguments->database);
   command->add_option("--study", arguments->study,
                       "Study file (default: the one of the station's file beside the database or "
                       "here)");

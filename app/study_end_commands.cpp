@@ -1,5 +1,4 @@
-// Commands that end a study's collection and open its outcomes: close and unblind; and migrate,
-// which brings an older database up to date.
+// Commands that end a study's collection and open its outcomes: close and unblind.
 #include "analysis/looks.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
@@ -22,10 +21,6 @@ namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-store::StudyStore to_write(const fs::path& database) {
-  return store::StudyStore::open(database, store::StudyStore::Access::read_write);
-}
 
 /// The participants whose sessions are open and could be continued; empty if there are none.
 std::string left_open(const store::StudyStore& store) {
@@ -140,7 +135,8 @@ void confirm_look(const store::StudyStore& store, const UnblindArguments& argume
 }
 
 int unblind(const UnblindArguments& arguments) {
-  store::StudyStore store = to_write(arguments.database);
+  store::StudyStore store =
+      store::StudyStore::open(arguments.database, store::StudyStore::Access::read_write);
   // Outcomes cannot be shown without the key: it signs that they are looked at.
   sign_with_files(store, arguments.database,
                   {.key = key_path_for(arguments.database, arguments.files.key),
@@ -168,12 +164,6 @@ int unblind(const UnblindArguments& arguments) {
     print(database + ": unblinded" + (arguments.interim ? " for an interim look\n" : "\n"));
   }
   print_head(store, arguments.database);
-  return 0;
-}
-
-int migrate(const fs::path& database) {
-  static_cast<void>(to_write(database));
-  print(database.string() + ": is up to date\n");
   return 0;
 }
 
@@ -211,20 +201,11 @@ void add_unblind_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return unblind(*arguments); }; });
 }
 
-void add_migrate_command(CLI::App& program, Action& action) {
-  auto database = std::make_shared<fs::path>();
-  CLI::App* command = program.add_subcommand(
-      "migrate", "Bring an older database up to date; copy it first (there is none yet)");
-  add_database_argument(*command, *database);
-  command->callback([=, &action] { action = [=] { return migrate(*database); }; });
-}
-
 }  // namespace
 
 void add_study_end_commands(CLI::App& program, Action& action) {
   add_close_command(program, action);
   add_unblind_command(program, action);
-  add_migrate_command(program, action);
 }
 
 }  // namespace touchtrial::app

@@ -10,15 +10,12 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/public_keys.hpp"
+#include "core/user_folders.hpp"
 #include "device/device_settings.hpp"
 #include "device/registry.hpp"
-#include "engine/fourier/planning.hpp"
 #include "engine/pack/pack.hpp"
-#include "protocols/collect/collect.hpp"
-#include "protocols/collect/server_address.hpp"
 #include "protocols/design/key_protection.hpp"
 #include "protocols/session/stimulus_source.hpp"
-#include "protocols/simulation/kept_levels.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -107,9 +104,6 @@ std::filesystem::path key_in_use(const std::filesystem::path& database,
 design::StudyKey key_of_database(const store::StudyStore& store,
                                  const std::filesystem::path& database,
                                  const std::filesystem::path& given) {
-  if (given.empty() && collect::is_address(database.string())) {
-    throw FileError("a study on a server has no key beside it; name the study's key with --key");
-  }
   const std::filesystem::path path = key_in_use(database, given);
   const bool is_beside = path == key_path_for(database, {});
   if (is_beside && !is_there(path)) {
@@ -123,9 +117,9 @@ design::StudyKey key_of_database(const store::StudyStore& store,
     analysis::require_key_of(store, key);
   } catch (const VerificationError& wrong) {
     throw VerificationError(path.string() + ": is not the key of " +
-                            one_line(collect::study_name(database.string())) + ": " + wrong.what());
+                            one_line(database.filename().string()) + ": " + wrong.what());
   }
-  if (!is_beside && !collect::is_address(database.string())) keep_place_of_key(database, path);
+  if (!is_beside) keep_place_of_key(database, path);
   key.pack_folder = design::pack_in_reach(key, database);
   return key;
 }
@@ -138,7 +132,6 @@ analysis::Outcomes outcomes_of(const store::StudyStore& store, const design::Stu
 }
 
 std::vector<store::PersonalRecord> consents_beside(const std::filesystem::path& database) {
-  if (collect::is_address(database.string())) return {};
   const std::filesystem::path path = store::personal_data_path(database);
   if (!is_there(path)) return {};
   return store::PersonalData(path).all();
@@ -266,25 +259,16 @@ design::StudyKey simulated_key(const design::Study& study,
 
 namespace {
 
-/// Of design::PrivateNotes; empty if the user has no cache.
-std::filesystem::path notes_folder() {
-  const std::filesystem::path cache = engine::user_cache_folder();
-  return cache.empty() ? cache : cache / "notes";
-}
-
 /// The gains of a study that states its level.
-design::LevelStage level_stage(const design::StudyKey& key) {
+design::LevelGains level_gains(const design::StudyKey& key) {
   if (!key.study.level) return {};
   const device::DeviceModel device = simulation::device_of(key.study);
   const simulation::LevelCurve curve = curve_of(key.study, device);
-  const std::string identity = device::device_model_json(device) +
-                               std::string(engine::name_of(curve.curve)) +
-                               number_text(curve.pilots_db.value_or(0.0));
-  return {identity, [=, &key](std::span<const engine::FieldView> fields) {
-            simulation::LevelledGains found =
-                simulation::gains_at_level(key, fields, device, curve, cores());
-            return std::pair(std::move(found.gains), std::move(found.remarks));
-          }};
+  return [=, &key](std::span<const engine::FieldView> fields) {
+    simulation::LevelledGains found =
+        simulation::gains_at_level(key, fields, device, curve, cores());
+    return std::pair(std::move(found.gains), std::move(found.remarks));
+  };
 }
 
 /// Levels by the pilots of the laboratory, if the study names some and they can be read.
@@ -307,8 +291,7 @@ int cores() {
 }
 
 design::PrepareReport prepare_here(const design::StudyKey& key, design::PrepareOptions options) {
-  options.notes = notes_folder();
-  options.level = level_stage(key);
+  options.level_gains = level_gains(key);
   return design::prepare_pack(key, key.pack_folder, progress_bar("preparing"), options);
 }
 
@@ -342,13 +325,6 @@ simulation::StimulusLevels levels_of_pack(const design::StudyCodes& key) {
   const session::StimulusSource source(pack, key.study.rendering);
   return by_pilots(
       simulation::levels_of(key, source, simulation::level_devices(key.study), cores()), key.study);
-}
-
-simulation::StimulusLevels levels_as_prepared(const design::StudyKey& key) {
-  return by_pilots(
-      simulation::kept_levels_of(key, engine::Pack(key.pack_folder),
-                                 simulation::level_devices(key.study), cores(), notes_folder()),
-      key.study);
 }
 
 std::unique_ptr<const analysis::Results> with_levels(

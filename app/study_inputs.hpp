@@ -47,7 +47,7 @@ namespace touchtrial::app {
                                              const design::StudyKey& key,
                                              const std::string& participant = {});
 
-/// Every consent in the personal data beside a database; none beside a study on a server.
+/// Every consent in the personal data beside a database.
 /// \throws FileError if others may read the personal data
 /// \throws StoreError if they cannot be read
 [[nodiscard]] std::vector<store::PersonalRecord> consents_beside(
@@ -106,8 +106,7 @@ void save_station_files(const design::StudyKey& key, const design::PackPlace& pl
 /// \return how many threads work on levels: one for each core
 [[nodiscard]] int cores();
 
-/// design::prepare_pack into the key's pack_folder, with a progress bar and notes in the user's
-/// cache.
+/// design::prepare_pack into the key's pack_folder, with a progress bar.
 [[nodiscard]] design::PrepareReport prepare_here(const design::StudyKey& key,
                                                  design::PrepareOptions options);
 
@@ -127,9 +126,6 @@ void prepare_simulated_pack(const design::StudyKey& key);
 /// \throws FileError if the key's pack is not there or lacks a stimulus
 /// \throws StudyError if the study names a device that is not there
 [[nodiscard]] simulation::StimulusLevels levels_of_pack(const design::StudyCodes& key);
-
-/// The same for a pack that was just prepared: looked up if they were computed before.
-[[nodiscard]] simulation::StimulusLevels levels_as_prepared(const design::StudyKey& key);
 
 /// Results with those levels, if the key's pack is there; a warning says why they could not be
 /// computed.

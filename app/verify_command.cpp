@@ -4,8 +4,6 @@
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/hash.hpp"
-#include "protocols/collect/collect.hpp"
-#include "protocols/collect/server_address.hpp"
 
 #include <cctype>
 #include <cstddef>
@@ -45,23 +43,14 @@ std::string head_of(const VerifyArguments& arguments) {
       "--head: is none; give the 16 digits of a day sheet, or the 64 that verify printed");
 }
 
-/// The key file; empty for a study on a server, which has none beside it.
-fs::path key_for(const VerifyArguments& arguments) {
-  if (arguments.key.empty() && collect::is_address(arguments.database.string())) return {};
-  return key_in_use(arguments.database, arguments.key);
-}
-
 int verify(const VerifyArguments& arguments) {
   const std::string head = head_of(arguments);
   const analysis::StudyFiles files{.database = arguments.database,
-                                   .key = key_for(arguments),
+                                   .key = key_in_use(arguments.database, arguments.key),
                                    .key_named = !arguments.key.empty(),
                                    .heads = arguments.heads,
                                    .pack = arguments.pack};
-  const analysis::Verification verification =
-      analysis::verify_files(files, head, [](const fs::path& database) {
-        return collect::open_study(database.string(), collect::TraceUse::copied);
-      });
+  const analysis::Verification verification = analysis::verify_files(files, head);
   print(arguments.json ? analysis::verification_json(verification)
                        : analysis::verification_text(verification));
   return verification.holds() ? 0 : kNotVerified;
@@ -73,7 +62,7 @@ void add_verify_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* command = program.add_subcommand(
       "verify", "Check chain, seal, schedule, payloads and pack against each other");
-  add_study_place_argument(*command, arguments->database);
+  add_database_argument(*command, arguments->database);
   add_key_option(*command, arguments->key, "Key of the study (default: DB.key, if it exists)");
   command->add_option("--pack", arguments->pack,
                       "Pack of the study (default: the one that the key names, or one of that "

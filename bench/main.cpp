@@ -8,7 +8,6 @@
 #include "core/bytes.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "engine/fourier/planning.hpp"
 #include "tests/engine/simd/targets.hpp"
 
 #include <cstdio>
@@ -109,7 +108,6 @@ void check(const std::vector<GoalResult>& goals) {
 
 void run(const Arguments& arguments) {
   cv::setNumThreads(1);
-  engine::use_measured_plans(engine::user_cache_folder());  // as the program does
   if (!arguments.image.empty()) choose_timed_picture(arguments.image);
   choose_usual_target(arguments.target);
   const std::vector<std::string> targets =

@@ -1,4 +1,4 @@
-# What `cmake --install` lays where, by component: program, doc, development (and python, in python/).
+# What `cmake --install` lays where, by component: program, postgres, doc, development (and python, in python/).
 # Nothing of it knows its prefix: the tree runs from wherever it is moved. The packages are made of
 # the same components: cmake/Packages.cmake.
 include(GNUInstallDirs)
@@ -6,11 +6,13 @@ include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 
 install(TARGETS touchtrial RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
+# Where the program looks for it: protocols/collect/bundle_module.cpp.
+install(TARGETS touchtrial_postgres LIBRARY DESTINATION lib/touchtrial COMPONENT postgres)
 
 # The ready studies, and what they name: `touchtrial examples` copies them (app/shipped_files.cpp).
 set(shipped "${CMAKE_INSTALL_DATADIR}/touchtrial")
 install(DIRECTORY config/ DESTINATION "${shipped}/config" COMPONENT program
-        FILES_MATCHING PATTERN "*.json" PATTERN "udev" EXCLUDE PATTERN "desktop" EXCLUDE PATTERN "*.pack" EXCLUDE)
+        FILES_MATCHING PATTERN "*.json" PATTERN "udev" EXCLUDE PATTERN "desktop" EXCLUDE PATTERN "completion" EXCLUDE PATTERN "*.pack" EXCLUDE)
 install(DIRECTORY stimuli/ DESTINATION "${shipped}/stimuli" COMPONENT program
         FILES_MATCHING PATTERN "*.png" PATTERN "manifest.json"
         PATTERN "import" EXCLUDE PATTERN "objects" EXCLUDE PATTERN "textures" EXCLUDE)
@@ -26,7 +28,7 @@ install(FILES config/desktop/io.github.touchtrial.metainfo.xml
 install(FILES config/desktop/touchtrial.svg
         DESTINATION "${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps" COMPONENT program)
 
-# Man pages and completions come from the program's own definitions of its commands.
+# Man pages come from the program's own definitions of its commands; completions ask the program for them.
 set(reference "${CMAKE_BINARY_DIR}/reference")
 add_custom_command(OUTPUT "${reference}/made"
   COMMAND "${CMAKE_COMMAND}" -E rm -rf "${reference}"
@@ -36,11 +38,11 @@ add_custom_command(OUTPUT "${reference}/made"
   WORKING_DIRECTORY "${CMAKE_BINARY_DIR}" DEPENDS touchtrial VERBATIM)
 add_custom_target(reference ALL DEPENDS "${reference}/made")
 install(DIRECTORY "${reference}/man/" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT program)
-install(FILES "${reference}/completion/touchtrial"
+install(FILES config/completion/touchtrial
         DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT program)
-install(FILES "${reference}/completion/_touchtrial"
+install(FILES config/completion/_touchtrial
         DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions" COMPONENT program)
-install(FILES "${reference}/completion/touchtrial.fish"
+install(FILES config/completion/touchtrial.fish
         DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d" COMPONENT program)
 
 install(DIRECTORY examples/engine/ DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/libtouchtrial-dev/examples"

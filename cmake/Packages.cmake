@@ -4,7 +4,7 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
-set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_COMPONENTS_ALL program postgres development)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGE_DIRECTORY "${CMAKE_BINARY_DIR}/packages")
@@ -53,8 +53,14 @@ study, and exports to CSV, BIDS, Psych-DS and R.
 The command demo runs simulated participants through two studies.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS
-    "gnuplot-nox | gnuplot, libpq5, libportaudio2, libgl1-mesa-dri, fonts-dejavu-core, fonts-droid-fallback")
+    "gnuplot-nox | gnuplot, touchtrial-postgres, libportaudio2, libgl1-mesa-dri, fonts-dejavu-core, fonts-droid-fallback")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "touchtrial-doc, python3-touchtrial, r-base-core")
+
+touchtrial_package(postgres touchtrial-postgres science "sessions of Touchtrial on a PostgreSQL server"
+"What the commands sync and merge load to send sessions to a server and to
+fetch them from there.")
+set(CPACK_DEBIAN_POSTGRES_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_POSTGRES_PACKAGE_DEPENDS "touchtrial (= ${PROJECT_VERSION}-1)")
 
 touchtrial_package(development libtouchtrial-dev libdevel "engine of Touchtrial, for programs in C++"
 "Pictures to textures to force fields, and the forces at a moving stylus: the

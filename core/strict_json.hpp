@@ -2,6 +2,8 @@
 /// understand, and names the place.
 #pragma once
 
+#include "core/named.hpp"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -30,13 +32,6 @@ struct NumberRange {
     return (open_low ? number > low : number >= low) &&
            (open_high ? number < high : number <= high);
   }
-};
-
-/// A word of a file, and its meaning.
-template <typename Value>
-struct Named {
-  std::string_view name;
-  Value value;
 };
 
 class JsonObject;
@@ -73,9 +68,7 @@ class JsonValue {
 
   template <typename Value, std::size_t size>
   [[nodiscard]] Value choice(const std::array<Named<Value>, size>& table) const {
-    std::array<std::string_view, size> names;
-    for (std::size_t i = 0; i < size; ++i) names[i] = table[i].name;
-    return table[choice(std::span<const std::string_view>(names))].value;
+    return table[choice(std::span<const std::string_view>(names_in(table)))].value;
   }
 
  private:

@@ -2,11 +2,11 @@
 
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
+#include "core/user_folders.hpp"
 #include "device/registry.hpp"
 #include "device/scaled_device.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace touchtrial::device {
 namespace {
@@ -31,12 +31,11 @@ constexpr std::string_view kInstruments = "instruments";
 constexpr std::int64_t kSlowestBaud = 9'600;
 constexpr std::int64_t kFastestBaud = 1'000'000;
 constexpr std::int64_t kWidestTrial = 4;
-constexpr std::array kMarkerFormats = {Named<MarkerFormat>{"byte", MarkerFormat::byte},
-                                       Named<MarkerFormat>{"text", MarkerFormat::text}};
+constexpr auto kMarkerFormats = std::to_array<Named<MarkerFormat>>(
+    {{"byte", MarkerFormat::byte}, {"text", MarkerFormat::text}});
 constexpr std::int64_t kLastPort = 65535;
-constexpr std::array kOrientations = {
-    Named<PlaneOrientation>{"horizontal", PlaneOrientation::horizontal},
-    Named<PlaneOrientation>{"vertical", PlaneOrientation::vertical}};
+constexpr auto kOrientations = std::to_array<Named<PlaneOrientation>>(
+    {{"horizontal", PlaneOrientation::horizontal}, {"vertical", PlaneOrientation::vertical}});
 
 Vec3 read_vec3(const JsonValue& place, const NumberRange& range) {
   const std::vector<JsonValue> items = place.items(3, 3);
@@ -275,24 +274,18 @@ InstrumentSettings read_instruments(const JsonValue& place, const fs::path& fold
 
 /// Drivers with settings of their own; the others have only limits.
 using ReadDriver = DeviceUse (*)(const JsonValue&, const fs::path&, DeviceSettings&);
-constexpr std::array kReaders = {Named<ReadDriver>{"falcon", read_falcon},
-                                 Named<ReadDriver>{"openhaptics", read_openhaptics},
-                                 Named<ReadDriver>{"dhd", read_dhd},
-                                 Named<ReadDriver>{"plugin", read_plugin},
-                                 Named<ReadDriver>{"inverse3", read_inverse3},
-                                 Named<ReadDriver>{"replay", read_replay}};
+constexpr auto kReaders = std::to_array<Named<ReadDriver>>({{"falcon", read_falcon},
+                                                            {"openhaptics", read_openhaptics},
+                                                            {"dhd", read_dhd},
+                                                            {"plugin", read_plugin},
+                                                            {"inverse3", read_inverse3},
+                                                            {"replay", read_replay}});
 
 DeviceUse read_driver(const std::string& driver, const JsonValue& place, const fs::path& folder,
                       DeviceSettings& settings) {
   const auto reader = std::ranges::find(kReaders, driver, &Named<ReadDriver>::name);
   if (reader == kReaders.end()) return read_use(place.object({"limits"}));
   return reader->value(place, folder, settings);
-}
-
-std::optional<fs::path> absolute_path_in(const char* variable) {
-  const char* text = std::getenv(variable);
-  if (text == nullptr || !fs::path(text).is_absolute()) return std::nullopt;
-  return fs::path(text);
 }
 
 void tighten(double& limit, const std::optional<double>& lab) {
@@ -359,10 +352,8 @@ DeviceSettings read_device_settings(const fs::path& file) {
 }
 
 fs::path default_device_settings_path() {
-  const fs::path file = fs::path("touchtrial") / "devices.json";
-  if (const auto config = absolute_path_in("XDG_CONFIG_HOME")) return *config / file;
-  const auto home = absolute_path_in("HOME");
-  return home ? *home / ".config" / file : fs::path();
+  const fs::path folder = user_config_folder();
+  return folder.empty() ? folder : folder / "devices.json";
 }
 
 DeviceSettings device_settings_for(const fs::path& named) {

@@ -28,7 +28,7 @@ namespace touchtrial::device {
 [[nodiscard]] DeviceDriver plugin_driver();
 
 /// `list` finds a mouse where the environment names a display (DISPLAY, WAYLAND_DISPLAY). `open`
-/// throws DeviceError, as a window belongs to the application: its OpenedDevice (app/windows) makes
+/// throws DeviceError, as a window belongs to the application: its OpenedDevice (app) makes
 /// the window and the MouseDevice, and opens every other driver too.
 [[nodiscard]] DeviceDriver mouse_driver();
 

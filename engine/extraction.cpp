@@ -14,7 +14,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -41,28 +40,12 @@ std::vector<SubBands> sub_band_levels(const GreyImage& image, int levels) {
   return bands;
 }
 
-template <typename Sample>
-std::uint64_t bytes_of(const Plane<Sample>& plane) {
-  return plane.size() * sizeof(Sample);
-}
-
-/// Logs the stages that a method without local orders skips, with the adaptive method's bytes.
-void note_no_order_map(const GreyImage& image, const ExtractionOptions& options, StageLog* log) {
-  if (log == nullptr) return;
-  const std::string why = options.method == Method::fixed
-                              ? "one order serves the whole image"
-                              : std::string(name_of(options.method)) + " uses none";
-  log->skip("sub-bands", why, image.size() * sizeof(double));
-  log->skip("order map", why, image.size() / 4 * sizeof(double));
-}
-
 /// CSGV at half resolution. Frees the sub-bands as early as possible.
 /// \param keep  copies those of the first level to `result`
 template <typename Real>
 Plane<double> half_gradient(const GreyImage& image, const ExtractionOptions& options, bool keep,
-                            Extraction<Real>& result, StageTimer& timer) {
+                            Extraction<Real>& result) {
   const std::vector<SubBands> levels = sub_band_levels(image, options.levels);
-  timer.done("sub-bands", "orders follow their gradient", 4 * bytes_of(levels.front().ll));
   if (keep) {
     result.sub_band_ll = converted<Real>(levels.front().ll);
     result.sub_band_lh = converted<Real>(levels.front().lh);
@@ -74,13 +57,12 @@ Plane<double> half_gradient(const GreyImage& image, const ExtractionOptions& opt
 
 template <typename Real>
 Extraction<Real> adaptive(const GreyImage& image, const ExtractionOptions& options,
-                          const WantedPlanes& wanted, StageTimer& timer) {
+                          const WantedPlanes& wanted) {
   Extraction<Real> result;
-  const Plane<double> gradient = half_gradient(image, options, wanted.sub_bands, result, timer);
+  const Plane<double> gradient = half_gradient(image, options, wanted.sub_bands, result);
   if (wanted.csgv) result.csgv = doubled<Real>(gradient, image.height(), image.width());
   const Plane<double> orders = order_map(gradient);
   if (wanted.order) result.order = doubled<Real>(orders, image.height(), image.width());
-  timer.done("order map", "each pixel has an order of its own", bytes_of(orders));
   result.texture = options.norm == Norm::additive
                        ? gl_texture<Real>(image, options.radius, orders)
                        : converted<Real>(normed_texture(image, options, orders));
@@ -121,7 +103,7 @@ Extraction<Real> texture_alone(Plane<Real> texture) {
 
 template <typename Real>
 Extraction<Real> by_method(const GreyImage& image, const ExtractionOptions& options,
-                           const WantedPlanes& wanted, StageTimer& timer) {
+                           const WantedPlanes& wanted) {
   switch (options.method) {
     case Method::fixed:
       return fixed<Real>(image, options, wanted);
@@ -139,7 +121,7 @@ Extraction<Real> by_method(const GreyImage& image, const ExtractionOptions& opti
     case Method::adaptive:
       break;
   }
-  return adaptive<Real>(image, options, wanted, timer);
+  return adaptive<Real>(image, options, wanted);
 }
 
 /// The default adaptive and fixed methods have kernels in float. In double the plain code below is
@@ -174,13 +156,6 @@ void add_by_products(const GreyImage& image, const WantedPlanes& wanted, Extract
   }
 }
 
-template <typename Real>
-std::string what_was_taken(const ExtractionOptions& options, const Extraction<Real>& result) {
-  std::string what(name_of(options.method));
-  if (result.steps > 0) what += ", " + std::to_string(result.steps) + " steps";
-  return what;
-}
-
 /// What to ask the method for: not the planes that have to be those of the control.
 WantedPlanes wanted_of_method(const ExtractionOptions& options, WantedPlanes wanted) {
   if (options.control != Control::none) wanted.picture = wanted.force = false;
@@ -213,34 +188,29 @@ GreyImage stretched(const Plane<Real>& texture) {
 }  // namespace
 
 template <typename Real>
-void apply_control(const ExtractionOptions& options, Plane<Real>& texture, StageLog* log) {
+void apply_control(const ExtractionOptions& options, Plane<Real>& texture) {
   if (options.control == Control::none) return;
-  StageTimer timer(log);
   texture = phase_scrambled(texture, options.control_seed);
-  timer.done("control", "phases of noise, amplitudes of the texture", bytes_of(texture));
 }
 
 template <typename Real>
 void extract_texture_into(const GreyImage& image, const ExtractionOptions& options,
-                          const WantedPlanes& wanted, Extraction<Real>& result, StageLog* log) {
+                          const WantedPlanes& wanted, Extraction<Real>& result) {
   check_options(options);
   if (image.empty()) throw std::invalid_argument("extract_texture: the image is empty");
-  if (options.method != Method::adaptive) note_no_order_map(image, options, log);
   const WantedPlanes of_method = wanted_of_method(options, wanted);
-  StageTimer timer(log);
   if (!extracted_by_kernel(image, options, of_method, result)) {
-    result = by_method<Real>(image, options, of_method, timer);
+    result = by_method<Real>(image, options, of_method);
   }
-  timer.done("texture", what_was_taken(options, result), bytes_of(result.texture));
-  apply_control(options, result.texture, log);
+  apply_control(options, result.texture);
   add_by_products(image, wanted, result);
 }
 
 template <typename Real>
 Extraction<Real> extract_texture(const GreyImage& image, const ExtractionOptions& options,
-                                 const WantedPlanes& wanted, StageLog* log) {
+                                 const WantedPlanes& wanted) {
   Extraction<Real> result;
-  extract_texture_into(image, options, wanted, result, log);
+  extract_texture_into(image, options, wanted, result);
   return result;
 }
 
@@ -259,16 +229,16 @@ GreyImage texture_picture(const Plane<Real>& texture, Mapping mapping) {
   return picture_by(texture, [](double sample) { return 128.0 + sample; });
 }
 
-template void apply_control<float>(const ExtractionOptions&, Plane<float>&, StageLog*);
-template void apply_control<double>(const ExtractionOptions&, Plane<double>&, StageLog*);
+template void apply_control<float>(const ExtractionOptions&, Plane<float>&);
+template void apply_control<double>(const ExtractionOptions&, Plane<double>&);
 template void extract_texture_into<float>(const GreyImage&, const ExtractionOptions&,
-                                          const WantedPlanes&, Extraction<float>&, StageLog*);
+                                          const WantedPlanes&, Extraction<float>&);
 template void extract_texture_into<double>(const GreyImage&, const ExtractionOptions&,
-                                           const WantedPlanes&, Extraction<double>&, StageLog*);
+                                           const WantedPlanes&, Extraction<double>&);
 template Extraction<float> extract_texture<float>(const GreyImage&, const ExtractionOptions&,
-                                                  const WantedPlanes&, StageLog*);
+                                                  const WantedPlanes&);
 template Extraction<double> extract_texture<double>(const GreyImage&, const ExtractionOptions&,
-                                                    const WantedPlanes&, StageLog*);
+                                                    const WantedPlanes&);
 template GreyImage texture_picture<float>(const Plane<float>&, Mapping);
 template GreyImage texture_picture<double>(const Plane<double>&, Mapping);
 

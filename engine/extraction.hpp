@@ -5,7 +5,6 @@
 #include "core/plane.hpp"
 #include "engine/extraction_options.hpp"
 #include "engine/force_field.hpp"
-#include "engine/stage_log.hpp"
 
 #include <vector>
 
@@ -50,27 +49,24 @@ struct Extraction {
 /// texture lies within 4e-5 grey levels of the double one (adaptive and fixed with the additive
 /// norm), or is the double one rounded (other norms and methods but tv-gabor).
 /// \param image  8-bit grey, at least 1 x 1
-/// \param log  receives the stages and the bytes of their planes; may be nullptr
 /// \throws std::invalid_argument if the image is empty, if a parameter is out of range or NaN, or
 ///   if tv-gabor chooses its component automatically and a side of the image is below 3 pixels
 /// Thread-safe. It is no error if tv-gabor stops at max_steps: see Extraction::converged.
 template <typename Real>
 [[nodiscard]] Extraction<Real> extract_texture(const GreyImage& image,
                                                const ExtractionOptions& options,
-                                               const WantedPlanes& wanted = {},
-                                               StageLog* log = nullptr);
+                                               const WantedPlanes& wanted = {});
 
 /// The same into an existing result. In float, the adaptive and fixed methods with their default
 /// norm, gradient, combine and levels reuse planes that have the right shape: a series of images of
 /// one size allocates almost nothing.
 template <typename Real>
 void extract_texture_into(const GreyImage& image, const ExtractionOptions& options,
-                          const WantedPlanes& wanted, Extraction<Real>& result,
-                          StageLog* log = nullptr);
+                          const WantedPlanes& wanted, Extraction<Real>& result);
 
 /// Replaces a method's texture by its control, if the options ask for one.
 template <typename Real>
-void apply_control(const ExtractionOptions& options, Plane<Real>& texture, StageLog* log = nullptr);
+void apply_control(const ExtractionOptions& options, Plane<Real>& texture);
 
 /// The texture as an 8-bit picture, rounded half up and limited to 0 .. 255.
 /// \throws std::invalid_argument if the texture is empty or not finite

@@ -2,7 +2,6 @@
 
 #include "core/errors.hpp"
 #include "core/version.hpp"
-#include "engine/fourier/planning.hpp"
 #include "protocols/registration/registration.hpp"
 
 #include <exception>
@@ -62,7 +61,6 @@ PYBIND11_MODULE(_touchtrial, module) {
   module.attr("__version__") = std::string(program_version());
   set_up_log();
   registration::register_protocols();
-  engine::use_measured_plans(engine::user_cache_folder());
   add_error(module);
   add_extraction(module);
   add_rendering(module);

@@ -65,7 +65,7 @@ engine::TextureField made_field(const FieldSource& source, const engine::Extract
                                 const engine::RenderingOptions& rendering) {
   if (source.image.empty()) return engine::make_texture_field(source.texture, rendering);
   std::optional<design::TakenTexture> none;
-  return design::build_field(source.image, method, rendering, none, false, nullptr).field;
+  return design::build_field(source.image, method, rendering, none, false).field;
 }
 
 /// The gains of all fields together, as of a study's stimuli.

@@ -4,7 +4,6 @@
 #include "app/simulated_study.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
-#include "protocols/collect/collect.hpp"
 #include "protocols/design/key_protection.hpp"
 #include "python/arrays.hpp"
 #include "python/module.hpp"
@@ -55,10 +54,11 @@ class Passphrase {
 };
 
 store::StudyStore opened(const std::string& database) {
-  store::StudyStore store = collect::open_study(database);
+  store::StudyStore store = store::StudyStore::open(database, store::StudyStore::Access::read_only);
   const store::StudyState state = store.state();
   if (state.unblinded) return store;
-  throw StoreError(one_line(collect::study_name(database)) + ": is " + app::blind_words(state) +
+  throw StoreError(one_line(fs::path(database).filename().string()) + ": is " +
+                   app::blind_words(state) +
                    ", so its outcomes are not shown; run `touchtrial close` and `touchtrial "
                    "unblind`");
 }

@@ -1,6 +1,7 @@
 #include "stimuli/generator.hpp"
 
 #include "core/errors.hpp"
+#include "core/named.hpp"
 #include "core/text.hpp"
 #include "stimuli/recipes.hpp"
 
@@ -37,8 +38,12 @@ constexpr std::array<Maker, kRecipes.size()> kMakers = {
     make_leaf,     make_shell, make_log,     make_wicker, make_venation, make_ribs,
     make_endgrain, make_sand,  make_leather, make_cork,   make_flat};
 
-constexpr std::array<std::string_view, 5> kKindNames = {"texture", "object", "material", "practice",
-                                                        "flat"};
+constexpr auto kKindNames =
+    std::to_array<Named<StimulusKind>>({{"texture", StimulusKind::texture},
+                                        {"object", StimulusKind::object},
+                                        {"material", StimulusKind::material},
+                                        {"practice", StimulusKind::practice},
+                                        {"flat", StimulusKind::flat}});
 
 Maker maker_of(std::string_view label) {
   const auto* const recipe = std::find_if(kRecipes.begin(), kRecipes.end(),
@@ -52,13 +57,11 @@ Maker maker_of(std::string_view label) {
 }  // namespace
 
 std::string_view name_of(StimulusKind kind) {
-  return kKindNames.at(static_cast<std::size_t>(kind));
+  return name_in(kKindNames, kind);
 }
 
 std::optional<StimulusKind> stimulus_kind_from_name(std::string_view name) {
-  const auto* const found = std::find(kKindNames.begin(), kKindNames.end(), name);
-  if (found == kKindNames.end()) return std::nullopt;
-  return static_cast<StimulusKind>(found - kKindNames.begin());
+  return value_in(kKindNames, name);
 }
 
 int shipped_exemplars(StimulusKind kind) {

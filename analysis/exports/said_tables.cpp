@@ -1,7 +1,9 @@
 #include "analysis/exports/said_tables.hpp"
 
+#include "core/named.hpp"
 #include "protocols/store/marks.hpp"
 
+#include <array>
 #include <map>
 #include <set>
 
@@ -9,15 +11,10 @@ namespace touchtrial::analysis {
 namespace {
 
 const char* name_of_kind(design::QuestionKind kind) {
-  switch (kind) {
-    case design::QuestionKind::choice:
-      return "choice";
-    case design::QuestionKind::number:
-      return "number";
-    case design::QuestionKind::text:
-      break;
-  }
-  return "text";
+  using enum design::QuestionKind;
+  static constexpr auto kNames = std::to_array<Named<design::QuestionKind>>(
+      {{"choice", choice}, {"number", number}, {"text", text}});
+  return name_in(kNames, kind).data();
 }
 
 /// Of an answer whose question nobody knows, whether it was typed is all that is known.

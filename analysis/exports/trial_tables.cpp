@@ -49,6 +49,11 @@ DataCell exemplar_of(const TrialView& trial) {
   return image_of(*trial.study, *trial.outcome);
 }
 
+DataCell gain_of(const TrialView& trial) {
+  if (!has_stimulus(trial)) return std::monostate{};
+  return trial.outcome->gain_db;
+}
+
 DataCell kind_of(const TrialView& trial) {
   switch (trial.outcome->kind) {
     case design::PresentationKind::lead_in:
@@ -203,10 +208,10 @@ std::span<const TrialColumn> trial_columns() {
 
 std::vector<TrialColumn> trial_columns_of(const Outcomes* outcomes) {
   std::vector<TrialColumn> columns(kTrialColumns.begin(), kTrialColumns.end());
-  const bool chosen =
-      outcomes != nullptr && std::ranges::any_of(outcomes->trials, [](const TrialOutcome& trial) {
-        return trial.chosen.has_value();
-      });
+  if (outcomes == nullptr) return columns;
+  if (outcomes->design.trials.rove_db > 0.0) columns.push_back({"gain_db", true, gain_of});
+  const bool chosen = std::ranges::any_of(
+      outcomes->trials, [](const TrialOutcome& trial) { return trial.chosen.has_value(); });
   if (!chosen) return columns;
   const std::vector<TrialColumn> own = analysis_of(outcomes->design).trial_columns();
   columns.insert(columns.end(), own.begin(), own.end());

@@ -30,8 +30,8 @@ struct TrialColumn {
 /// The columns that every protocol has, in the order of trials.csv.
 [[nodiscard]] std::span<const TrialColumn> trial_columns();
 
-/// These, and if an adaptive order chose what was presented, the columns of the protocol's
-/// analysis.
+/// These; where gains are roved, "gain_db"; and if an adaptive order chose what was presented, the
+/// columns of the protocol's analysis.
 /// \param outcomes  null before unblinding
 [[nodiscard]] std::vector<TrialColumn> trial_columns_of(const Outcomes* outcomes);
 

@@ -120,6 +120,11 @@ analysis::Table table_in_all(const design::Study& study, const StimulusLevels& l
   table.notes = {{levels.provisional ? kWhatItIs : kWhatPilotsSay},
                  {"With the gains times the number in the last row, every stimulus would stand 10 "
                   "dB up, as far as motors and stability allow."}};
+  if (study.trials.rove_db > 0.0) {
+    table.notes.push_back(
+        {fmt::format("Of the middle of the {:g} dB over which gains are roved (/trials/rove_db).",
+                     study.trials.rove_db)});
+  }
   if (levels.provisional) table.notes.push_back({kWhoseItIs});
   return table;
 }
@@ -190,27 +195,42 @@ struct StrengthSense {
 
 /// A stimulus as somebody sees it who judges by strength alone.
 struct Strong {
-  double strength;
+  double level_db;  ///< at its own gain
   int class_index;
 };
 
-/// \return the share of right answers by the nearest strength
-double right_by_strength(std::vector<Strong> stimuli, double noise) {
-  std::ranges::stable_sort(stimuli, {}, &Strong::strength);
+/// Gains evenly over a range, re a stimulus's own.
+std::vector<double> roved_gains_db(double rove_db) {
+  constexpr int kGains = 128;
+  if (rove_db == 0.0) return {0.0};
+  std::vector<double> gains;
+  for (int i = 0; i < kGains; ++i) gains.push_back(rove_db * ((i + 0.5) / kGains - 0.5));
+  return gains;
+}
+
+/// \return the share of right answers by the nearest strength, over the gains that are presented
+double right_by_strength(std::vector<Strong> stimuli, const StrengthSense& sense, double rove_db) {
+  std::ranges::stable_sort(stimuli, {}, &Strong::level_db);
+  std::vector<double> strengths;
+  for (const Strong& one : stimuli) strengths.push_back(sense.strength(one.level_db));
   const boost::math::normal normal;
+  const std::vector<double> gains_db = roved_gains_db(rove_db);
   double right = 0.0;
   for (const Strong& shown : stimuli) {
-    const auto below = [&](std::size_t edge) {
-      if (edge == 0) return 0.0;
-      if (edge == stimuli.size()) return 1.0;
-      const double middle = 0.5 * (stimuli[edge - 1].strength + stimuli[edge].strength);
-      return boost::math::cdf(normal, (middle - shown.strength) / noise);
-    };
-    for (std::size_t i = 0; i < stimuli.size(); ++i) {
-      if (stimuli[i].class_index == shown.class_index) right += below(i + 1) - below(i);
+    for (const double gain_db : gains_db) {
+      const double strength = sense.strength(shown.level_db + gain_db);
+      const auto below = [&](std::size_t edge) {
+        if (edge == 0) return 0.0;
+        if (edge == stimuli.size()) return 1.0;
+        const double middle = 0.5 * (strengths[edge - 1] + strengths[edge]);
+        return boost::math::cdf(normal, (middle - strength) / sense.noise);
+      };
+      for (std::size_t i = 0; i < stimuli.size(); ++i) {
+        if (stimuli[i].class_index == shown.class_index) right += below(i + 1) - below(i);
+      }
     }
   }
-  return right / static_cast<double>(stimuli.size());
+  return right / static_cast<double>(stimuli.size() * gains_db.size());
 }
 
 /// What level alone gives away, by device, curve and method.
@@ -230,12 +250,11 @@ std::vector<LevelAlone> by_level_alone(const design::Study& study, const Stimulu
       std::vector<Strong> stimuli;
       for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
         if (levels.stimuli[i].method != method) continue;
-        stimuli.push_back(
-            {sense.strength(levels.levels[i][place].db), levels.stimuli[i].class_index});
+        stimuli.push_back({levels.levels[i][place].db, levels.stimuli[i].class_index});
       }
       if (stimuli.empty()) continue;
       found.push_back({levels.blank[place].device, levels.blank[place].curve, method,
-                       right_by_strength(std::move(stimuli), sense.noise)});
+                       right_by_strength(std::move(stimuli), sense, study.trials.rove_db)});
     }
   }
   return found;
@@ -259,8 +278,12 @@ std::string level_alone_words(const design::Study& study, const StimulusLevels& 
   if (words.empty()) return words;
   return fmt::format(
       "A simulated person who judged by strength alone, and not by pattern, would be right in so "
-      "many answers (chance {:.0f} %), over curves and methods: {}.{}",
-      100.0 / static_cast<double>(study.classes.size()), words,
+      "many answers (chance {:.0f} %), over curves and methods{}: {}.{}",
+      100.0 / static_cast<double>(study.classes.size()),
+      study.trials.rove_db > 0.0
+          ? fmt::format(", with gains roved over {:g} dB", study.trials.rove_db)
+          : "",
+      words,
       study.rendering.equalise == engine::Equalise::level
           ? ""
           : " \"equalise\": \"level\" takes that away.");

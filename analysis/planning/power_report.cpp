@@ -2,8 +2,10 @@
 
 #include "analysis/statistics/chance_test.hpp"
 #include "analysis/statistics/descriptive.hpp"
+#include "core/named.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -121,17 +123,13 @@ ErrorVerdict verdict_of(const PowerRow& row) noexcept {
 }
 
 std::string_view name_of(ErrorVerdict verdict) {
-  switch (verdict) {
-    case ErrorVerdict::conservative:
-      return "conservative";
-    case ErrorVerdict::excessive:
-      return "excessive";
-    case ErrorVerdict::conditional:
-      return "these orders alone";
-    case ErrorVerdict::holds:
-      break;
-  }
-  return "holds";
+  using enum ErrorVerdict;
+  static constexpr auto kNames =
+      std::to_array<Named<ErrorVerdict>>({{"conservative", conservative},
+                                          {"excessive", excessive},
+                                          {"these orders alone", conditional},
+                                          {"holds", holds}});
+  return name_in(kNames, verdict);
 }
 
 PowerReport make_power_report(const PowerProgress& progress) {

@@ -76,8 +76,8 @@ engine::FeltFeatures ServoFeelings::felt(const design::StimulusIndex& stimulus,
                                          const FeltTrial& trial) const {
   const auto& all = fields_.all();
   const auto field = std::ranges::find(all, stimulus, &simulation::LabelledField::stimulus);
-  return simulation::feel_trial(*field, fields_.plane(), study_, subject_, trial.study_seed,
-                                trial.participant, trial.nth);
+  return simulation::feel_trial(*field, trial.gain_db, fields_.plane(), study_, subject_,
+                                trial.study_seed, trial.participant, trial.nth);
 }
 
 /// What the participants of one simulated study share.
@@ -262,6 +262,7 @@ void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answe
     if (planned.break_before[i]) condition.rest(begun - 1);
     ++trial.nth;
     trial.draw = person.draws.bits();
+    trial.gain_db = presentation.gain_db;
     const std::uint64_t instead = person.draws.bits();
     if (!place.carries_over) condition.forget();
     // What is not scored is answered only if the next answer leans on it.

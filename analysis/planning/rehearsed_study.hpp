@@ -27,6 +27,7 @@ struct FeltTrial {
   int participant = 0;           ///< number, from 1
   std::uint64_t nth = 0;         ///< the participant's presentation, from 1
   std::uint64_t draw = 0;        ///< the presentation's own random bits
+  double gain_db = 0.0;          ///< design::Presentation::gain_db
 };
 
 /// What participants learn and feel: functions of the arguments alone. Thread-safe.

@@ -1,11 +1,13 @@
 #include "analysis/planning/track_walk.hpp"
 
 #include "core/errors.hpp"
+#include "core/named.hpp"
 #include "core/random.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "protocols/threshold/design/threshold.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -65,15 +67,10 @@ ordered_json belief_json(const Belief& belief) {
 }
 
 std::string_view shape_word(procedures::Shape shape) {
-  switch (shape) {
-    case procedures::Shape::logistic:
-      return "logistic";
-    case procedures::Shape::weibull:
-      return "weibull";
-    case procedures::Shape::normal:
-      break;
-  }
-  return "normal";
+  using enum procedures::Shape;
+  static constexpr auto kNames = std::to_array<Named<procedures::Shape>>(
+      {{"logistic", logistic}, {"weibull", weibull}, {"normal", normal}});
+  return name_in(kNames, shape);
 }
 
 ordered_json walked_grid_json(const TrackWalk& walk) {

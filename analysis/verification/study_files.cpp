@@ -172,11 +172,9 @@ Verification of_damaged(const store::DamagedStore& error) {
 
 }  // namespace
 
-Verification verify_files(const StudyFiles& files, const std::string& head,
-                          const StudyOpener& open) try {
+Verification verify_files(const StudyFiles& files, const std::string& head) try {
   const store::StudyStore store =
-      open ? open(files.database)
-           : store::StudyStore::open(files.database, store::StudyStore::Access::read_only);
+      store::StudyStore::open(files.database, store::StudyStore::Access::read_only);
   const Opened<design::StudyKey> key = open_key(files);
   const Opened<engine::Pack> pack = open_pack(files, store, key.file);
   Verification verification =

@@ -4,7 +4,6 @@
 #include "analysis/verification/verification.hpp"
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -23,15 +22,10 @@ struct StudyFiles {
   std::filesystem::path pack;
 };
 
-/// Opens the database; may throw what StudyStore::open throws.
-using StudyOpener = std::function<store::StudyStore(const std::filesystem::path&)>;
-
 /// Opens a study's files and verifies them with verify_study. A damaged database, key or pack is a
 /// failed check.
 /// \param head  as for verify_study
-/// \param open  opens the database for reading; empty: StudyStore::open
 /// \throws StoreError if the database is missing, is not one of Touchtrial, or has a newer schema
-[[nodiscard]] Verification verify_files(const StudyFiles& files, const std::string& head,
-                                        const StudyOpener& open = {});
+[[nodiscard]] Verification verify_files(const StudyFiles& files, const std::string& head);
 
 }  // namespace touchtrial::analysis

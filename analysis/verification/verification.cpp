@@ -6,11 +6,13 @@
 #include "analysis/verification/chain_notes.hpp"
 #include "analysis/verification/session_course.hpp"
 #include "core/errors.hpp"
+#include "core/named.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/store/damage.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <map>
 #include <optional>
@@ -343,15 +345,10 @@ Check left(const std::string& name, const std::string& needed) {
 }  // namespace
 
 std::string name_of(CheckState state) {
-  switch (state) {
-    case CheckState::passed:
-      return "passed";
-    case CheckState::failed:
-      return "failed";
-    case CheckState::not_checked:
-      break;
-  }
-  return "not-checked";
+  using enum CheckState;
+  static constexpr auto kNames = std::to_array<Named<CheckState>>(
+      {{"passed", passed}, {"failed", failed}, {"not-checked", not_checked}});
+  return std::string(name_in(kNames, state));
 }
 
 bool Verification::holds() const noexcept {

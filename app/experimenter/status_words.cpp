@@ -1,5 +1,8 @@
 #include "app/experimenter/status_words.hpp"
 
+#include "core/named.hpp"
+
+#include <array>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -14,15 +17,10 @@ bool begins_character(char byte) {
 }  // namespace
 
 const char* level_word(session::HandLevel level) noexcept {
-  switch (level) {
-    case session::HandLevel::low:
-      return "low";
-    case session::HandLevel::right:
-      return "right";
-    case session::HandLevel::high:
-      break;
-  }
-  return "high";
+  using enum session::HandLevel;
+  static constexpr auto kNames =
+      std::to_array<Named<session::HandLevel>>({{"low", low}, {"right", right}, {"high", high}});
+  return name_in(kNames, level).data();
 }
 
 std::string stop_advice(const session::SessionStatus& status) {

@@ -1,5 +1,6 @@
 #include "device/acceptance/acceptance.hpp"
 
+#include "device/acceptance/handle_runs.hpp"
 #include "device/workspace_fit.hpp"
 
 #include <algorithm>
@@ -12,14 +13,11 @@ namespace touchtrial::device {
 namespace {
 
 constexpr double kRestRunS = 4.0;
-constexpr double kMoveRunS = 12.0;
 constexpr double kPeakShare = 0.6;
 /// Of the continuous force, for the twelve seconds of a weight.
 constexpr double kWeightShare = 1.5;
-constexpr double kLeastWeightN = 0.1;
-constexpr double kStrokeShareN = 0.2;  ///< that strokes need beside load and friction
-constexpr double kShakeMoreN = 0.4;    ///< beyond friction
-constexpr double kSoftestWall = 0.1;   ///< N/mm
+constexpr double kShakeMoreN = 0.4;   ///< beyond friction
+constexpr double kSoftestWall = 0.1;  ///< N/mm
 constexpr double kWallFactor = 1.3;
 constexpr double kStiffestWall = 1.0;  ///< where the maker states no limit
 constexpr double kLeastSwingMm = 0.15;
@@ -31,7 +29,6 @@ constexpr double kLeastRecordS = 1.0;
 constexpr double kLeastStrokedS = 6.0;
 constexpr int kWarmMinutes = 20;
 constexpr double kMinuteS = 60.0;
-constexpr double kSuspendedRunS = 8.0;
 
 /// Ends an acceptance that must not go on.
 struct EndOfAcceptance {
@@ -72,7 +69,8 @@ class Procedure {
         person_(person),
         options_(options),
         info_(bench.info()),
-        forces_(acceptance_forces(info_, bench.limits())) {
+        forces_(acceptance_forces(info_, bench.limits())),
+        runs_(bench, person, options.skip) {
     certificate_.driver = info_.name;
     certificate_.model = info_.model;
     certificate_.serial = info_.serial;
@@ -93,6 +91,9 @@ class Procedure {
       if (options_.silence) fall_silent();
     } catch (const EndOfAcceptance& end) {
       missed("everything that follows", end.why);
+    } catch (const DeviceFailed& failed) {
+      certificate_.fault = failed.fault + " in the run " + failed.run;
+      missed("everything that follows", "the device failed: " + certificate_.fault);
     }
     if (!options_.thermal) missed("force after twenty minutes", "not asked for (--thermal)");
     if (!options_.silence) {
@@ -110,20 +111,9 @@ class Procedure {
 
   /// \return whether the run may begin; if not, the certificate says that it was left out
   bool consents(const Prompt& prompt, const std::string& what) {
-    if (!options_.skip.contains(prompt.step) && person_.ready(prompt) == Consent::go) return true;
-    missed(what, "left out");
+    if (runs_.consents(prompt)) return true;
+    missed(what, std::string(kLeftOut));
     return false;
-  }
-
-  void measure(const std::string& name, Measurement& measurement) {
-    const ServoReport report = bench_.run(name, measurement);
-    if (report.end != ServoEnd::fault) return;
-    certificate_.fault = std::string(name_of(report.fault));
-    if (report.device_fault != DeviceFault::none) {
-      certificate_.fault += " (" + std::string(name_of(report.device_fault)) + ")";
-    }
-    certificate_.fault += " in the run " + name;
-    throw EndOfAcceptance{"the device failed: " + certificate_.fault};
   }
 
   AxisResult& result_of(DeviceAxis axis) {
@@ -155,7 +145,7 @@ class Procedure {
                   "Let the handle lie or hold it still; no force acts for 4 s."},
                  "noise at rest")) {
       Listening rest(kRestRunS);
-      measure("rest", rest);
+      runs_.measure("rest", rest);
       certificate_.rest = rest_figures(rest.samples());
       if (certificate_.rest) {
         person_.tell(fmt::format("at rest: noise {:.4f} mm, drift {:.3f} mm",
@@ -164,17 +154,7 @@ class Procedure {
         missed("noise at rest", "the run ended early");
       }
     }
-    if (!consents({"steps",
-                   Stance::moving,
-                   {},
-                   "Move the handle slowly (1 cm in a second) to and fro along all three axes; no "
-                   "force acts for 12 s."},
-                  "encoder step")) {
-      return;
-    }
-    Listening moving(kMoveRunS);
-    measure("steps", moving);
-    const MeasuredOrWhy step = encoder_step_mm(moving.samples());
+    const MeasuredOrWhy step = runs_.encoder_step();
     certificate_.step_mm = step.measured;
     if (step.measured) {
       person_.tell("encoder step: " + words_of(*step.measured, 4, "mm"));
@@ -194,7 +174,7 @@ class Procedure {
         throw EndOfAcceptance{"nothing pulls a handle before the signs of all axes are known"};
       }
       AxisPush run(axis, forces_.push_n);
-      measure("push " + std::string(name_of(axis)), run);
+      runs_.measure("push " + std::string(name_of(axis)), run);
       take_push(axis, run);
     }
   }
@@ -220,17 +200,7 @@ class Procedure {
 
   void stroke() {
     for (const DeviceAxis axis : kDeviceAxes) {
-      if (!consents({"strokes", Stance::free, axis,
-                     fmt::format("Hold the handle in the middle, without a weight. Let go slowly "
-                                 "within 2 s of the start: it is held and moved by 5 mm along axis "
-                                 "{} for 12 s.",
-                                 name_of(axis))},
-                    "friction" + on(axis))) {
-        continue;
-      }
-      SlowStrokes run(axis, support_n_, forces_.gains, forces_.hold_n);
-      measure("stroke " + std::string(name_of(axis)), run);
-      const StrokesOrWhy strokes = stroke_figures(run, step_mm());
+      const StrokesOrWhy strokes = runs_.empty_strokes("strokes", axis, support_n_, step_mm());
       if (!strokes.figures) {
         missed("friction and load" + on(axis), strokes.why);
         continue;
@@ -255,53 +225,11 @@ class Procedure {
         missed(what, "the empty handle was not measured");
         continue;
       }
-      const double most_n = std::min(forces_.weight_n, forces_.hold_n) - std::abs(*result.load_n) -
-                            result.friction_n->value - kStrokeShareN;
-      if (most_n < kLeastWeightN) {
-        missed(what, "the handle's own load and friction leave no room for a weight");
-        continue;
-      }
-      if (options_.skip.contains("weights")) {
-        missed(what, "left out");
-        continue;
-      }
-      const std::optional<double> weight_n = person_.weight_n(axis, kLeastWeightN, most_n);
-      if (!weight_n) {
-        missed(what, "no weight");
-        continue;
-      }
-      if (!consents({"weights", Stance::loaded, axis,
-                     "Hold the handle in the middle with the weight on it. Let go slowly within 2 "
-                     "s of the start: it is held and moved by 5 mm for 12 s."},
-                    what)) {
-        continue;
-      }
-      SlowStrokes run(axis, support_n_, forces_.gains, forces_.hold_n);
-      measure("weight " + std::string(name_of(axis)), run);
-      take_weight(*weight_n, run, result);
+      const EmptyHandle empty{support_n_, *result.load_n, result.friction_n->value};
+      const WeightOrWhy weighed = runs_.weigh("weights", axis, empty, step_mm());
+      result.weight = weighed.weight;
+      if (!weighed.weight) missed(what, weighed.why);
     }
-  }
-
-  void take_weight(double weight_n, const SlowStrokes& run, AxisResult& result) {
-    const StrokesOrWhy strokes = stroke_figures(run, step_mm());
-    if (!strokes.figures) {
-      missed("size of the force" + on(run.axis()), strokes.why);
-      return;
-    }
-    const Measured& load = strokes.figures->load_n;
-    // Over a pulley a weight pulls to either side.
-    const double more_n = std::abs(load.value - *result.load_n);
-    result.weight = WeighResult{weight_n, more_n, load.error};
-    const auto scale = result.scale();
-    if (!scale) {
-      result.weight.reset();
-      missed("size of the force" + on(run.axis()), "the weight made no difference");
-      return;
-    }
-    person_.tell(fmt::format(
-        "axis {}: {:.3f} N commanded for {:.3f} N: delivers {:.0f} +- {:.0f} "
-        "% of the command",
-        name_of(run.axis()), more_n, weight_n, 100.0 * scale->value, 100.0 * scale->error));
   }
 
   void shake() {
@@ -323,7 +251,7 @@ class Procedure {
         continue;
       }
       ShakenStrokes run(axis, support_n_, push_n, forces_.gains, forces_.hold_n);
-      measure("shake " + std::string(name_of(axis)), run);
+      runs_.measure("shake " + std::string(name_of(axis)), run);
       const ShakeOrWhy shaken = shake_figures(run, result.friction_n->value, step_mm());
       if (!shaken.figures) {
         missed(what, shaken.why);
@@ -373,12 +301,12 @@ class Procedure {
                       "N/mm: press on it as in a stroke for 6 s, and do not lift the handle. It is "
                       "switched off if it begins to swing or throws the handle up again and again.",
                       stiffness)};
-      if (options_.skip.contains(prompt.step) || person_.ready(prompt) != Consent::go) {
-        wall.ended = "left out";
+      if (!runs_.consents(prompt)) {
+        wall.ended = kLeftOut;
         break;
       }
       WallTrial run(stiffness, least_swing_mm(), forces_.hold_n);
-      measure("wall", run);
+      runs_.measure("wall", run);
       if (run.oscillated()) {
         wall.oscillates_n_per_mm = stiffness;
         wall.ended = "oscillation";
@@ -446,7 +374,7 @@ class Procedure {
   bool record(const std::string& name, const std::string& felt, Measurement& run,
               Accelerometer& accelerometer) {
     accelerometer.start();
-    measure(name, run);
+    runs_.measure(name, run);
     AccelerometerRecord record = accelerometer.stop();
     // The beginning is the way down to the plane.
     const auto before = static_cast<std::size_t>(kSettledS * record.rate_hz);
@@ -488,7 +416,7 @@ class Procedure {
       const double strokes_s = SlowStrokes::kPeriods * SlowStrokes::kPeriodS;
       SlowStrokes run(DeviceAxis::y, support_n_, forces_.gains, forces_.hold_n,
                       kMinuteS - strokes_s);
-      measure("warm " + std::to_string(minute + 1), run);
+      runs_.measure("warm " + std::to_string(minute + 1), run);
       const StrokesOrWhy strokes = stroke_figures(run, step_mm());
       if (!strokes.figures) {
         missed(what, strokes.why);
@@ -504,33 +432,16 @@ class Procedure {
   }
 
   void fall_silent() {
-    observe(
-        "program suspended for two seconds (SIGSTOP)",
-        "Hold the handle firmly: it is pushed down by 0.3 N. After about 3 s the system "
-        "suspends this program for 2 s.",
-        "What did the force do meanwhile (gone at once, gone after how long, stayed)? ",
-        [&](Measurement& run) { return bench_.run_suspended(run); }, false);
-    observe(
-        "cable pulled",
-        "Hold the handle firmly: it is pushed down by 0.3 N for 8 s. Pull the device's data "
-        "cable out within that time.",
-        "What did the force do (gone at once, gone after how long, stayed)? ",
-        [&](Measurement& run) { return std::optional(bench_.run("cable", run)); }, true);
+    observe("program suspended for two seconds (SIGSTOP)",
+            "What did the force do meanwhile (gone at once, gone after how long, stayed)? ",
+            runs_.suspend_program("silence"));
+    observe("cable pulled", "What did the force do (gone at once, gone after how long, stayed)? ",
+            runs_.pull_cable("silence"));
   }
 
-  /// \param cuts  the device cannot answer to the end, if the person did what the text asks for
-  template <typename Run>
-  void observe(const std::string& what, const std::string& text, const std::string& question,
-               const Run& run, bool cuts) {
-    if (!consents({"silence", Stance::guarding, DeviceAxis::y, text}, what)) return;
-    SteadyPush push(kSuspendedRunS);
-    const std::optional<ServoReport> report = run(push);
-    if (!report) {
-      missed(what, "not possible here");
-      return;
-    }
-    if (cuts && report->end != ServoEnd::fault) {
-      missed(what, "the device answered to the end: nobody pulled the cable");
+  void observe(const std::string& what, const std::string& question, const ReportOrWhy& run) {
+    if (!run.report) {
+      missed(what, run.why);
       return;
     }
     const std::string saw = person_.saw(question);
@@ -539,8 +450,8 @@ class Procedure {
       return;
     }
     certificate_.observed.push_back({what, saw + "; the run ended as " +
-                                               std::string(name_of(report->end)) + ", " +
-                                               std::string(name_of(report->fault))});
+                                               std::string(name_of(run.report->end)) + ", " +
+                                               std::string(name_of(run.report->fault))});
   }
 
   /// What was measured in commanded newtons becomes newtons at the handle.
@@ -565,6 +476,7 @@ class Procedure {
   const AcceptanceOptions& options_;
   DeviceInfo info_;
   AcceptanceForces forces_;
+  HandleRuns runs_;
   Vec3 support_n_;  ///< commanded, for the handle's own load
   Certificate certificate_;
   std::vector<AxisCurves> curves_;

@@ -21,9 +21,8 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::string_view kCertificateKind = "touchtrial device acceptance 2";
-constexpr std::array kAxisWords = {Named<DeviceAxis>{"x", DeviceAxis::x},
-                                   Named<DeviceAxis>{"y", DeviceAxis::y},
-                                   Named<DeviceAxis>{"z", DeviceAxis::z}};
+constexpr auto kAxisWords = std::to_array<Named<DeviceAxis>>(
+    {{"x", DeviceAxis::x}, {"y", DeviceAxis::y}, {"z", DeviceAxis::z}});
 constexpr NumberRange kPositive{.low = 0.0, .high = 1e6};
 constexpr NumberRange kSigned{.low = -1e6, .high = 1e6};
 constexpr std::size_t kMostEntries = 1000;

@@ -3,14 +3,12 @@
 #pragma once
 
 #include "device/acceptance/acceptance.hpp"
+#include "device/device_settings.hpp"
 #include "device/unverified_fact.hpp"
 
 #include <array>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,8 +16,20 @@
 namespace touchtrial::device {
 
 /// The steps, in their order.
-enum class BringUpStep { rest, ways, push, steps, range, weight, wall, program, cable, questions };
-inline constexpr std::size_t kBringUpSteps = 10;
+enum class BringUpStep {
+  open,
+  rest,
+  ways,
+  push,
+  steps,
+  range,
+  weight,
+  wall,
+  program,
+  cable,
+  questions
+};
+inline constexpr std::size_t kBringUpSteps = 11;
 [[nodiscard]] std::string_view name_of(BringUpStep step) noexcept;
 
 enum class StepOutcome {
@@ -29,9 +39,10 @@ enum class StepOutcome {
   failed,       ///< without a result
   done,
 };
+[[nodiscard]] std::string_view name_of(StepOutcome outcome) noexcept;
 
-/// Where a person feels a push.
-enum class FeltSide { right, left, up, down, towards, away, nothing };
+enum class BringUpEnd { stopped, complete, wrong_sign, fault };
+[[nodiscard]] std::string_view name_of(BringUpEnd end) noexcept;
 
 /// \name Forces, N
 ///@{
@@ -43,80 +54,14 @@ inline constexpr double kSecondPushN = 0.5;
 inline constexpr double kConfirmedN = 2.5;
 ///@}
 
-/// How the handle was carried by hand along an axis.
-struct CarriedWay {
-  DeviceAxis axis = DeviceAxis::y;
-  Vec3 moved_mm;                     ///< by the readings
-  std::optional<double> ruler_mm{};  ///< by a ruler, > 0
-  /// Whether the readings followed the axis, and no other more.
-  [[nodiscard]] bool is_right() const noexcept;
+/// What a step found: numbers of one unit, or a word.
+struct Finding {
+  BringUpStep step = BringUpStep::open;
+  std::string name;    ///< unique; of an axis, with " x" or " +x" behind it
+  std::string unit{};  ///< of the numbers
+  std::vector<double> numbers{};
+  std::string word{};
 };
-
-/// A small push, and what the person felt.
-struct FeltPush {
-  DeviceAxis axis = DeviceAxis::y;
-  double force_n = 0.0;  ///< along the axis, signed, of at most kSecondPushN
-  FeltSide felt = FeltSide::nothing;
-  Vec3 moved_mm;  ///< by the readings, while the force was on
-  [[nodiscard]] FeltSide expected() const noexcept;
-  /// Whether the person felt another side, or the readings ran against the force.
-  [[nodiscard]] bool is_wrong() const noexcept;
-};
-
-/// The servo's loop and the device's readings at rest.
-struct LoopFigures {
-  double rate_hz = 0.0;
-  double readings_hz = 0.0;     ///< new readings of the device
-  double longest_gap_ms = 0.0;  ///< without a new one
-  double p50_us = 0.0;          ///< lateness of ticks
-  double p99_us = 0.0;
-  double worst_us = 0.0;
-  std::int64_t overruns = 0;
-};
-
-/// The handle without and with a known weight, on axis y.
-struct HungWeight {
-  double load_n = 0.0;  ///< that the empty handle needs
-  Measured friction_n;  ///< in commanded newtons
-  std::optional<WeighResult> weight{};
-  /// True newtons for a commanded one.
-  [[nodiscard]] std::optional<Measured> scale() const;
-};
-
-/// A soft floor that somebody pressed on, and the first two seconds of it.
-struct PressedWall {
-  static constexpr std::size_t kMostTicks = 2000;
-  double stiffness_n_per_mm = 0.0;
-  bool swung = false;
-  double contact_s = 0.0;
-  double delivered_share = 0.0;  ///< ServoReport::delivered_share
-  /// \name Of one length: ticks of 1 ms, strictly rising; height; force upwards
-  ///@{
-  std::vector<int> ms{};
-  std::vector<int> height_um{};
-  std::vector<int> force_mn{};
-  ///@}
-};
-
-enum class SilentForce { gone_at_once, gone_within_a_second, stayed_longer, stronger };
-
-/// What a person saw of a force when program or cable were gone, and how the run ended.
-struct SilenceSeen {
-  SilentForce force = SilentForce::gone_at_once;
-  std::string ended{};  ///< names of ServoEnd and of the faults
-  std::string fault{};
-  std::string device_fault{};
-};
-
-enum class BringUpEnd { stopped, complete, wrong_sign, fault };
-
-/// \name The file's words
-///@{
-[[nodiscard]] std::string_view name_of(StepOutcome outcome) noexcept;
-[[nodiscard]] std::string_view name_of(FeltSide side) noexcept;
-[[nodiscard]] std::string_view name_of(SilentForce force) noexcept;
-[[nodiscard]] std::string_view name_of(BringUpEnd end) noexcept;
-///@}
 
 /// Everything that the file has. Holds no name of a person, machine or path.
 struct BringUp {
@@ -126,24 +71,13 @@ struct BringUp {
   std::string model{};
   std::string firmware{};
   std::string library{};
-  /// What the library says: forces, stiffness, damping, rate and workspace alone.
-  DeviceInfo stated{};
+  std::string stand_in{};    ///< of stand_in_of; empty: nothing says that it is no hardware
   std::string scheduling{};  ///< "fifo" or "other"
   bool memory_locked = false;
   std::array<StepOutcome, kBringUpSteps> outcomes{};
   BringUpEnd ended = BringUpEnd::stopped;
   std::string why{};  ///< it ended early; a fixed phrase
-  std::optional<RestFigures> rest{};
-  std::optional<LoopFigures> loop{};
-  std::vector<CarriedWay> ways{};
-  std::vector<FeltPush> pushes{};
-  std::optional<Measured> step_mm{};
-  std::optional<Workspace> reached{};
-  std::optional<HungWeight> weight{};
-  std::optional<PressedWall> wall{};
-  std::optional<SilenceSeen> program_silent{};
-  std::optional<SilenceSeen> cable_silent{};
-  std::map<std::string, std::string> answers{};  ///< by the facts' ids
+  std::vector<Finding> findings{};
 
   [[nodiscard]] StepOutcome& outcome(BringUpStep step) {
     return outcomes.at(static_cast<std::size_t>(step));
@@ -151,11 +85,24 @@ struct BringUp {
   [[nodiscard]] StepOutcome outcome(BringUpStep step) const {
     return outcomes.at(static_cast<std::size_t>(step));
   }
+  /// \return null if it was not found
+  [[nodiscard]] const Finding* find(std::string_view name) const noexcept;
+  /// \return its first number; 0 if it was not found
+  [[nodiscard]] double number(std::string_view name) const noexcept;
+  /// \name Add a finding that a step may have, or replace the one of this name
+  ///@{
+  void note(const std::string& name, std::vector<double> numbers);
+  void note(const std::string& name, std::string_view word);
+  ///@}
   /// Whether readings and forces are right on all axes, either way.
   [[nodiscard]] bool signs_confirmed() const;
-  /// Whether it settles a fact of its driver, one way or the other.
+  /// Whether it settles a fact of its driver, one way or the other. A stand-in settles none.
   [[nodiscard]] bool settles(const UnverifiedFact& fact) const;
 };
+
+/// \return why this is no real hardware, as far as the program can know: a phrase; empty: nothing
+///   says so
+[[nodiscard]] std::string stand_in_of(const DeviceInfo& device, const DeviceSettings& settings);
 
 /// \return what a file may say of a device: the serial number's hash, cut to 16 bits, which tells
 ///   two devices apart and fits thousands of serial numbers; texts in which the number was replaced
@@ -172,7 +119,7 @@ void bring_up(AcceptanceBench& bench, AcceptancePerson& person,
               const std::function<void()>& save);
 
 /// \return the content of its file: JSON
-[[nodiscard]] std::string bring_up_json(BringUp record);
+[[nodiscard]] std::string bring_up_json(const BringUp& record);
 
 /// \param source  names the origin in errors
 /// \throws StudyError with the JSON pointer if it is no such file

@@ -1,3 +1,4 @@
+#include "core/named.hpp"
 #include "device/conformance/conformance.hpp"
 
 #include <algorithm>
@@ -97,15 +98,10 @@ bool conforms(const std::vector<ConformanceCheck>& checks) noexcept {
 }
 
 std::string_view name_of(ConformanceOutcome outcome) noexcept {
-  switch (outcome) {
-    case ConformanceOutcome::passed:
-      return "passed";
-    case ConformanceOutcome::failed:
-      return "failed";
-    case ConformanceOutcome::not_observed:
-      break;
-  }
-  return "not_observed";
+  using enum ConformanceOutcome;
+  static constexpr auto kNames = std::to_array<Named<ConformanceOutcome>>(
+      {{"passed", passed}, {"failed", failed}, {"not_observed", not_observed}});
+  return name_in(kNames, outcome);
 }
 
 }  // namespace touchtrial::device

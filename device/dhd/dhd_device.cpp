@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -18,6 +19,7 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <thread>
 
 namespace touchtrial::device {
 namespace dhd {
@@ -29,6 +31,9 @@ constexpr double kMostMassChangeKg = 0.2;
 constexpr unsigned char kSlowestWatchdog = 255;
 /// A weight of more than this share of the peak force is nonsense, where the model is not known.
 constexpr double kMostWeightShare = 0.5;
+
+/// The library sheds the weight within 250 ms of exchanges.
+constexpr int kPollsToShedWeight = 300;
 
 /// The library's word for a type without a name.
 constexpr std::string_view kNoName = "unknown device";
@@ -97,7 +102,7 @@ class Session {
   }
   /// \return the most that arms and end-effector can weigh, N; nothing if they are not carried
   [[nodiscard]] std::optional<double> most_weight_n(const DeviceInfo& info) const {
-    if (!settings_.gravity_compensation) return std::nullopt;
+    if (!settings_.gravity_compensation || !has_switch()) return std::nullopt;
     return model_ ? model_->max_weight_n : kMostWeightShare * info.max_force_n;
   }
   /// \throws DeviceError if the settings' mass, or the device's own, cannot be true
@@ -162,6 +167,7 @@ class Session {
       (void)api().set_max_force(limit_n + most_weight_n.value_or(0.0), device_);
     }
     keep_watchdog(kWatchdog);
+    if (!has_switch()) shed_weight();
     expect(api().set_force(0.0, 0.0, 0.0, device_), "zero force");
   }
 
@@ -190,6 +196,18 @@ class Session {
   }
 
  private:
+  /// \return whether force can be switched off
+  [[nodiscard]] bool has_switch() const noexcept { return !model_ || model_->has_switch; }
+
+  /// Exchanges positions until the library adds no weight to a force any more.
+  void shed_weight() const {
+    for (int poll = 0; poll < kPollsToShedWeight; ++poll) {
+      Vec3 position_m;
+      (void)api().get_position(&position_m.x, &position_m.y, &position_m.z, device_);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
   [[nodiscard]] char opened(int index) const {
     const int count = library_.device_count();
     if (index < 0 || index >= count) {

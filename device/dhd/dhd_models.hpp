@@ -24,6 +24,8 @@ struct Model {
   /// More than arms and end-effector can weigh: one and a half times the most that the maker's
   /// library 3.17.5 gave for this model, or for the heaviest of its family.
   double max_weight_n;
+  /// False: nothing switches force off, and a zero has to be one, so the library may add no weight.
+  bool has_switch = true;
 };
 
 inline constexpr Model kOmega3 = {"omega.3", {160, 160, 110}, 12, 12, 5, 6.2};
@@ -37,6 +39,8 @@ inline constexpr Model kSigma7 = {"sigma.7", {190, 190, 130}, 20, 20, 4, 22.5};
 inline constexpr Model kLambda3 = {"lambda.3", {}, 0, 0, 0, 27};
 inline constexpr Model kLambda6 = {"lambda.6", {}, 0, 0, 0, 27};
 inline constexpr Model kLambda7 = {"lambda.7", {240, 240, 170}, 20, 20, 8, 27};
+/// Novint's. Size and strength are those of the driver falcon.
+inline constexpr Model kFalcon = {"Falcon", {80, 80, 80}, 6.5, 2.1, 0, 0, false};
 
 struct ModelOfType {
   int type;  ///< dhdGetSystemType
@@ -48,7 +52,7 @@ inline constexpr auto kModelsOfTypes = std::to_array<ModelOfType>({
     {33, &kOmega3},   {34, &kOmega6},   {36, &kOmega6},   {35, &kOmega7},   {37, &kOmega7},
     {63, &kDelta3},   {64, &kDelta6},   {206, &kSigma3},  {106, &kSigma6},  {107, &kSigma6},
     {104, &kSigma7},  {105, &kSigma7},  {203, &kLambda3}, {131, &kLambda6}, {132, &kLambda6},
-    {108, &kLambda7}, {109, &kLambda7},
+    {108, &kLambda7}, {109, &kLambda7}, {60, &kFalcon},
 
     {110, &kOmega3},  {111, &kDelta3},  {133, &kSigma3},  {102, &kSigma7},  {103, &kSigma7},
     {209, &kSigma7},  {112, &kLambda7}, {113, &kLambda7}, {114, &kLambda7}, {117, &kLambda7},

@@ -61,23 +61,17 @@ constexpr std::array kPlantedFields = {
 constexpr std::array<std::string_view, 6> kOtherParameters = {
     "friction", "velocity_readings", "delay_ticks", "zero_order_hold", "structure", "workspace"};
 
-constexpr std::array kFrictionShapes = {Named<FrictionShape>{"isotropic", FrictionShape::isotropic},
-                                        Named<FrictionShape>{"per_axis", FrictionShape::per_axis}};
-constexpr std::array kWorkspaceShapes = {
-    Named<WorkspaceShape>{"box", WorkspaceShape::box},
-    Named<WorkspaceShape>{"ellipsoid", WorkspaceShape::ellipsoid}};
-constexpr std::array kConfidences = {Named<Confidence>{"opened", Confidence::opened},
-                                     Named<Confidence>{"transcript", Confidence::transcript},
-                                     Named<Confidence>{"derived", Confidence::derived},
-                                     Named<Confidence>{"memory", Confidence::memory},
-                                     Named<Confidence>{"guess", Confidence::guess},
-                                     Named<Confidence>{"measured", Confidence::measured}};
-
-template <typename Value, std::size_t size>
-std::string_view word_for(const std::array<Named<Value>, size>& table, Value value) noexcept {
-  const auto found = std::ranges::find(table, value, &Named<Value>::value);
-  return found == table.end() ? std::string_view("?") : found->name;
-}
+constexpr auto kFrictionShapes = std::to_array<Named<FrictionShape>>(
+    {{"isotropic", FrictionShape::isotropic}, {"per_axis", FrictionShape::per_axis}});
+constexpr auto kWorkspaceShapes = std::to_array<Named<WorkspaceShape>>(
+    {{"box", WorkspaceShape::box}, {"ellipsoid", WorkspaceShape::ellipsoid}});
+constexpr auto kConfidences =
+    std::to_array<Named<Confidence>>({{"opened", Confidence::opened},
+                                      {"transcript", Confidence::transcript},
+                                      {"derived", Confidence::derived},
+                                      {"memory", Confidence::memory},
+                                      {"guess", Confidence::guess},
+                                      {"measured", Confidence::measured}});
 
 /// A parameter that is out of range, or contradicts another one.
 struct Problem {
@@ -276,7 +270,7 @@ ordered_json planted_json(const DeviceModel::Planted& planted) {
 
 void add_other_parameters(ordered_json& object, const DeviceModel& model) {
   if (model.friction != FrictionShape::isotropic) {
-    object["friction"] = word_for(kFrictionShapes, model.friction);
+    object["friction"] = name_in(kFrictionShapes, model.friction);
   }
   if (model.velocity_readings != 0) object["velocity_readings"] = model.velocity_readings;
   if (model.delay_ticks != 0) object["delay_ticks"] = model.delay_ticks;
@@ -288,14 +282,14 @@ void add_other_parameters(ordered_json& object, const DeviceModel& model) {
   if (model.workspace) {
     object["workspace"] = {{"least_mm", axes_json(model.workspace->least_mm)},
                            {"greatest_mm", axes_json(model.workspace->greatest_mm)},
-                           {"shape", word_for(kWorkspaceShapes, model.workspace->shape)}};
+                           {"shape", name_in(kWorkspaceShapes, model.workspace->shape)}};
   }
 }
 
 }  // namespace
 
 std::string_view name_of(Confidence confidence) noexcept {
-  return word_for(kConfidences, confidence);
+  return name_in(kConfidences, confidence);
 }
 
 void check_device_model(const DeviceModel& model) {

@@ -65,7 +65,7 @@ std::vector<DeviceListing> list_mouse(const DeviceSettings&) {
 
 std::unique_ptr<HapticDevice> refuse_without_window(const DeviceSettings&) {
   throw DeviceError(
-      "mouse: it needs a window, which this command does not open; use touchtrial device monitor "
+      "mouse: it needs a window, which this command does not open; use touchtrial device test "
       "mouse");
 }
 

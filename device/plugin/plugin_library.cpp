@@ -1,6 +1,7 @@
 #include "device/plugin/plugin_library.hpp"
 
 #include "core/errors.hpp"
+#include "core/named.hpp"
 #include "core/strict_json.hpp"
 
 #include <algorithm>
@@ -213,31 +214,20 @@ DeviceFault fault_of(Trouble trouble) noexcept {
 }
 
 const char* words_for(Trouble trouble) noexcept {
-  switch (trouble) {
-    case Trouble::none:
-      return "nothing is wrong";
-    case Trouble::lost:
-      return "returned LOST";
-    case Trouble::bad_data:
-      return "returned BAD_DATA";
-    case Trouble::warm_motors:
-      return "returned WARM_MOTORS";
-    case Trouble::limit_passed:
-      return "returned LIMIT_PASSED";
-    case Trouble::failed:
-      return "returned FAILED or an unknown number";
-    case Trouble::not_finite:
-      return "gave a position or velocity that is not a number";
-    case Trouble::absurd:
-      return "gave a position beyond 10 m or a velocity beyond 1 km/s";
-    case Trouble::sequence_fell:
-      return "gave a reading with a smaller number than the one before";
-    case Trouble::unknown_readiness:
-      return "gave a readiness that the interface does not have";
-    case Trouble::wrote_past:
-      return "wrote beyond the size of a structure";
-  }
-  return "unknown trouble";
+  using enum Trouble;
+  static constexpr auto kNames = std::to_array<Named<Trouble>>(
+      {{"nothing is wrong", none},
+       {"returned LOST", lost},
+       {"returned BAD_DATA", bad_data},
+       {"returned WARM_MOTORS", warm_motors},
+       {"returned LIMIT_PASSED", limit_passed},
+       {"returned FAILED or an unknown number", failed},
+       {"gave a position or velocity that is not a number", not_finite},
+       {"gave a position beyond 10 m or a velocity beyond 1 km/s", absurd},
+       {"gave a reading with a smaller number than the one before", sequence_fell},
+       {"gave a readiness that the interface does not have", unknown_readiness},
+       {"wrote beyond the size of a structure", wrote_past}});
+  return name_in(kNames, trouble).data();
 }
 
 OpenDevice::OpenDevice(const Library& library, const std::string& settings) : library_(library) {

@@ -1,11 +1,13 @@
 #include "device/servo/servo.hpp"
 
+#include "core/named.hpp"
 #include "device/platform/realtime.hpp"
 #include "device/servo/duration_histogram.hpp"
 #include "device/servo/flight_recorder.hpp"
 #include "device/simulated/simulated_hand.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -333,74 +335,46 @@ ServoReport run_servo_in_virtual_time(HapticDevice& device, ForceSource& force, 
   return run(device, force, sink, options, clock, {});
 }
 
-// Without a default, so that the compiler reports an enumerator that has no name yet.
-
 std::string_view name_of(ServoEnd end) noexcept {
-  switch (end) {
-    case ServoEnd::hand_stopped:
-      return "hand_stopped";
-    case ServoEnd::time_limit:
-      return "time_limit";
-    case ServoEnd::comfort_stop:
-      return "comfort_stop";
-    case ServoEnd::fault:
-      break;
-  }
-  return "fault";
+  using enum ServoEnd;
+  static constexpr auto kNames = std::to_array<Named<ServoEnd>>({{"hand_stopped", hand_stopped},
+                                                                 {"time_limit", time_limit},
+                                                                 {"comfort_stop", comfort_stop},
+                                                                 {"fault", fault}});
+  return name_in(kNames, end);
 }
 
 std::string_view name_of(SafetyVerdict verdict) noexcept {
-  switch (verdict) {
-    case SafetyVerdict::passed:
-      return "passed";
-    case SafetyVerdict::limited:
-      return "limited";
-    case SafetyVerdict::fault:
-      break;
-  }
-  return "fault";
+  using enum SafetyVerdict;
+  static constexpr auto kNames = std::to_array<Named<SafetyVerdict>>(
+      {{"passed", passed}, {"limited", limited}, {"fault", fault}});
+  return name_in(kNames, verdict);
 }
 
 std::string_view name_of(SafetyFault fault) noexcept {
-  switch (fault) {
-    case SafetyFault::none:
-      return "none";
-    case SafetyFault::not_finite:
-      return "not_finite";
-    case SafetyFault::emergency_stop:
-      return "emergency_stop";
-    case SafetyFault::not_ready:
-      return "not_ready";
-    case SafetyFault::overspeed:
-      return "overspeed";
-    case SafetyFault::stale_sample:
-      return "stale_sample";
-    case SafetyFault::frozen_encoders:
-      return "frozen_encoders";
-    case SafetyFault::stalled:
-      return "stalled";
-    case SafetyFault::device:
-      break;
-  }
-  return "device";
+  using enum SafetyFault;
+  static constexpr auto kNames =
+      std::to_array<Named<SafetyFault>>({{"none", none},
+                                         {"not_finite", not_finite},
+                                         {"emergency_stop", emergency_stop},
+                                         {"not_ready", not_ready},
+                                         {"overspeed", overspeed},
+                                         {"stale_sample", stale_sample},
+                                         {"frozen_encoders", frozen_encoders},
+                                         {"stalled", stalled},
+                                         {"device", device}});
+  return name_in(kNames, fault);
 }
 
 std::string_view name_of(DeviceFault fault) noexcept {
-  switch (fault) {
-    case DeviceFault::none:
-      return "none";
-    case DeviceFault::link_lost:
-      return "link_lost";
-    case DeviceFault::bad_data:
-      return "bad_data";
-    case DeviceFault::warm_motors:
-      return "warm_motors";
-    case DeviceFault::limit_passed:
-      return "limit_passed";
-    case DeviceFault::driver:
-      break;
-  }
-  return "driver";
+  using enum DeviceFault;
+  static constexpr auto kNames = std::to_array<Named<DeviceFault>>({{"none", none},
+                                                                    {"link_lost", link_lost},
+                                                                    {"bad_data", bad_data},
+                                                                    {"warm_motors", warm_motors},
+                                                                    {"limit_passed", limit_passed},
+                                                                    {"driver", driver}});
+  return name_in(kNames, fault);
 }
 
 }  // namespace touchtrial::device

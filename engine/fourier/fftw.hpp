@@ -1,12 +1,9 @@
 /// \file FFTW's two libraries behind one name, and plans that are made together and kept. Private to
-/// engine/fourier. Source: docs/decisions/0012-measured-transforms.md.
+/// engine/fourier.
 #pragma once
 
-#include "engine/fourier/planning.hpp"
-#include "engine/fourier/real_fft.hpp"
-
+#include <complex>
 #include <cstddef>
-#include <cstdlib>
 #include <functional>
 #include <map>
 #include <memory>
@@ -38,10 +35,6 @@ struct Fftw<double> {
   static constexpr auto* transform = &fftw_execute_dft;
   static constexpr auto* destroy = &fftw_destroy_plan;
   static constexpr auto* forget = &fftw_forget_wisdom;
-  static constexpr auto* learned = &fftw_export_wisdom_to_string;
-  static constexpr auto* import = &fftw_import_wisdom_from_string;
-  static std::string version() { return fftw_version; }
-  static constexpr const char* kPrecision = "f64";
 };
 
 template <>
@@ -56,11 +49,11 @@ struct Fftw<float> {
   static constexpr auto* transform = &fftwf_execute_dft;
   static constexpr auto* destroy = &fftwf_destroy_plan;
   static constexpr auto* forget = &fftwf_forget_wisdom;
-  static constexpr auto* learned = &fftwf_export_wisdom_to_string;
-  static constexpr auto* import = &fftwf_import_wisdom_from_string;
-  static std::string version() { return fftwf_version; }
-  static constexpr const char* kPrecision = "f32";
 };
+
+/// Measured plans would be faster by up to a third, but differ from run to run, and with them the
+/// last bits of a texture.
+inline constexpr unsigned kPlannerFlags = FFTW_ESTIMATE;
 
 /// FFTW's planner has global state: only the execution of a plan is thread-safe.
 inline std::mutex& planner_mutex() {
@@ -96,27 +89,24 @@ template <typename Real>
 }
 
 /// Plans that belong together, for any buffers of FftwBuffer. Those of up to 4096 samples take
-/// longer to make than to execute, so they are kept for reuse where they are estimated: a new sense
-/// of touch, for instance, is created for every exploration.
+/// longer to make than to execute, so they are kept for reuse: a new sense of touch, for instance,
+/// is created for every exploration.
 template <typename Real>
 class FftwPlans {
  public:
   using Plan = typename Fftw<Real>::Plan;
-  /// Makes all plans with FFTW's planner flags; nullptr where FFTW has none.
-  using Make = std::function<std::vector<Plan>(unsigned flags)>;
+  /// Makes all plans with kPlannerFlags; nullptr where FFTW has none.
+  using Make = std::function<std::vector<Plan>()>;
 
-  /// \param name  of these plans among all of this precision; part of a file's name
+  /// \param name  of these plans among all of this precision
   /// \param samples  that are transformed
   /// \throws std::invalid_argument if FFTW has no such plan
-  FftwPlans(const std::string& name, std::size_t samples, FftPlan way, const Make& make) {
+  FftwPlans(const std::string& name, std::size_t samples, const Make& make) {
     const std::lock_guard lock(planner_mutex());
-    const bool keep = way == FftPlan::estimated && samples <= kKeptUpToSamples;
+    const bool keep = samples <= kKeptUpToSamples;
     if (keep) plans_ = kept()[name];
     if (plans_) return;
-    Fftw<Real>::forget();
-    if (way == FftPlan::estimated || !plan_by_file(name, samples, make)) {
-      plans_ = std::make_shared<Plans>(make(FFTW_ESTIMATE));
-    }
+    plans_ = std::make_shared<Plans>(make());
     // Otherwise plans would depend on the order in which transforms are created.
     Fftw<Real>::forget();
     if (!plans_->are_complete()) {
@@ -158,27 +148,6 @@ class FftwPlans {
   static std::map<std::string, std::shared_ptr<Plans>>& kept() {
     static std::map<std::string, std::shared_ptr<Plans>> plans;
     return plans;
-  }
-
-  bool plan_by_file(const std::string& name, std::size_t samples, const Make& make) {
-    const std::string file = as_file_name(Fftw<Real>::version() + '-' + Fftw<Real>::kPrecision +
-                                          '-' + name + '-' + processor_name() + ".wisdom");
-    const auto fits = [&](const std::string& wisdom) {
-      Fftw<Real>::forget();
-      if (Fftw<Real>::import(wisdom.c_str()) == 0) return false;
-      plans_ = std::make_shared<Plans>(make(FFTW_MEASURE | FFTW_WISDOM_ONLY));
-      return plans_->are_complete();
-    };
-    const auto learn = [&] {
-      Fftw<Real>::forget();
-      plans_ = std::make_shared<Plans>(make(FFTW_MEASURE));
-      const std::unique_ptr<char, decltype(&std::free)> text(Fftw<Real>::learned(), &std::free);
-      return text == nullptr ? std::string() : std::string(text.get());
-    };
-    const auto text = wisdom_files().text_for(file, samples, fits, learn);
-    if (text && fits(*text)) return true;
-    Fftw<Real>::forget();
-    return false;
   }
 
   std::shared_ptr<Plans> plans_;  // changed under the planner's mutex

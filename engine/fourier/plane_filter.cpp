@@ -47,25 +47,24 @@ PlaneFilter<Real>::Workspace::~Workspace() = default;
 
 template <typename Real>
 struct PlaneFilter<Real>::State {
-  State(int rows, int columns, FftPlan way)
+  State(int rows, int columns)
       : blocks{checked_side(rows), checked_side(columns)},
         // A line more than rows: the same row of all blocks should not fall on one place of caches.
         stride(blocks.block_size() + kLanes),
         spectrum(blocks.count() * stride),
         plans(std::to_string(rows) + 'x' + std::to_string(columns) + "-filter",
-              static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), way,
-              [this](unsigned flags) { return make_plans(flags); }) {}
+              static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns),
+              [this] { return make_plans(); }) {}
 
-  /// Plans overwrite what they are measured on. Transformed columns are contiguous: FFTW then needs
-  /// no buffer of its own.
-  [[nodiscard]] std::vector<typename Fftw<Real>::Plan> make_plans(unsigned flags) const {
+  /// Transformed columns are contiguous: FFTW then needs no buffer of its own.
+  [[nodiscard]] std::vector<typename Fftw<Real>::Plan> make_plans() const {
     const JoinedRows<Real> rows(blocks.width);
     auto* const samples = as_fftw(rows.samples.data());
     auto* const coefficients = as_fftw(rows.spectrum.data());
     const FftwBuffer<std::complex<Real>> transformed(blocks.block_size());
     auto* const block = as_fftw(spectrum.data());
     auto* const columns = as_fftw(transformed.data());
-    flags |= FFTW_DESTROY_INPUT;
+    constexpr unsigned flags = kPlannerFlags | FFTW_DESTROY_INPUT;
     const auto row = [&](auto* from, auto* to, int sign) {
       return Fftw<Real>::plan_many(1, &blocks.width, 1, from, nullptr, 1, 0, to, nullptr, 1, 0,
                                    sign, flags);
@@ -91,8 +90,8 @@ struct PlaneFilter<Real>::State {
 };
 
 template <typename Real>
-PlaneFilter<Real>::PlaneFilter(int height, int width, FftPlan plan)
-    : state_(std::make_unique<State>(height, width, plan)) {}
+PlaneFilter<Real>::PlaneFilter(int height, int width)
+    : state_(std::make_unique<State>(height, width)) {}
 
 template <typename Real>
 PlaneFilter<Real>::~PlaneFilter() = default;

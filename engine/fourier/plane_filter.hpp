@@ -61,7 +61,7 @@ class PlaneFilter {
   /// \param height,width  samples, even, >= 16
   /// \throws std::bad_alloc if there is no memory for the plane
   /// \throws std::invalid_argument if a side is odd or too small, or FFTW has no transform of it
-  PlaneFilter(int height, int width, FftPlan plan = FftPlan::estimated);
+  PlaneFilter(int height, int width);
   ~PlaneFilter();
   PlaneFilter(const PlaneFilter&) = delete;
   PlaneFilter& operator=(const PlaneFilter&) = delete;

@@ -10,17 +10,16 @@ namespace touchtrial::engine {
 
 template <typename Real>
 struct RealFft<Real>::State {
-  State(int height, int width, FftPlan way)
+  State(int height, int width)
       : plane(static_cast<std::size_t>(height) * static_cast<std::size_t>(width)),
         spectrum(static_cast<std::size_t>(height) * static_cast<std::size_t>(width / 2 + 1)),
-        plans(
-            std::to_string(height) + 'x' + std::to_string(width), plane.span().size(), way,
-            [=, this](unsigned flags) {
-              auto* const coefficients = as_fftw(spectrum.data());
-              return std::vector{
-                  Fftw<Real>::plan_real_forward(height, width, plane.data(), coefficients, flags),
-                  Fftw<Real>::plan_real_inverse(height, width, coefficients, plane.data(), flags)};
-            }) {}
+        plans(std::to_string(height) + 'x' + std::to_string(width), plane.span().size(), [=, this] {
+          auto* const coefficients = as_fftw(spectrum.data());
+          return std::vector{Fftw<Real>::plan_real_forward(height, width, plane.data(),
+                                                           coefficients, kPlannerFlags),
+                             Fftw<Real>::plan_real_inverse(height, width, coefficients,
+                                                           plane.data(), kPlannerFlags)};
+        }) {}
 
   FftwBuffer<Real> plane;
   FftwBuffer<std::complex<Real>> spectrum;
@@ -28,8 +27,7 @@ struct RealFft<Real>::State {
 };
 
 template <typename Real>
-RealFft<Real>::RealFft(int height, int width, FftPlan plan)
-    : state_(std::make_unique<State>(height, width, plan)) {}
+RealFft<Real>::RealFft(int height, int width) : state_(std::make_unique<State>(height, width)) {}
 
 template <typename Real>
 RealFft<Real>::~RealFft() = default;

@@ -7,22 +7,16 @@
 
 namespace touchtrial::engine {
 
-/// How a transform is planned.
-enum class FftPlan {
-  estimated,  ///< for few transforms
-  measured,   ///< for many transforms of one size, which repay the measurement; see planning.hpp
-};
-
-/// A transform of one size with its buffers. Real is float or double. The results are the same in
-/// every run on a machine, because a plan is measured only once and then kept. Only one thread at a
-/// time may use an object. Different objects may be created, used and destroyed at the same time.
+/// A transform of one size with its buffers. Real is float or double. Plans are estimated, never
+/// measured, so that the results are the same in every run on a machine. Only one thread at a time
+/// may use an object. Different objects may be created, used and destroyed at the same time.
 template <typename Real>
 class RealFft {
  public:
   /// \param height,width  samples, >= 1
   /// \throws std::bad_alloc if there is no memory for the buffers
   /// \throws std::invalid_argument if FFTW has no transform of this size
-  RealFft(int height, int width, FftPlan plan = FftPlan::estimated);
+  RealFft(int height, int width);
   ~RealFft();
   RealFft(const RealFft&) = delete;
   RealFft& operator=(const RealFft&) = delete;

@@ -35,7 +35,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little,
               "fields are written and mapped in the layout that they have in memory");
-constexpr std::uint32_t kFieldVersion = 3;
+/// Of a pack: its fields and its table of contents.
+constexpr std::uint32_t kPackVersion = 3;
 
 /// What the heights of a file are, by the model that renders them.
 enum class Layout : std::uint32_t { coefficients = 2, heights = 3 };
@@ -46,7 +47,7 @@ Layout layout_of(ModelKind model) {
 
 struct Header {
   std::array<char, 8> magic = {'T', 'T', 'F', 'I', 'E', 'L', 'D', '1'};
-  std::uint32_t version = kFieldVersion;
+  std::uint32_t version = kPackVersion;
   Layout layout = Layout::heights;
   std::uint32_t height_px = 0;
   std::uint32_t width_px = 0;
@@ -66,9 +67,9 @@ Header checked_header(ByteView file, const std::filesystem::path& path) {
   if (file.size() < sizeof header) refuse(path, "is too short for a field file");
   std::memcpy(&header, file.data(), sizeof header);
   if (header.magic != Header{}.magic) refuse(path, "is not a field file");
-  if (header.version != kFieldVersion) {
+  if (header.version != kPackVersion) {
     refuse(path, "has field version " + std::to_string(header.version) + ", not " +
-                     std::to_string(kFieldVersion));
+                     std::to_string(kPackVersion));
   }
   if (header.layout != Layout::heights && header.layout != Layout::coefficients) {
     refuse(path, "has the unknown sample layout " +
@@ -150,7 +151,6 @@ FieldView decode_field(ByteView file, const std::filesystem::path& path) {
 namespace {
 
 constexpr std::string_view kFormat = "touchtrial-pack";
-constexpr int kManifestVersion = 2;
 
 bool is_study_id(std::string_view id) {
   return !id.empty() && id.size() <= 128 && from_hex(id).has_value();
@@ -193,8 +193,8 @@ PackManifest read_manifest_json(const JsonValue& place) {
   if (root.at("format").text() != kFormat) {
     root.at("format").refuse("must be \"touchtrial-pack\"");
   }
-  if (root.at("version").integer(Integers::min(), Integers::max()) != kManifestVersion) {
-    root.at("version").refuse("is not " + std::to_string(kManifestVersion) +
+  if (root.at("version").integer(Integers::min(), Integers::max()) != kPackVersion) {
+    root.at("version").refuse("is not " + std::to_string(kPackVersion) +
                               ", the only version that this program reads");
   }
   PackManifest manifest;
@@ -246,7 +246,7 @@ std::string manifest_to_json(PackManifest manifest) {
   const nlohmann::json root = {{"fields", std::move(fields)},
                                {"format", kFormat},
                                {"study_id", manifest.study_id},
-                               {"version", kManifestVersion}};
+                               {"version", kPackVersion}};
   return root.dump(2) + "\n";
 }
 

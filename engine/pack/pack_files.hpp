@@ -4,7 +4,7 @@
 /// A field file is little-endian: 64 bytes of header, then height x width samples, row-major:
 ///   offset  type       content
 ///        0  8 bytes    "TTFIELD1"
-///        8  u32        version, 2
+///        8  u32        version, 3
 ///       12  u32        sample layout, 1: f32 surface, f32 force_x, f32 force_y; 2: f32 coefficient
 ///       16  u32        height, pixels
 ///       20  u32        width, pixels

@@ -38,6 +38,11 @@ inline constexpr std::array kGains = {NamedGain{"tangential_n", &Gains::tangenti
   return gains;
 }
 
+/// The same by decibels of the forces' amplitude.
+[[nodiscard]] inline Gains scaled_db(const Gains& gains, double db) noexcept {
+  return scaled(gains, std::pow(10.0, db / 20.0));
+}
+
 /// Whether every gain is a finite number >= 0.
 [[nodiscard]] inline bool are_valid(const Gains& gains) noexcept {
   for (const NamedGain& gain : kGains) {

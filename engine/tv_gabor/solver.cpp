@@ -102,7 +102,7 @@ TvGaborSolver<Real>::TvGaborSolver(const GreyImage& image, const TvGaborOptions&
       width_(image.width()),
       wanted_gap_(options.gap),
       problem_(tv_gabor_problem<Real>(image, options)),
-      plane_(problem_.image.height(), problem_.image.width(), jobs, FftPlan::measured),
+      plane_(problem_.image.height(), problem_.image.width(), jobs),
       schedule_(mean_gradient(problem_.image)),
       admm_(problem_, plane_) {}
 

@@ -28,8 +28,8 @@ class TorusPlane {
  public:
   /// \param height,width  samples, even, >= 16
   /// \param jobs  number of threads, as for in_parallel
-  TorusPlane(int height, int width, int jobs, FftPlan plan = FftPlan::estimated)
-      : filter_(height, width, plan),
+  TorusPlane(int height, int width, int jobs)
+      : filter_(height, width),
         jobs_(jobs),
         blocks_(static_cast<std::size_t>((height + kRowsOfBlock - 1) / kRowsOfBlock)),
         first_rows_(blocks_ * 2 * this->width()),

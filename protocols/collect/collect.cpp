@@ -37,9 +37,11 @@ void named(const std::string& station, Work&& work) {
 
 Station read_station(std::unique_ptr<StationFile> file) {
   Station station;
-  station.chain = {.name = file->name(), .events = file->file_chain()};
-  named(station.chain.name,
-        [&] { station.says = store::checked_file_chain(station.chain.events); });
+  station.chain.name = file->name();
+  named(station.chain.name, [&] {
+    station.chain.events = file->file_chain();
+    station.says = store::checked_file_chain(station.chain.events);
+  });
   station.file = std::move(file);
   return station;
 }
@@ -106,11 +108,13 @@ class Collecting {
     report.stations = static_cast<int>(stations_.size());
     report.sessions = static_cast<int>(places_.size());
     for (const store::SessionPlace& place : chain.left_out) {
-      report.left_out.push_back(left_out(place));
+      const Station& station = stations_[static_cast<std::size_t>(place.station) - 1];
+      report.left_out.push_back(left_out_of(*station.file, place.own_session,
+                                            station.says.sessions().at(place.own_session)));
     }
   }
 
-  void take_sessions(TraceUse traces, const CollectProgress& progress) {
+  void take_sessions(const CollectProgress& progress) {
     const int count = static_cast<int>(places_.size());
     for (int session = 1; session <= count; ++session) {
       const store::SessionPlace& place = places_[static_cast<std::size_t>(session) - 1];
@@ -118,7 +122,6 @@ class Collecting {
       StationFile& file = this->file(place.station);
       named(file.name(), [&] {
         draft_.add_session(session, file.events(own), file.wrapped_keys(own));
-        if (traces == TraceUse::fetched) return;
         file.for_each_trace(own,
                             [&](int trial, const Bytes& box) { draft_.add_trace(trial, box); });
         draft_.end_traces();
@@ -127,82 +130,41 @@ class Collecting {
     }
   }
 
-  store::StudyStore finished(TraceUse traces) && {
-    if (traces == TraceUse::copied) return std::move(draft_).finished();
-    // A station may be asked from one thread at a time, and so may StudyStore.
-    const auto files = std::make_shared<std::vector<Station>>(std::move(stations_));
-    return std::move(draft_).finished(
-        [files, places = std::move(places_)](int session,
-                                             int trial) -> std::optional<store::SealedTrace> {
-          if (session < 1 || session > static_cast<int>(places.size())) return std::nullopt;
-          const auto& [station, own] = places[static_cast<std::size_t>(session) - 1];
-          std::optional<Bytes> box =
-              (*files)[static_cast<std::size_t>(station) - 1].file->trace(own, trial);
-          if (!box) return std::nullopt;
-          return store::SealedTrace{.session = own, .trial = trial, .box = *std::move(box)};
-        });
-  }
+  void finish() && { static_cast<void>(std::move(draft_).finished()); }
 
  private:
   StationFile& file(int station) { return *stations_[static_cast<std::size_t>(station) - 1].file; }
-
-  [[nodiscard]] SessionLeftOut left_out(const store::SessionPlace& place) const {
-    const Station& station = stations_[static_cast<std::size_t>(place.station) - 1];
-    const store::SessionOnFile& session = station.says.sessions().at(place.own_session);
-    return {.station = station.file->name(),
-            .session = place.own_session,
-            .participant = session.opened.participant,
-            .cut_short = session.is_cut_short()};
-  }
 
   store::CollectedDraft draft_;
   std::vector<Station> stations_;
   std::vector<store::SessionPlace> places_;
 };
 
-store::StudyStore collected(Stations files, store::CollectedDraft draft, TraceUse traces,
-                            CollectReport& report, const CollectProgress& progress) {
-  Collecting collecting(std::move(files), std::move(draft), report);
-  collecting.take_sessions(traces, progress);
-  return std::move(collecting).finished(traces);
+}  // namespace
+
+std::string SessionLeftOut::words() const {
+  return one_line(fmt::format(
+      "{}: session {} (participant {}) {}", station, session, participant,
+      cut_short ? "was replaced or withdrawn before it ended: it cannot be continued, and is left "
+                  "out for good"
+                : "has not ended and is left out; run this again when it has"));
 }
 
-}  // namespace
+SessionLeftOut left_out_of(const StationFile& station, int session,
+                           const store::SessionOnFile& course) {
+  return {.station = station.name(),
+          .session = session,
+          .participant = course.opened.participant,
+          .cut_short = course.is_cut_short()};
+}
 
 CollectReport collect_into_file(Stations stations, const std::filesystem::path& target,
                                 const CollectProgress& progress) {
   CollectReport report;
-  static_cast<void>(collected(std::move(stations), store::CollectedDraft::in_file(target),
-                              TraceUse::copied, report, progress));
+  Collecting collecting(std::move(stations), store::CollectedDraft::in_file(target), report);
+  collecting.take_sessions(progress);
+  std::move(collecting).finish();
   return report;
-}
-
-store::StudyStore collected_for_reading(Stations stations, const std::string& name, TraceUse traces,
-                                        CollectReport* report, const CollectProgress& progress) {
-  CollectReport unread;
-  return collected(std::move(stations), store::CollectedDraft::temporary(name), traces,
-                   report == nullptr ? unread : *report, progress);
-}
-
-store::StudyStore open_study(const std::string& where, TraceUse traces) {
-  if (!is_address(where)) {
-    return store::StudyStore::open(where, store::StudyStore::Access::read_only);
-  }
-  const ServerAddress address(where);
-  if (traces == TraceUse::fetched) {
-    return collected_for_reading(stations_of_server(address), address.shown(), traces);
-  }
-  // A reader who wants all of it also wants the derived tables checked.
-  DerivedTables derived;
-  store::StudyStore study =
-      collected_for_reading(stations_of_server(address, &derived), address.shown(), traces);
-  derived(study);
-  return study;
-}
-
-std::string study_name(const std::string& where) {
-  if (is_address(where)) return ServerAddress(where).shown();
-  return std::filesystem::path(where).filename().string();
 }
 
 }  // namespace touchtrial::collect

@@ -1,6 +1,5 @@
 #include "protocols/collect/enrolment_balance.hpp"
 
-#include "core/errors.hpp"
 #include "core/text.hpp"
 
 #include <algorithm>
@@ -29,9 +28,7 @@ void add_gaps(EnrolmentBalance& balance, const std::set<int>& taken) {
 std::string listed_stations(const EnrolmentBalance& balance) {
   std::string text;
   for (const auto& [station, count] : balance.stations) {
-    const auto name = balance.names.find(station);
-    text += (text.empty() ? "station " : ", station ") + std::to_string(station) +
-            (name == balance.names.end() ? "" : " (" + one_line(name->second) + ")") + " has " +
+    text += (text.empty() ? "station " : ", station ") + std::to_string(station) + " has " +
             std::to_string(count);
   }
   return text;
@@ -56,7 +53,6 @@ EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions) {
   for (const EnrolledSession& session : sessions) {
     if (session.enrolment < 1) throw std::invalid_argument("enrolment_balance: numbers start at 1");
     balance.highest = std::max(balance.highest, session.enrolment);
-    if (!session.station_name.empty()) balance.names[session.station] = session.station_name;
     int& at_station = balance.stations[session.station];
     if (!session.counts || session.state != store::SessionState::completed) continue;
     ++at_station;

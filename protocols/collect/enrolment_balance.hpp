@@ -1,5 +1,4 @@
-/// \file Whether a study fills evenly over its stations and enrolment numbers. Orders of methods
-/// are drawn from secrets that a server does not have.
+/// \file Whether a study fills evenly over its stations and enrolment numbers.
 #pragma once
 
 #include "protocols/store/study_store.hpp"
@@ -16,14 +15,12 @@ struct EnrolledSession {
   int station = 0;  ///< from 1
   int enrolment = 0;
   store::SessionState state{};
-  bool counts = true;          ///< neither excluded nor withdrawn nor replaced
-  std::string station_name{};  ///< of its file; may be empty
+  bool counts = true;  ///< neither excluded nor withdrawn nor replaced
 };
 
 struct EnrolmentBalance {
   /// Number of sessions that are complete and count, by station; a station may have 0.
   std::map<int, int> stations;
-  std::map<int, std::string> names;  ///< of stations' files, where they are known
   /// Enrolment numbers below the highest without a complete session that counts, ascending; at most
   /// kMostGaps.
   std::vector<int> gaps;

@@ -1,8 +1,8 @@
 #include "protocols/collect/server_rows.hpp"
 
 #include "protocols/collect/server_schema.hpp"
+#include "protocols/collect/server_tables.hpp"
 #include "protocols/store/damage.hpp"
-#include "protocols/store/tables.hpp"
 
 #include <charconv>
 #include <concepts>
@@ -69,31 +69,29 @@ class ServerArray {
 };
 
 /// The type that arrays of a column's values are cast to.
-std::string array_of(store::ColumnType type) {
+std::string array_of(ColumnType type) {
   return std::string(kServerTypes.at(static_cast<std::size_t>(type))) + "[]";
 }
 
 /// "INSERT INTO trials(...) SELECT * FROM unnest(...)": one parameter for each column, with all
 /// rows.
 /// \param first  number of the first parameter
-std::string insertion_sql(store::Table table, std::size_t first) {
-  const store::TableDefinition& definition = store::table_definition(table);
+std::string insertion_sql(Table table, std::size_t first) {
+  const TableDefinition& definition = table_definition(table);
   std::string parameters;
-  for (const store::TableColumn& column : definition.columns) {
+  for (const TableColumn& column : definition.columns) {
     parameters +=
         (parameters.empty() ? "$" : ", $") + std::to_string(first++) + "::" + array_of(column.type);
   }
-  return "INSERT INTO " + std::string(definition.name) + "(" + store::column_list(table) +
+  return "INSERT INTO " + std::string(definition.name) + "(" + column_list(table) +
          ") SELECT * FROM unnest(" + parameters + ")";
 }
 
 /// Rows of a table, which are added to insertions a batch at a time.
 class RowBatch {
  public:
-  RowBatch(Insertions& insertions, store::Table table)
-      : insertions_(insertions),
-        table_(table),
-        columns_(store::table_definition(table).columns.size()) {}
+  RowBatch(Insertions& insertions, Table table)
+      : insertions_(insertions), table_(table), columns_(table_definition(table).columns.size()) {}
 
   /// The values of a row, in the order of the table's columns.
   template <typename... Values>
@@ -102,7 +100,7 @@ class RowBatch {
     (columns_[column++].add(values), ...);
     finish_if_full();
   }
-  void add(const store::Cells& cells) {
+  void add(const Cells& cells) {
     for (std::size_t i = 0; i < columns_.size(); ++i) columns_[i].add(cells.at(i));
     finish_if_full();
   }
@@ -122,7 +120,7 @@ class RowBatch {
   }
 
   Insertions& insertions_;
-  store::Table table_;
+  Table table_;
   std::vector<ServerArray> columns_;
 };
 
@@ -151,7 +149,7 @@ void InsertStatement::send(ServerWork& work) const {
   work.exec0_with_lists(sql, texts, boxes);
 }
 
-void Insertions::add(store::Table table, std::vector<std::string> columns) {
+void Insertions::add(Table table, std::vector<std::string> columns) {
   parts_.push_back(insertion_sql(table, texts_.size() + 1));
   for (std::string& column : columns) {
     bytes_ += column.size();
@@ -200,7 +198,7 @@ void Insertions::finish_statement() {
 }
 
 void insert_events(Insertions& insertions, int session, std::span<const store::Event> events) {
-  RowBatch batch(insertions, store::Table::events);
+  RowBatch batch(insertions, Table::events);
   for (const store::Event& event : events) {
     batch.add(session, event.sequence, store::name_of(event.kind), event.at.count(), event.body,
               event.sealed, event.previous, event.hash, event.signature, event.own_session());
@@ -219,28 +217,28 @@ std::map<std::int64_t, SentTrace> insert_traces(Insertions& insertions, int sess
 }
 
 void insert_keys(Insertions& insertions, int session, const store::WrappedKeys& keys) {
-  const auto add = [&](store::Table table, const std::optional<Bytes>& wrapped) {
+  const auto add = [&](Table table, const std::optional<Bytes>& wrapped) {
     if (!wrapped) return;
     RowBatch batch(insertions, table);
     batch.add(session, *wrapped);
     batch.finish();
   };
-  add(store::Table::participant_keys, keys.participant);
-  add(store::Table::safety_keys, keys.safety);
+  add(Table::participant_keys, keys.participant);
+  add(Table::safety_keys, keys.safety);
 }
 
 void insert_session(Insertions& insertions, const store::SessionRow& row) {
-  RowBatch batch(insertions, store::Table::sessions);
-  batch.add(store::session_cells(row, store::OwnNumber::always));
+  RowBatch batch(insertions, Table::sessions);
+  batch.add(session_cells(row, OwnNumber::always));
   batch.finish();
 }
 
 void insert_trials(Insertions& insertions, int session, const store::DerivedRows& rows) {
-  RowBatch trials(insertions, store::Table::trials);
+  RowBatch trials(insertions, Table::trials);
   for (const auto& [id, own] : rows.trials) {
     store::TrialRow row = own;
     row.session = session;
-    trials.add(store::trial_cells(row));
+    trials.add(trial_cells(row));
   }
   trials.finish();
 }

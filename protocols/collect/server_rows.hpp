@@ -3,9 +3,9 @@
 #pragma once
 
 #include "protocols/collect/server_connection.hpp"
+#include "protocols/collect/server_tables.hpp"
 #include "protocols/collect/stations.hpp"
 #include "protocols/store/fold.hpp"
-#include "protocols/store/tables.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -33,7 +33,7 @@ struct InsertStatement {
 class Insertions {
  public:
   /// \param columns  of the table, each an array in PostgreSQL's text form
-  void add(store::Table table, std::vector<std::string> columns);
+  void add(Table table, std::vector<std::string> columns);
   void add_trace(int session, int trial, const Bytes& box);
   /// What has been added since the last call, to be sent in this order.
   [[nodiscard]] std::vector<InsertStatement> take();

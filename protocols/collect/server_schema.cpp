@@ -107,10 +107,10 @@ CREATE POLICY station_marks_its_own ON sessions FOR UPDATE
 
 /// Everybody who was granted a table reads it, but a station reads its own keys alone; a station
 /// adds rows of its own sessions and chain.
-std::string row_rights_sql(const store::TableDefinition& table) {
+std::string row_rights_sql(const TableDefinition& table) {
   const std::string name(table.name);
   const std::string own = "touchtrial_station_of(session) = (SELECT touchtrial_station())";
-  const bool is_sessions = &table == &store::table_definition(store::Table::sessions);
+  const bool is_sessions = &table == &table_definition(Table::sessions);
   const bool is_keys = name == "participant_keys" || name == "safety_keys";
   return "ALTER TABLE " + name + " ENABLE ROW LEVEL SECURITY;\nCREATE POLICY everybody_reads ON " +
          name + " FOR SELECT USING (" +
@@ -128,15 +128,14 @@ std::string in_schema(std::string sql, const std::string& schema) {
   return sql;
 }
 
-std::string table_sql(const store::TableDefinition& table) {
+std::string table_sql(const TableDefinition& table) {
   const std::string name(table.name);
-  std::string sql =
-      store::create_table_sql(table, kServerTypes) + ";\n" + store::create_indices_sql(table);
+  std::string sql = create_table_sql(table, kServerTypes) + ";\n" + create_indices_sql(table);
   if (table.append_only) {
     sql += "CREATE TRIGGER " + name + "_append_only BEFORE UPDATE OR DELETE OR TRUNCATE ON " +
            name + " FOR EACH STATEMENT EXECUTE FUNCTION touchtrial_append_only();";
   }
-  for (const store::TableColumn& column : table.columns) {
+  for (const TableColumn& column : table.columns) {
     // Trying to compress them would take longer than the rest of storing them.
     if (column.bulky) {
       sql += "ALTER TABLE " + name + " ALTER COLUMN " + std::string(column.name) +
@@ -148,25 +147,24 @@ std::string table_sql(const store::TableDefinition& table) {
 
 void make_tables(ServerWork& work) {
   work.exec(kServerAlone);
-  for (const store::TableDefinition& table : store::table_definitions()) {
+  for (const TableDefinition& table : table_definitions()) {
     if (!table.at_stations_alone) work.exec(table_sql(table));
   }
   work.exec("CREATE UNIQUE INDEX sessions_of_station ON sessions(station, own_session)");
   const auto schema = work.exec1("SELECT quote_ident(current_schema())")[0].as<std::string>();
   work.exec(in_schema(kRights, schema));
-  for (const store::TableDefinition& table : store::table_definitions()) {
+  for (const TableDefinition& table : table_definitions()) {
     if (!table.at_stations_alone) work.exec(row_rights_sql(table));
   }
-  work.exec0("INSERT INTO touchtrial_schema(version) VALUES($1)", store::kSchemaVersion);
+  work.exec0("INSERT INTO touchtrial_schema(version) VALUES($1)", kSchemaVersion);
 }
 
-constexpr std::array<ServerMigration, store::kSchemaVersion - store::kOldestSchemaVersion>
-    kMigrations = {[](ServerWork& work) { work.exec(store::add_visits_sql("BIGINT")); }};
+constexpr std::array<ServerMigration, kSchemaVersion - kOldestSchemaVersion> kMigrations = {
+    [](ServerWork& work) { work.exec(add_visits_sql("BIGINT")); }};
 
 std::string our_names() {
   std::string names = "{stations,station_roles";
-  for (const store::TableDefinition& table : store::table_definitions())
-    names += "," + std::string(table.name);
+  for (const TableDefinition& table : table_definitions()) names += "," + std::string(table.name);
   return names + "}";
 }
 
@@ -207,10 +205,10 @@ void require_known(const ServerConnection& server, int version, int newest) {
     server.refuse("was written by a newer Touchtrial (schema " + std::to_string(version) +
                   ", this one knows " + std::to_string(newest) + "); install that");
   }
-  if (version < store::kOldestSchemaVersion) {
+  if (version < kOldestSchemaVersion) {
     server.refuse("was written by an older Touchtrial (schema " + std::to_string(version) +
-                  ", the oldest that this one knows is " +
-                  std::to_string(store::kOldestSchemaVersion) + "); use the program that wrote it");
+                  ", the oldest that this one knows is " + std::to_string(kOldestSchemaVersion) +
+                  "); use the program that wrote it");
   }
 }
 
@@ -225,7 +223,7 @@ std::optional<int> server_version(ServerConnection& server) {
 }
 
 void bring_forward(ServerConnection& server, std::span<const ServerMigration> steps) {
-  const int newest = store::kOldestSchemaVersion + static_cast<int>(steps.size());
+  const int newest = kOldestSchemaVersion + static_cast<int>(steps.size());
   const auto is_current = [&](std::optional<int> version) {
     if (version) require_known(server, *version, newest);
     return version == newest;
@@ -238,7 +236,7 @@ void bring_forward(ServerConnection& server, std::span<const ServerMigration> st
     const std::optional<int> version = version_in(work, server);
     if (is_current(version)) return;
     if (!version) return make_tables(work);
-    const auto done = static_cast<std::size_t>(*version - store::kOldestSchemaVersion);
+    const auto done = static_cast<std::size_t>(*version - kOldestSchemaVersion);
     for (const ServerMigration step : steps.subspan(done)) step(work);
     work.exec0("UPDATE touchtrial_schema SET version = $1", newest);
   });
@@ -247,8 +245,8 @@ void bring_forward(ServerConnection& server, std::span<const ServerMigration> st
 void require_current(ServerConnection& server) {
   const std::optional<int> version = server_version(server);
   if (!version) server.refuse("holds no study yet; push one with `touchtrial sync`");
-  require_known(server, *version, store::kSchemaVersion);
-  if (*version < store::kSchemaVersion) {
+  require_known(server, *version, kSchemaVersion);
+  if (*version < kSchemaVersion) {
     server.refuse("is of an older schema; the next `touchtrial sync` brings it up to date");
   }
 }

@@ -1,9 +1,9 @@
-/// \file The tables on a server: those of an SQLite file (protocols/store/tables.hpp) and a few
+/// \file The tables on a server: those of an SQLite file (protocols/collect/server_tables.hpp) and a few
 /// that only a server needs. Private to protocols/collect.
 #pragma once
 
 #include "protocols/collect/server_connection.hpp"
-#include "protocols/store/tables.hpp"
+#include "protocols/collect/server_tables.hpp"
 
 #include <optional>
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace touchtrial::collect {
 
-inline constexpr store::TypeNames kServerTypes = {"BIGINT", "DOUBLE PRECISION", "TEXT", "BYTEA"};
+inline constexpr TypeNames kServerTypes = {"BIGINT", "DOUBLE PRECISION", "TEXT", "BYTEA"};
 
 /// One step forward. It runs inside a transaction.
 using ServerMigration = void (*)(ServerWork&);

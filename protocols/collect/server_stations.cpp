@@ -2,10 +2,10 @@
 #include "protocols/collect/server_rows.hpp"
 #include "protocols/collect/server_schema.hpp"
 #include "protocols/collect/server_study.hpp"
+#include "protocols/collect/server_tables.hpp"
 #include "protocols/collect/stations.hpp"
 #include "protocols/store/collected_chain.hpp"
 #include "protocols/store/damage.hpp"
-#include "protocols/store/tables.hpp"
 
 #include <initializer_list>
 #include <map>
@@ -140,12 +140,12 @@ std::map<int, std::unique_ptr<ServerStation>> named_stations(
 using Place = std::pair<int, int>;
 
 /// \param table  whose columns the row has
-store::Cells row_cells(const pqxx::row& row, store::Table table) {
-  return store::cells_of(table, [&](int column, store::ColumnType type) -> store::Cell {
+Cells row_cells(const pqxx::row& row, Table table) {
+  return cells_of(table, [&](int column, ColumnType type) -> Cell {
     const pqxx::field field = row[static_cast<pqxx::row::size_type>(column)];
     if (field.is_null()) return {};
-    if (type == store::ColumnType::integer) return field.as<std::int64_t>();
-    if (type == store::ColumnType::real) return field.as<double>();
+    if (type == ColumnType::integer) return field.as<std::int64_t>();
+    if (type == ColumnType::real) return field.as<double>();
     return field.as<std::string>();  // derived tables have no blobs
   });
 }
@@ -182,8 +182,8 @@ class DerivedCheck {
  private:
   void check_sessions() {
     for (const pqxx::row& row :
-         work_.exec("SELECT " + store::column_list(store::Table::sessions) + " FROM sessions")) {
-      store::SessionRow there = store::session_row(row_cells(row, store::Table::sessions));
+         work_.exec("SELECT " + column_list(Table::sessions) + " FROM sessions")) {
+      store::SessionRow there = session_row(row_cells(row, Table::sessions));
       const Place place(there.station, there.own_session);
       places_[there.session] = place;
       const auto expected = sessions_.extract(place);
@@ -196,8 +196,8 @@ class DerivedCheck {
 
   void check_trials() {
     for (const pqxx::row& row :
-         work_.exec("SELECT " + store::column_list(store::Table::trials) + " FROM trials")) {
-      store::TrialRow there = store::trial_row(row_cells(row, store::Table::trials));
+         work_.exec("SELECT " + column_list(Table::trials) + " FROM trials")) {
+      store::TrialRow there = trial_row(row_cells(row, Table::trials));
       const Place place = places_[there.session];
       const auto expected = trials_.extract({place, there.trial});
       if (!expected.empty()) there.session = expected.mapped().session;

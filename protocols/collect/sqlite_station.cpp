@@ -43,19 +43,13 @@ class SqliteStation final : public StationFile {
     const auto found = sessions_.find(own_session);
     return found == sessions_.end() ? store::WrappedKeys{} : store_->wrapped_keys(found->second);
   }
-  [[nodiscard]] std::optional<Bytes> trace(int own_session, int trial) override {
-    const auto found = sessions_.find(own_session);
-    if (found == sessions_.end()) return std::nullopt;
-    std::optional<store::SealedTrace> sealed = store_->sealed_trace(found->second, trial);
-    if (!sealed) return std::nullopt;
-    return std::move(sealed->box);
-  }
   void for_each_trace(int own_session,
                       const std::function<void(int, const Bytes&)>& visit) override {
     for (const store::Event& event : events(own_session)) {
       if (event.kind != store::EventKind::trace_stored) continue;
       const int trial = store::trace_body_from_json(event.body).trial;
-      if (const std::optional<Bytes> box = trace(own_session, trial)) visit(trial, *box);
+      const auto sealed = store_->sealed_trace(sessions_.at(own_session), trial);
+      if (sealed) visit(trial, sealed->box);
     }
   }
 
@@ -84,10 +78,10 @@ void refuse_own_decisions(const store::StudyStore& store, const std::filesystem:
 
 }  // namespace
 
-Stations stations_of_file(const std::filesystem::path& database) {
+Stations stations_of_file(const std::filesystem::path& database, store::TraceCheck traces) {
   const auto store = std::make_shared<const store::StudyStore>(
       store::StudyStore::open(database, store::StudyStore::Access::read_only));
-  if (const auto fault = store->first_fault(store::TraceCheck::skip)) {
+  if (const auto fault = store->first_fault(traces)) {
     throw store::DamagedStore(one_line(fmt::format(
         "{}: {}, event {}: {}; restore it from a backup, or leave it out", database.string(),
         store::chain_named(fault->session), fault->sequence, fault->what)));

@@ -3,9 +3,9 @@
 #include "protocols/collect/server_rows.hpp"
 #include "protocols/collect/server_schema.hpp"
 #include "protocols/collect/server_study.hpp"
+#include "protocols/collect/server_tables.hpp"
 #include "protocols/store/damage.hpp"
 #include "protocols/store/payload_json.hpp"
-#include "protocols/store/tables.hpp"
 
 #include <algorithm>
 #include <filesystem>

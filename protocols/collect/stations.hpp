@@ -1,9 +1,8 @@
-/// \file Where the sessions of stations come from: SQLite files, stations in a collected file, a
-/// server.
+/// \file Where the sessions of stations come from: SQLite files, stations in a collected file,
+/// bundles on a server.
 #pragma once
 
 #include "core/bytes.hpp"
-#include "protocols/collect/server_address.hpp"
 #include "protocols/store/event.hpp"
 #include "protocols/store/study_store.hpp"
 
@@ -24,7 +23,7 @@ class StationFile {
  public:
   virtual ~StationFile() = default;
 
-  /// For messages: "A.db", or "postgresql://host/study, station 2".
+  /// For messages: "A.db", or "postgresql://host/study, station 0f3a91c2 of lab_a".
   [[nodiscard]] virtual const std::string& name() const = 0;
   /// The file's own chain, from the study's commitment on.
   [[nodiscard]] virtual std::vector<store::Event> file_chain() = 0;
@@ -33,8 +32,6 @@ class StationFile {
   [[nodiscard]] virtual std::vector<store::Event> events(int own_session) = 0;
   /// Those that no withdrawal destroyed.
   [[nodiscard]] virtual store::WrappedKeys wrapped_keys(int own_session) = 0;
-  /// The sealed trace of a trial, if there is one.
-  [[nodiscard]] virtual std::optional<Bytes> trace(int own_session, int trial) = 0;
   /// Calls `visit` with every trial and sealed trace of a session, by trial. Only a few traces are
   /// in memory at a time.
   virtual void for_each_trace(int own_session,
@@ -44,21 +41,11 @@ class StationFile {
 using Stations = std::vector<std::unique_ptr<StationFile>>;
 
 /// The station that an SQLite file is, or the stations that were collected into it.
+/// \param traces  whether all of the file is checked first, or what collecting does not check
 /// \throws DamagedStore, naming file and session, if it is damaged or was tampered with
 /// \throws StoreError if it is missing, of an older schema (with the remedy), or a collected file
 ///   in which something was decided since
-[[nodiscard]] Stations stations_of_file(const std::filesystem::path& database);
-
-/// Holds the derived tables of a server against the study that was collected from it.
-/// \throws DamagedStore naming station and session if they disagree
-using DerivedTables = std::function<void(const store::StudyStore& collected)>;
-
-/// Every station on a server, all as they were at one moment, whatever is pushed meanwhile. They
-/// share one connection, which lives as long as any of them.
-/// \param derived  gets the check of the derived tables at the same moment; may be null
-/// \throws StoreError if the server cannot be reached or holds no study of this program's version
-/// \throws DamagedStore if a row there belongs to no session that was pushed
-[[nodiscard]] Stations stations_of_server(const ServerAddress& address,
-                                          DerivedTables* derived = nullptr);
+[[nodiscard]] Stations stations_of_file(const std::filesystem::path& database,
+                                        store::TraceCheck traces = store::TraceCheck::skip);
 
 }  // namespace touchtrial::collect

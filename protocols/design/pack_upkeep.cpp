@@ -73,35 +73,16 @@ std::string unfinished_id(const StudyKey& key) {
   return to_hex(ByteView(derive_key(key.master, "identity of an unfinished pack")).first(16));
 }
 
-const engine::PackEntry* EarlierPack::recorded(const std::string& code, const Digest& tag) const {
-  if (!pack || !names_code(pack->manifest(), code)) return nullptr;
+std::optional<engine::PackEntry> EarlierPack::reusable(const std::string& code,
+                                                       const Digest& tag) const {
+  if (!pack || !names_code(pack->manifest(), code)) return std::nullopt;
   const engine::PackEntry& entry = pack->entry(code);
-  return entry.input_tag == tag ? &entry : nullptr;
-}
-
-std::optional<ReusableField> EarlierPack::reusable(const std::string& code, const Digest& tag,
-                                                   const FieldNote* note,
-                                                   std::chrono::nanoseconds settled_after) const {
-  const engine::PackEntry* entry = recorded(code, tag);
-  if (entry == nullptr) return std::nullopt;
-  const auto stamp = stamp_of(field_path(pack->folder(), code));
-  if (!stamp) return std::nullopt;
-  if (note != nullptr && note->checksum == entry->checksum &&
-      is_unchanged(note->stamp, *stamp, settled_after)) {
-    return ReusableField{*entry, note->stamp, true};
-  }
   try {
-    if (pack->is_intact(code)) return ReusableField{*entry, *stamp, false};
+    if (entry.input_tag == tag && pack->is_intact(code)) return entry;
   } catch (const FileError&) {
-    // Unreadable, so it is written again.
+    // Missing or unreadable, so it is written again.
   }
   return std::nullopt;
-}
-
-std::string_view EarlierPack::why_not_reusable(const std::string& code, const Digest& tag) const {
-  return recorded(code, tag) != nullptr ? "the pack's field was damaged or missing"
-                                        : "the pack had no field of this picture with these "
-                                          "options";
 }
 
 EarlierPack earlier_pack(const std::filesystem::path& folder, const StudyKey& key) {

@@ -3,15 +3,11 @@
 #pragma once
 
 #include "engine/pack/pack.hpp"
-#include "protocols/design/prepare_notes.hpp"
 #include "protocols/design/study_key.hpp"
 
-#include <chrono>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 
 namespace touchtrial::design {
 
@@ -37,29 +33,14 @@ class PackLock {
 /// nothing is presented from such a pack; the next `prepare` recognises it and completes the pack.
 [[nodiscard]] std::string unfinished_id(const StudyKey& key);
 
-/// An intact field of an earlier run.
-struct ReusableField {
-  engine::PackEntry entry;
-  FileStamp stamp;       ///< of the file when its content was last hashed or written
-  bool by_time = false;  ///< intact by the file's size and times; else by its hash
-};
-
 /// What the folder contained before this run.
 struct EarlierPack {
   std::optional<engine::Pack> pack;  ///< of this study, finished or not
   std::string damage;  ///< why the table of contents was unusable; empty if it was usable
 
-  /// \param note  of an earlier run on this code; may be null
-  /// \return the intact field made from this input, if there is one
-  [[nodiscard]] std::optional<ReusableField> reusable(const std::string& code, const Digest& tag,
-                                                      const FieldNote* note,
-                                                      std::chrono::nanoseconds settled_after) const;
-  /// Why a field is not reusable, for an explanation of what was built.
-  [[nodiscard]] std::string_view why_not_reusable(const std::string& code, const Digest& tag) const;
-
- private:
-  /// \return the entry of a field made from this input, intact or not; null if there is none
-  [[nodiscard]] const engine::PackEntry* recorded(const std::string& code, const Digest& tag) const;
+  /// \return the entry of the intact field made from this input, if there is one
+  [[nodiscard]] std::optional<engine::PackEntry> reusable(const std::string& code,
+                                                          const Digest& tag) const;
 };
 
 /// Opens the pack that is already in the folder. A simulated study ignores and replaces another

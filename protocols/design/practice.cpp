@@ -52,8 +52,7 @@ engine::TextureField practice_field(const Study& study, std::size_t index,
     method.control_seed = RandomStream(study.seed, purpose).bits();
   }
   std::optional<TakenTexture> taken;
-  return build_field(practice_image(study, index, plane), method, study.rendering, taken, false,
-                     nullptr)
+  return build_field(practice_image(study, index, plane), method, study.rendering, taken, false)
       .field;
 }
 
@@ -84,13 +83,15 @@ std::vector<engine::Gains> practice_gains(const std::vector<engine::TextureField
   return gains;
 }
 
+/// At the stimuli's own gain: practice is not roved.
 std::vector<engine::RenderingModel> practice_models(const std::vector<engine::TextureField>& fields,
                                                     const engine::Gains& of_pack,
-                                                    const engine::RenderingOptions& rendering) {
-  const std::vector<engine::Gains> gains = practice_gains(fields, of_pack, rendering);
+                                                    const Study& study) {
+  const std::vector<engine::Gains> gains = practice_gains(fields, of_pack, study.rendering);
   std::vector<engine::RenderingModel> models;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    models.emplace_back(fields[i].view(), rendering, gains[i]);
+    models.emplace_back(fields[i].view(), study.rendering,
+                        engine::scaled_db(gains[i], study.trials.own_gain_db()));
   }
   return models;
 }
@@ -111,7 +112,7 @@ std::vector<int> shuffled_classes(const Study& study, RandomStream& random) {
 PracticeSet::PracticeSet(const Study& study, const engine::Gains& gains, const PlaneGeometry& plane)
     : plane_(plane),
       fields_(practice_fields(study, plane)),
-      models_(practice_models(fields_, gains, study.rendering)),
+      models_(practice_models(fields_, gains, study)),
       flat_(engine::FieldView{.geometry = plane}, study.rendering, engine::Gains{}) {}
 
 const engine::RenderingModel& PracticeSet::model(int class_index) const {

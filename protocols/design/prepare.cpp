@@ -9,8 +9,6 @@
 #include "protocols/design/languages.hpp"
 #include "protocols/design/pack_upkeep.hpp"
 #include "protocols/design/prepare_advice.hpp"
-#include "protocols/design/prepare_notes.hpp"
-#include "protocols/design/private_notes.hpp"
 #include "protocols/design/stimulus_field.hpp"
 
 #include <algorithm>
@@ -46,15 +44,15 @@ struct ImageOfStudy {
   std::size_t first_stimulus = 0;
   Digest pixels{};
   std::int64_t size_px = 0;
-  std::optional<FileStamp> stamp;  ///< when its pixels were last read
   bool is_done = false;
   std::exception_ptr failure;
+};
 
-  /// Its name in notes.
-  [[nodiscard]] std::string place() const {
-    std::error_code ignored;
-    return std::filesystem::absolute(path, ignored).string();
-  }
+/// What follows from all fields together.
+struct MeasuredFields {
+  engine::StudyGains gains;
+  std::vector<std::string> remarks;  ///< on gains by level
+  std::vector<std::uint8_t> flat;    ///< whether nothing of a field can be felt
 };
 
 std::vector<ImageOfStudy> images_of(const Study& study) {
@@ -90,14 +88,9 @@ class Preparation {
         progress_(progress),
         options_(options),
         earlier_(earlier_pack(folder_, key)),
-        kept_notes_(options.notes, key.master, "prepare"),
-        known_text_(kept_notes_.read().value_or("")),
-        known_(notes_of_text(known_text_)),
         images_(images_of(key.study)),
         entries_(key.stimuli.size()),
-        field_notes_(key.stimuli.size()),
-        solver_warnings_(key.stimuli.size()),
-        logs_(options.explain ? key.stimuli.size() : 0) {
+        solver_warnings_(key.stimuli.size()) {
     report_.stimuli.resize(key.stimuli.size());
     if (earlier_.pack) {
       for (const engine::PackEntry& entry : earlier_.pack->manifest().entries)
@@ -111,9 +104,7 @@ class Preparation {
     const engine::Pack fields(folder_);
     measure(fields);
     finish(fields.manifest());
-    keep_notes();
     advise();
-    hand_over_stages();
     return std::move(report_);
   }
 
@@ -150,84 +141,16 @@ class Preparation {
 
   /// \param large_too  whether to process a large image now; false leaves it for later
   void provide_fields_of(ImageOfStudy& image, bool large_too) {
-    engine::StageTimer timer(log_of(image.first_stimulus));
-    const std::optional<FileStamp> stamp = stamp_of(image.path);
-    if (stamp && reuse_unread(image, *stamp)) return;
     const GreyImage grey = read(image);
     image.size_px = static_cast<std::int64_t>(grey.size());
     if (image.size_px > options_.large_image_px && !large_too) return;
-    image.stamp = stamp;
     image.pixels = FieldHasher().add(std::int64_t{grey.width()}).add(grey.samples()).finish();
-    timer.done("read image",
-               known_.pictures.contains(image.place())
-                   ? "not the size and time of last time: its pixels decide what must be built"
-                   : "its pixels decide what must be built",
-               grey.size());
     std::optional<TakenTexture> taken;
     for (int m = 0; m < key_.study.presented_methods(); ++m) {
       const std::size_t i = image.first_stimulus + static_cast<std::size_t>(m);
-      if (m > 0 && options_.explain) {
-        logs_[i].reuse("read image", "read for " + key_.study.methods.front().label, grey.size());
-      }
-      provide_field(i, grey, image.pixels, taken);
+      provide_field(i, grey, taken);
     }
     image.is_done = true;
-  }
-
-  /// Reuses all fields of a picture whose size and times are as noted, without reading it.
-  /// \return whether it was possible
-  bool reuse_unread(ImageOfStudy& image, const FileStamp& stamp) {
-    const auto noted = known_.pictures.find(image.place());
-    if (noted == known_.pictures.end() ||
-        !is_unchanged(noted->second.stamp, stamp, options_.settled_after)) {
-      return false;
-    }
-    const PictureNote& picture = noted->second;
-    const auto methods = static_cast<std::size_t>(key_.study.presented_methods());
-    std::vector<Clock::time_point> starts;
-    std::vector<ReusableField> fields;
-    for (std::size_t i = image.first_stimulus; i < image.first_stimulus + methods; ++i) {
-      starts.push_back(Clock::now());
-      const FieldNote* note = note_of(i);
-      if (note == nullptr || note->pixels != picture.pixels || note->recipe != recipe_of(i)) {
-        return false;
-      }
-      const auto field = reusable(i, note->tag);
-      if (!field) return false;
-      fields.push_back(*field);
-    }
-    image.pixels = picture.pixels;
-    image.size_px = picture.size_px;
-    image.stamp = picture.stamp;
-    for (std::size_t m = 0; m < methods; ++m) {
-      const std::size_t i = image.first_stimulus + m;
-      if (options_.explain) {
-        logs_[i].reuse("read image", "same size and time as last time: not read",
-                       static_cast<std::uint64_t>(picture.size_px));
-      }
-      reuse(i, fields[m], picture.pixels, starts[m]);
-    }
-    image.is_done = true;
-    return true;
-  }
-
-  [[nodiscard]] const FieldNote* note_of(std::size_t i) const {
-    const auto note = known_.fields.find(key_.stimuli[i].code);
-    return note == known_.fields.end() ? nullptr : &note->second;
-  }
-
-  /// A digest of everything but the picture that determines a stimulus's field.
-  [[nodiscard]] Digest recipe_of(std::size_t i) const {
-    return input_tag(key_.master, GreyImage(1, 1), method_of(key_.study, key_.stimuli[i].stimulus),
-                     key_.study.rendering);
-  }
-
-  [[nodiscard]] std::optional<ReusableField> reusable(std::size_t i, const Digest& tag) const {
-    return earlier_.reusable(key_.stimuli[i].code, tag, note_of(i), options_.settled_after);
-  }
-
-  [[nodiscard]] engine::StageLog* log_of(std::size_t stimulus) {
-    return options_.explain ? &logs_[stimulus] : nullptr;
   }
 
   /// Whether a later stimulus of the same image uses the same texture.
@@ -249,50 +172,27 @@ class Preparation {
     }
   }
 
-  void provide_field(std::size_t i, const GreyImage& image, const Digest& pixels,
-                     std::optional<TakenTexture>& taken) {
+  void provide_field(std::size_t i, const GreyImage& image, std::optional<TakenTexture>& taken) {
     const Clock::time_point start = Clock::now();
     const engine::ExtractionOptions method = method_of(key_.study, key_.stimuli[i].stimulus);
     const Digest tag = input_tag(key_.master, image, method, key_.study.rendering);
-    if (const auto earlier = reusable(i, tag)) {
-      reuse(i, *earlier, pixels, start);
-      return;
+    const auto earlier = earlier_.reusable(key_.stimuli[i].code, tag);
+    if (earlier) {
+      entries_[i] = *earlier;
+    } else {
+      announce_building();
+      build(i, image, method, tag, taken);
     }
-    announce_building();
-    build(i, image, method, tag, taken);
-    if (const auto stamp = stamp_of(field_path(folder_, key_.stimuli[i].code))) {
-      note_field(i, pixels, *stamp);
-    }
-    note_provided(i, false, start);
+    note_provided(i, earlier.has_value(), start);
   }
 
   void build(std::size_t i, const GreyImage& image, const engine::ExtractionOptions& method,
              const Digest& tag, std::optional<TakenTexture>& taken) {
     const auto& [code, stimulus] = key_.stimuli[i];
     const BuiltField built =
-        build_field(image, method, key_.study.rendering, taken, is_needed_again(i), log_of(i));
-    engine::StageTimer timer(log_of(i));
+        build_field(image, method, key_.study.rendering, taken, is_needed_again(i));
     entries_[i] = {code, engine::write_field(folder_, code, built.field.view()), tag, {}};
-    timer.done("write field", earlier_.why_not_reusable(code, tag), size_of_field(code));
     solver_warnings_[i] = solver_warning(key_.study, stimulus, built);
-  }
-
-  void reuse(std::size_t i, const ReusableField& field, const Digest& pixels,
-             Clock::time_point start) {
-    entries_[i] = field.entry;
-    note_field(i, pixels, field.stamp);
-    if (options_.explain) {
-      const std::string how = field.by_time ? "by size and time" : "by its hash";
-      logs_[i].add({"field", engine::StageState::reused,
-                    "same picture and options, and intact " + how + ": nothing was extracted",
-                    seconds_since(start), size_of_field(key_.stimuli[i].code)});
-    }
-    note_provided(i, true, start);
-  }
-
-  void note_field(std::size_t i, const Digest& pixels, const FileStamp& stamp) {
-    if (options_.notes.empty()) return;
-    field_notes_[i] = {recipe_of(i), pixels, entries_[i].input_tag, entries_[i].checksum, stamp};
   }
 
   void note_provided(std::size_t i, bool reused, Clock::time_point start) {
@@ -332,74 +232,35 @@ class Preparation {
 
   /// Gains, flatness and statistics of all fields.
   void measure(const engine::Pack& fields) {
-    const Digest of = identity_of_fields();
-    if (!look_up_measures(of)) compute_measures(fields, of);
-    for (std::size_t i = 0; i < entries_.size(); ++i) {
-      PreparedStimulus& prepared = report_.stimuli[i];
-      prepared.gains = entries_[i].gains = measured_.gains.of_field[i];
-      prepared.bytes = size_of_field(key_.stimuli[i].code);
-      if (options_.statistics) {
-        prepared.statistics = measured_.statistics[i];
-      } else if (options_.explain) {
-        logs_[i].skip("statistics", "nobody asked for them", sizeof(engine::FieldStatistics));
-      }
-    }
-  }
-
-  /// Fields and study, which decide gains and statistics.
-  [[nodiscard]] Digest identity_of_fields() const {
-    FieldHasher hasher;
-    hasher.add(ByteView(key_.seal));
-    for (const engine::PackEntry& entry : entries_) hasher.add(ByteView(entry.checksum));
-    hasher.add(options_.level.identity);
-    return hasher.finish();
-  }
-
-  /// \return whether the same fields of the same study were measured before
-  bool look_up_measures(const Digest& of) {
-    if (!known_.measured || known_.measured->of != of) return false;
-    if (options_.statistics && known_.measured->statistics.empty()) return false;
-    measured_ = *known_.measured;
-    if (!options_.explain) return true;
-    constexpr const char* kWhy = "same fields and study as last time";
-    study_log_.reuse("gains", kWhy, entries_.size() * sizeof(engine::Gains));
-    for (engine::StageLog& log : logs_) {
-      if (options_.statistics) log.reuse("statistics", kWhy, sizeof(engine::FieldStatistics));
-    }
-    return true;
-  }
-
-  void compute_measures(const engine::Pack& fields, const Digest& of) {
     std::vector<engine::MappedField> mapped;
     std::vector<engine::FieldView> views;
     for (const KeyedStimulus& stimulus : key_.stimuli) {
       mapped.push_back(fields.map(stimulus.code));
       views.push_back(mapped.back().view());
     }
-    measured_.of = of;
-    engine::StageTimer timer(study_log());
-    const char* why = "from the stiffness of all stimuli together";
-    if (key_.study.level) {
-      if (!options_.level.gains) throw std::logic_error("prepare_pack: nobody knows levels");
-      std::tie(measured_.gains, measured_.remarks) = options_.level.gains(views);
-      why = "from the level that the study states";
-    } else {
-      measured_.gains = engine::choose_gains(views, key_.study.rendering);
-      if (key_.study.rendering.gains) why = "explicit, and compared with the stiffness budget";
-    }
-    timer.done("gains", why, views.size() * sizeof(engine::Gains));
+    choose_gains(views);
     measured_.flat.resize(views.size());
-    if (options_.statistics) measured_.statistics.resize(views.size());
-    const auto measure_one = [&](std::size_t i) { describe(i, views[i]); };
     in_parallel(0, views.size(), [&](std::size_t i) {
-      if (!is_large(views[i])) measure_one(i);
+      if (!is_large(views[i])) describe(i, views[i]);
     });
     for (std::size_t i = 0; i < views.size(); ++i) {
-      if (is_large(views[i])) measure_one(i);
+      if (is_large(views[i])) describe(i, views[i]);
+    }
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      PreparedStimulus& prepared = report_.stimuli[i];
+      prepared.gains = entries_[i].gains = measured_.gains.of_field[i];
+      prepared.bytes = size_of_field(key_.stimuli[i].code);
     }
   }
 
-  [[nodiscard]] engine::StageLog* study_log() { return options_.explain ? &study_log_ : nullptr; }
+  void choose_gains(std::span<const engine::FieldView> views) {
+    if (!key_.study.level) {
+      measured_.gains = engine::choose_gains(views, key_.study.rendering);
+      return;
+    }
+    if (!options_.level_gains) throw std::logic_error("prepare_pack: nobody knows levels");
+    std::tie(measured_.gains, measured_.remarks) = options_.level_gains(views);
+  }
 
   [[nodiscard]] bool is_large(engine::FieldView field) const noexcept {
     return std::int64_t{field.geometry.height_px} * field.geometry.width_px >
@@ -409,25 +270,14 @@ class Preparation {
   void describe(std::size_t i, engine::FieldView field) {
     measured_.flat[i] = is_flat(field) ? 1 : 0;
     if (!options_.statistics) return;
-    engine::StageTimer timer(log_of(i));
-    measured_.statistics[i] =
+    report_.stimuli[i].statistics =
         engine::field_statistics(field, measured_.gains.of_field[i], key_.study.rendering);
-    timer.done("statistics", "they follow the gains of the study", sizeof(engine::FieldStatistics));
   }
 
   [[nodiscard]] std::uintmax_t size_of_field(const std::string& code) const {
-    return size_of(field_path(folder_, code));
-  }
-
-  static std::uintmax_t size_of(const std::filesystem::path& file) {
     std::error_code error;
-    const auto bytes = std::filesystem::file_size(file, error);
+    const auto bytes = std::filesystem::file_size(field_path(folder_, code), error);
     return error ? 0 : bytes;
-  }
-
-  void hand_over_stages() {
-    for (std::size_t i = 0; i < logs_.size(); ++i) report_.stimuli[i].stages = logs_[i].stages();
-    report_.study_stages = study_log_.stages();
   }
 
   void finish(const engine::PackManifest& before) {
@@ -435,29 +285,8 @@ class Preparation {
     std::ranges::sort(manifest.entries, {}, &engine::PackEntry::code);
     const bool unchanged =
         before.study_id == manifest.study_id && before.entries == manifest.entries;
-    engine::StageTimer timer(study_log());
-    if (!unchanged) {
-      engine::write_manifest(folder_, manifest);
-      timer.done("pack.json", "fields or gains have changed", size_of(folder_ / "pack.json"));
-    } else if (options_.explain) {
-      study_log_.reuse("pack.json", "fields and gains have not changed",
-                       size_of(folder_ / "pack.json"));
-    }
+    if (!unchanged) engine::write_manifest(folder_, manifest);
     remove_leftovers(folder_, manifest);
-  }
-
-  void keep_notes() const {
-    if (options_.notes.empty()) return;
-    PrepareNotes notes;
-    for (const ImageOfStudy& image : images_) {
-      if (image.stamp) notes.pictures[image.place()] = {*image.stamp, image.pixels, image.size_px};
-    }
-    for (std::size_t i = 0; i < field_notes_.size(); ++i) {
-      notes.fields[key_.stimuli[i].code] = field_notes_[i];
-    }
-    notes.measured = measured_;
-    const std::string text = text_of_notes(notes);
-    if (text != known_text_) kept_notes_.keep(text);
   }
 
   void advise() {
@@ -496,16 +325,10 @@ class Preparation {
   const Progress& progress_;
   PrepareOptions options_;
   EarlierPack earlier_;
-  PrivateNotes kept_notes_;
-  std::string known_text_;
-  PrepareNotes known_;  ///< of an earlier run
   std::vector<ImageOfStudy> images_;
   std::vector<engine::PackEntry> entries_;
-  std::vector<FieldNote> field_notes_;
   std::vector<std::string> solver_warnings_;
   MeasuredFields measured_;
-  std::vector<engine::StageLog> logs_;  ///< one per stimulus; empty if no explanation is requested
-  engine::StageLog study_log_;
   PrepareReport report_;
 
   std::mutex mutex_;  ///< guards the members below

@@ -1,15 +1,12 @@
 /// \file Builds the pack of a study. Only fields that are missing or out of date are built.
 #pragma once
 
-#include "core/file_stamp.hpp"
 #include "core/plane_geometry.hpp"
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/field_statistics.hpp"
 #include "engine/rendering/gains.hpp"
-#include "engine/stage_log.hpp"
 #include "protocols/design/study_key.hpp"
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -55,7 +52,6 @@ struct PreparedStimulus {
   engine::Gains gains;
   double seconds = 0.0;
   std::uintmax_t bytes = 0;
-  std::vector<engine::Stage> stages;  ///< empty unless an explanation was requested
 };
 
 /// Work that was skipped, and the reason.
@@ -69,35 +65,22 @@ struct PrepareReport {
   std::vector<PreparedStimulus> stimuli;
   std::vector<SkippedWork> skipped;
   std::vector<std::string> warnings;
-  /// Stages that cover all stimuli together; empty unless an explanation was requested.
-  std::vector<engine::Stage> study_stages;
 };
 
 inline constexpr std::int64_t kLargeImagePixels = std::int64_t{1} << 22;
 
-/// The gains of a study that states its level, which who knows devices and hands works out.
-struct LevelStage {
-  std::string identity;  ///< of all that decides the gains beside study and fields
-  /// \param fields  of StudyCodes::stimuli
-  /// \return the gains, and what the person who prepares the study must be told
-  std::function<std::pair<engine::StudyGains, std::vector<std::string>>(
-      std::span<const engine::FieldView> fields)>
-      gains;
-};
+/// The gains of a study that states its level, which depend on devices and hands, and what the
+/// person who prepares the study must be told.
+/// \param fields  of StudyCodes::stimuli
+using LevelGains = std::function<std::pair<engine::StudyGains, std::vector<std::string>>(
+    std::span<const engine::FieldView> fields)>;
 
 /// What prepare_pack does besides building the pack.
 struct PrepareOptions {
   bool statistics = true;  ///< fill in PreparedStimulus::statistics; two Fourier transforms each
-  bool explain = false;    ///< report the stages with their times and bytes
   bool wait = false;       ///< wait while another process prepares the pack, instead of throwing
   std::int64_t large_image_px = kLargeImagePixels;  ///< larger images are processed one at a time
-  /// Where notes on pictures and fields are kept, sealed (PrivateNotes); empty: none are. By them
-  /// an unchanged picture and an intact field are known by size and times, and what follows from
-  /// unchanged fields need not be computed again; without them, by their content.
-  std::filesystem::path notes{};
-  LevelStage level{};  ///< needed if the study has a level
-  /// Files that changed later than this before they were noted are known by their content.
-  std::chrono::nanoseconds settled_after = kSettledAfter;
+  LevelGains level_gains{};                         ///< needed if the study has a level
 };
 
 /// Checks that every image of the study exists, every picture of its instructions, and every
@@ -117,8 +100,7 @@ using Progress = std::function<void(int done, int of)>;
 /// from different input. Then chooses the gains, writes the table of contents, and removes fields
 /// that no stimulus uses any more. An interrupted run leaves a pack that cannot be presented and
 /// that the next run completes. A run with nothing to do leaves the pack's files untouched.
-/// Whether a picture or a field has changed its content tells; with PrepareOptions::notes size and
-/// times of its file do, where they are the noted ones.
+/// Whether a picture or a field has changed, its content tells.
 /// The pack's bytes depend only on key, study and images, not on the number of threads.
 /// Images of more than PrepareOptions::large_image_px pixels are processed one after another, so
 /// that the memory for a large image (docs/benchmarks/memory.md) is needed only once, whatever the

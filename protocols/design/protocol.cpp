@@ -88,6 +88,10 @@ std::vector<Presentation> restarted_block(const Study& study, const ScheduleDraw
   return study.protocol->restarted_block(study, draw, block, restarts_before, first_trial);
 }
 
+double drawn_rove_db(double range_db, RandomStream& random) {
+  return range_db * (random.uniform() - 0.5);
+}
+
 std::unique_ptr<AdaptiveOrder> adaptive_order(const Study& study, const ScheduleDraw& draw) {
   return study.protocol->adaptive_order(study, draw);
 }

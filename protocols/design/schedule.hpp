@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/cipher.hpp"
+#include "core/random.hpp"
 
 #include <memory>
 #include <optional>
@@ -51,6 +52,7 @@ struct Presentation {
   int block = 0;  ///< from 0
   PresentationKind kind = PresentationKind::scored;
   StimulusIndex stimulus;  ///< with intervals: without meaning
+  double gain_db = 0.0;    ///< re the pack's gain of the stimulus; with intervals: without meaning
   /// Nothing: the schedule says what is presented, or the order has not chosen yet.
   std::optional<ChosenLevel> chosen{};
   /// Empty: one plane, which is explored for as long as the participant wants.
@@ -91,6 +93,11 @@ struct ScheduleDraw {
 [[nodiscard]] std::vector<Presentation> restarted_block(const Study& study,
                                                         const ScheduleDraw& draw, int block,
                                                         int restarts_before, int first_trial);
+
+/// Draws how far a gain is roved, uniformly in decibels.
+/// \param range_db  width of the range, >= 0
+/// \return from -range_db / 2 to range_db / 2
+[[nodiscard]] double drawn_rove_db(double range_db, RandomStream& random);
 
 class AdaptiveOrder;
 /// The order of one participant whose answers decide what comes next.

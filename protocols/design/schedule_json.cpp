@@ -46,6 +46,7 @@ Presentation presentation_from(const json& object, const StudyCodes& codes) {
                      .stimulus = {}};
   if (shown.kind != PresentationKind::catch_trial) {
     shown.stimulus = meaning_of(object.at("code"), codes);
+    shown.gain_db = object.value("gain_db", 0.0);
   } else if (object.at("code") != codes.catch_code) {
     refuse("names a code that this key does not have");
   }
@@ -66,6 +67,8 @@ json json_of(const std::vector<Presentation>& presentations, const StudyCodes& c
                     {"block", shown.block},
                     {"kind", word_of(shown.kind)},
                     {"code", is_catch ? codes.catch_code : codes.code_of(shown.stimulus)}});
+    // Left out where there is none, so that sessions without it keep their bytes.
+    if (shown.gain_db != 0.0) list.back()["gain_db"] = shown.gain_db;
   }
   return list;
 }

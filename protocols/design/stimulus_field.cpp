@@ -17,27 +17,11 @@ constexpr std::string_view kComputation = "touchtrial field 3";
 /// The rendering options that the field's bytes depend on. Gains are not among them, because they
 /// are applied when the field is felt.
 std::string rendering_text(const engine::RenderingOptions& rendering) {
-  nlohmann::json text{{"model", word_for(kModelNames, rendering.model)},
+  nlohmann::json text{{"model", name_in(kModelNames, rendering.model)},
                       {"pitch_mm", rendering.pitch_mm},
                       {"filter_mm", rendering.filter_mm}};
   if (rendering.model == engine::ModelKind::paper) text["neighbourhood"] = rendering.neighbourhood;
   return text.dump();
-}
-
-engine::TextureField rendered(Plane<double> texture, const engine::RenderingOptions& rendering,
-                              engine::StageLog* log) {
-  engine::StageTimer timer(log);
-  engine::TextureField field = engine::make_texture_field(texture, rendering);
-  const double sigma_px = to_px(rendering.filter_mm, rendering.pitch_mm);
-  timer.done(rendering.model == engine::ModelKind::paper ? "filter" : "filter, spline",
-             sigma_px > 0.0 ? "a Gaussian of " + number_text(sigma_px) + " px first"
-                            : "unfiltered: there is nothing to filter, or filter_mm is 0",
-             field.view().heights.size_bytes());
-  if (log != nullptr) {
-    log->skip("force planes", "forces follow from the heights at the stylus",
-              2 * field.view().heights.size_bytes());
-  }
-  return field;
 }
 
 /// The texture of a flat image: a constant level for luminance, zero for every other method.
@@ -50,30 +34,16 @@ Plane<double> flat_texture(const GreyImage& image, const engine::ExtractionOptio
 
 /// The field of a flat image. Neither control nor filter changes a constant level.
 BuiltField flat_field(const GreyImage& image, const engine::ExtractionOptions& method,
-                      engine::RenderingOptions rendering, engine::StageLog* log) {
-  if (log != nullptr) {
-    const std::uint64_t plane = image.size() * sizeof(double);
-    log->skip("sub-bands", "the image is flat", plane);
-    log->skip("order map", "the image is flat", plane / 4);
-    for (const char* stage : {"texture", "control", "filter"}) {
-      log->skip(stage, "the image is flat", plane);
-    }
-  }
+                      engine::RenderingOptions rendering) {
   rendering.filter_mm = 0.0;
-  return {rendered(flat_texture(image, method), rendering, log)};
+  return {engine::make_texture_field(flat_texture(image, method), rendering)};
 }
 
 void take_texture(const GreyImage& image, const engine::ExtractionOptions& method,
-                  std::optional<TakenTexture>& taken, engine::StageLog* log) {
-  if (taken && taken->method == method) {
-    if (log != nullptr) {
-      log->reuse("texture", "taken for another stimulus of this image",
-                 image.size() * sizeof(double));
-    }
-    return;
-  }
+                  std::optional<TakenTexture>& taken) {
+  if (taken && taken->method == method) return;
   taken.reset();
-  taken = TakenTexture{method, engine::extract_texture<double>(image, method, {}, log)};
+  taken = TakenTexture{method, engine::extract_texture<double>(image, method)};
 }
 
 }  // namespace
@@ -118,9 +88,9 @@ engine::ExtractionOptions without_control(engine::ExtractionOptions method) {
 
 BuiltField build_field(const GreyImage& image, const engine::ExtractionOptions& method,
                        const engine::RenderingOptions& rendering,
-                       std::optional<TakenTexture>& taken, bool keep, engine::StageLog* log) {
-  if (is_flat(image)) return flat_field(image, method, rendering, log);
-  take_texture(image, without_control(method), taken, log);
+                       std::optional<TakenTexture>& taken, bool keep) {
+  if (is_flat(image)) return flat_field(image, method, rendering);
+  take_texture(image, without_control(method), taken);
   engine::Extraction<double> extraction;
   if (keep) {
     extraction = taken->extraction;
@@ -128,12 +98,9 @@ BuiltField build_field(const GreyImage& image, const engine::ExtractionOptions& 
     extraction = std::move(taken->extraction);
     taken.reset();
   }
-  if (method.control == engine::Control::none && log != nullptr) {
-    log->skip("control", "none asked for", image.size() * sizeof(double));
-  }
-  engine::apply_control(method, extraction.texture, log);
-  return {rendered(std::move(extraction.texture), rendering, log), extraction.gap, extraction.steps,
-          extraction.converged};
+  engine::apply_control(method, extraction.texture);
+  return {engine::make_texture_field(extraction.texture, rendering), extraction.gap,
+          extraction.steps, extraction.converged};
 }
 
 bool is_flat(engine::FieldView field) noexcept {

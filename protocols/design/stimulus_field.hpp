@@ -6,7 +6,6 @@
 #include "engine/extraction.hpp"
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/texture_field.hpp"
-#include "engine/stage_log.hpp"
 #include "protocols/design/study_key.hpp"
 
 #include <optional>
@@ -55,12 +54,10 @@ struct TakenTexture {
 /// \param taken  a texture to reuse if it is of this method, and replaced otherwise; may be empty.
 ///   A flat image neither uses nor changes it.
 /// \param keep  whether to leave the texture in `taken` because another stimulus needs it
-/// \param log  receives the stages; may be null
 [[nodiscard]] BuiltField build_field(const GreyImage& image,
                                      const engine::ExtractionOptions& method,
                                      const engine::RenderingOptions& rendering,
-                                     std::optional<TakenTexture>& taken, bool keep,
-                                     engine::StageLog* log);
+                                     std::optional<TakenTexture>& taken, bool keep);
 
 /// Whether the field feels like a smooth wall without texture.
 [[nodiscard]] bool is_flat(engine::FieldView field) noexcept;

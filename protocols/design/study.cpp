@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{16} << 20U;
 constexpr std::int64_t kMaxSeed = std::int64_t{1} << 53U;  // exact in every JSON reader
-constexpr std::array kBlindingNames = {Named<bool>{"double", true},
-                                       Named<bool>{"participant", false}};
+constexpr auto kBlindingNames =
+    std::to_array<Named<bool>>({{"double", true}, {"participant", false}});
 
 }  // namespace
 
@@ -191,15 +191,15 @@ Study read_study(const JsonValue& place) {
 }  // namespace
 
 std::string_view name_of(TrialOrder order) {
-  return word_for(kTrialOrderNames, order);
+  return name_in(kTrialOrderNames, order);
 }
 
 std::string_view name_of(Blocks blocks) {
-  return word_for(kBlocksNames, blocks);
+  return name_in(kBlocksNames, blocks);
 }
 
 std::string_view name_of(engine::ModelKind model) {
-  return word_for(kModelNames, model);
+  return name_in(kModelNames, model);
 }
 
 std::string Study::protocol_name() const {

@@ -84,10 +84,15 @@ struct TrialOptions {
   int lead_in = 0;       ///< unscored presentations at the start of each block
   Blocks blocks = Blocks::by_method;
   int max_run = 0;  ///< maximum number of presentations of one class in a row; 0: no limit
+  /// Each presentation's gain is drawn from a range so wide, which ends at the pack's; 0: not.
+  double rove_db = 0.0;
   OnInterruption on_interruption = OnInterruption::repeat;
   double resume_within_h = 24.0;  ///< how long an interrupted session can still be resumed, > 0
   ValidityRule validity{};
   LeastTouch answer_after{};  ///< zeros: an answer needs no touch
+
+  /// A stimulus's own gain, about which presentations are roved, dB re the pack's.
+  [[nodiscard]] double own_gain_db() const noexcept { return -rove_db / 2.0; }
 
   friend bool operator==(const TrialOptions&, const TrialOptions&) = default;
 };

@@ -15,7 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kVersion = 2;
+/// Of both files.
+constexpr int kVersion = 3;
 
 /// One kind of file and its words.
 struct Kind {

@@ -1,10 +1,12 @@
 /// \file The study file's "registration".
+#include "core/named.hpp"
 #include "core/text.hpp"
 #include "protocols/design/deviation_codes.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -270,15 +272,15 @@ RegisteredTest usual_test_of(const Study& study) {
 }
 
 std::string_view name_of(Estimand estimand) {
-  return word_for(kEstimandNames, estimand);
+  return name_in(kEstimandNames, estimand);
 }
 
 std::string_view name_of(RegisteredTest test) {
-  return word_for(kRegisteredTestNames, test);
+  return name_in(kRegisteredTestNames, test);
 }
 
 std::string_view name_of(Spending spending) {
-  return word_for(kSpendingNames, spending);
+  return name_in(kSpendingNames, spending);
 }
 
 Registration read_registration(const JsonValue& place, RegisteredTest usual_test) {
@@ -310,18 +312,18 @@ nlohmann::json to_json(const Registration& registration) {
                          {"safety_record_years", registration.safety_record_years}};
   if (!registration.analysis) return text;
   const RegisteredAnalysis& analysis = *registration.analysis;
-  text["estimand"] = word_for(kEstimandNames, analysis.estimand);
+  text["estimand"] = name_in(kEstimandNames, analysis.estimand);
   text["methods"] = analysis.methods;
-  text["test"] = word_for(kRegisteredTestNames, analysis.test);
-  text["sides"] = word_for(kSidesNames, analysis.one_sided);
+  text["test"] = name_in(kRegisteredTestNames, analysis.test);
+  text["sides"] = name_in(kSidesNames, analysis.one_sided);
   text["alpha"] = analysis.alpha;
   if (analysis.smallest_effect) text["smallest_effect"] = *analysis.smallest_effect;
   if (analysis.margin) text["margin"] = *analysis.margin;
   text["looks"] = analysis.looks;
-  text["spending"] = word_for(kSpendingNames, analysis.spending);
+  text["spending"] = name_in(kSpendingNames, analysis.spending);
   if (analysis.exclusion_rules) text["exclusion_rules"] = to_json(*analysis.exclusion_rules);
   if (analysis.visits != RegisteredVisits::all) {
-    text["visits"] = word_for(kRegisteredVisitsNames, analysis.visits);
+    text["visits"] = name_in(kRegisteredVisitsNames, analysis.visits);
   }
   return text;
 }
@@ -363,18 +365,16 @@ std::string estimand_words(const RegisteredAnalysis& analysis) {
 }
 
 std::string name_in_words(RegisteredTest test) {
-  switch (test) {
-    case RegisteredTest::sign_flip:
-      return "exact sign flips over participants";
-    case RegisteredTest::crossover:
-      return "period-adjusted t test over participants (period differences compared between the "
-             "two "
-             "orders of methods), checked by a permutation of orders within the blocks in which "
-             "they were dealt";
-    case RegisteredTest::t:
-      break;
-  }
-  return "Student's t test over participants";
+  using enum RegisteredTest;
+  static constexpr auto kNames = std::to_array<Named<RegisteredTest>>(
+      {{"exact sign flips over participants", sign_flip},
+       {"period-adjusted t test over participants (period differences compared between the "
+        "two "
+        "orders of methods), checked by a permutation of orders within the blocks in which "
+        "they were dealt",
+        crossover},
+       {"Student's t test over participants", t}});
+  return std::string(name_in(kNames, test));
 }
 
 std::string test_words(const RegisteredAnalysis& analysis) {

@@ -44,7 +44,7 @@ engine::Gains read_explicit_gains(const JsonValue& place, engine::ModelKind mode
 }
 
 void read_gains(const JsonValue& place, ReadRendering& read) {
-  constexpr std::array kNames = {Named<int>{"budget", 0}};
+  constexpr auto kNames = std::to_array<Named<int>>({{"budget", 0}});
   if (place.is_text()) {
     static_cast<void>(place.choice(kNames));
     return;
@@ -168,14 +168,14 @@ std::string written_rendering(const engine::RenderingOptions& rendering) {
 }
 
 nlohmann::json to_json(const engine::RenderingOptions& rendering) {
-  nlohmann::json object = {{"model", word_for(kModelNames, rendering.model)},
+  nlohmann::json object = {{"model", name_in(kModelNames, rendering.model)},
                            {"pitch_mm", rendering.pitch_mm},
                            {"stiffness_n_per_mm", rendering.stiffness_n_per_mm},
                            {"damping_n_s_per_mm", rendering.damping_n_s_per_mm},
                            {"filter_mm", rendering.filter_mm},
                            {"texture_stiffness_n_per_mm", rendering.texture_stiffness_n_per_mm},
                            {"gains", gains_json(rendering)},
-                           {"equalise", word_for(kEqualiseNames, rendering.equalise)},
+                           {"equalise", name_in(kEqualiseNames, rendering.equalise)},
                            {"reference_grey", rendering.reference_grey},
                            {"friction", rendering.friction},
                            {"neighbourhood", rendering.neighbourhood},

@@ -129,8 +129,8 @@ std::vector<StudyClass> read_classes(const JsonValue& place, int fewest, std::si
 TrialOptions read_trials(const JsonValue& place) {
   const JsonObject object =
       place.object({"repeats", "order", "explore_limit_s", "on_timeout", "practice", "break_every",
-                    "break_after_min", "catch", "lead_in", "blocks", "max_run", "on_interruption",
-                    "resume_within_h", "validity", "answer_after"});
+                    "break_after_min", "catch", "lead_in", "blocks", "max_run", "rove_db",
+                    "on_interruption", "resume_within_h", "validity", "answer_after"});
   TrialOptions options;
   read_count(object, "repeats", 1, 1000, options.repeats);
   read_count(object, "break_every", 0, 10'000, options.break_every);
@@ -141,6 +141,7 @@ TrialOptions read_trials(const JsonValue& place) {
   if (const auto member = object.find("explore_limit_s")) {
     options.explore_limit_s = member->number({.low = 0.0, .high = 3600.0, .open_low = true});
   }
+  if (const auto member = object.find("rove_db")) options.rove_db = member->number({0.0, 40.0});
   if (const auto member = object.find("break_after_min")) {
     options.break_after_min = member->number({0.0, 240.0});
   }
@@ -159,21 +160,22 @@ TrialOptions read_trials(const JsonValue& place) {
 
 nlohmann::json to_json(const TrialOptions& trials) {
   nlohmann::json text = {{"repeats", trials.repeats},
-                         {"order", word_for(kTrialOrderNames, trials.order)},
+                         {"order", name_in(kTrialOrderNames, trials.order)},
                          {"explore_limit_s", trials.explore_limit_s},
-                         {"on_timeout", word_for(kOnTimeoutNames, trials.on_timeout)},
+                         {"on_timeout", name_in(kOnTimeoutNames, trials.on_timeout)},
                          {"practice", trials.practice},
                          {"break_every", trials.break_every},
                          {"catch", trials.catch_trials},
                          {"lead_in", trials.lead_in},
-                         {"blocks", word_for(kBlocksNames, trials.blocks)}};
+                         {"blocks", name_in(kBlocksNames, trials.blocks)}};
   const TrialOptions usual;
   if (trials.max_run != usual.max_run) text["max_run"] = trials.max_run;
+  if (trials.rove_db != usual.rove_db) text["rove_db"] = trials.rove_db;
   if (trials.break_after_min != usual.break_after_min) {
     text["break_after_min"] = trials.break_after_min;
   }
   if (trials.on_interruption != usual.on_interruption) {
-    text["on_interruption"] = word_for(kOnInterruptionNames, trials.on_interruption);
+    text["on_interruption"] = name_in(kOnInterruptionNames, trials.on_interruption);
   }
   if (trials.resume_within_h != usual.resume_within_h) {
     text["resume_within_h"] = trials.resume_within_h;
@@ -236,7 +238,7 @@ VisitPlan read_visits(const JsonValue& place) {
 nlohmann::json to_json(const VisitPlan& visits) {
   nlohmann::json text = {{"count", visits.count},
                          {"least_days", visits.least_days},
-                         {"methods", word_for(kVisitMethodsNames, visits.methods)}};
+                         {"methods", name_in(kVisitMethodsNames, visits.methods)}};
   if (visits.most_days) text["most_days"] = *visits.most_days;
   return text;
 }

@@ -15,74 +15,59 @@
 
 namespace touchtrial::design {
 
-inline constexpr std::array kTrialOrderNames = {
-    Named<TrialOrder>{"shuffled", TrialOrder::shuffled},
-    Named<TrialOrder>{"de-bruijn", TrialOrder::de_bruijn},
-    Named<TrialOrder>{"uniform", TrialOrder::uniform},
-    Named<TrialOrder>{"williams", TrialOrder::williams}};
+inline constexpr auto kTrialOrderNames =
+    std::to_array<Named<TrialOrder>>({{"shuffled", TrialOrder::shuffled},
+                                      {"de-bruijn", TrialOrder::de_bruijn},
+                                      {"uniform", TrialOrder::uniform},
+                                      {"williams", TrialOrder::williams}});
 
-inline constexpr std::array kOnTimeoutNames = {
-    Named<OnTimeout>{"fade", OnTimeout::fade},
-    Named<OnTimeout>{"no-response", OnTimeout::no_response}};
+inline constexpr auto kOnTimeoutNames = std::to_array<Named<OnTimeout>>(
+    {{"fade", OnTimeout::fade}, {"no-response", OnTimeout::no_response}});
 
-inline constexpr std::array kBlocksNames = {Named<Blocks>{"by-method", Blocks::by_method},
-                                            Named<Blocks>{"mixed", Blocks::mixed}};
+inline constexpr auto kBlocksNames =
+    std::to_array<Named<Blocks>>({{"by-method", Blocks::by_method}, {"mixed", Blocks::mixed}});
 
-inline constexpr std::array kOnInterruptionNames = {
-    Named<OnInterruption>{"repeat", OnInterruption::repeat},
-    Named<OnInterruption>{"leave-out", OnInterruption::leave_out},
-    Named<OnInterruption>{"restart-block", OnInterruption::restart_block}};
+inline constexpr auto kOnInterruptionNames =
+    std::to_array<Named<OnInterruption>>({{"repeat", OnInterruption::repeat},
+                                          {"leave-out", OnInterruption::leave_out},
+                                          {"restart-block", OnInterruption::restart_block}});
 
-inline constexpr std::array kSightNames = {Named<Sight>{"curtain", Sight::curtain},
-                                           Named<Sight>{"blindfold", Sight::blindfold}};
+inline constexpr auto kSightNames =
+    std::to_array<Named<Sight>>({{"curtain", Sight::curtain}, {"blindfold", Sight::blindfold}});
 
-inline constexpr std::array kQuestionKindNames = {
-    Named<QuestionKind>{"choice", QuestionKind::choice},
-    Named<QuestionKind>{"number", QuestionKind::number},
-    Named<QuestionKind>{"text", QuestionKind::text}};
+inline constexpr auto kQuestionKindNames =
+    std::to_array<Named<QuestionKind>>({{"choice", QuestionKind::choice},
+                                        {"number", QuestionKind::number},
+                                        {"text", QuestionKind::text}});
 
-inline constexpr std::array kModelNames = {
-    Named<engine::ModelKind>{"paper", engine::ModelKind::paper},
-    Named<engine::ModelKind>{"surface", engine::ModelKind::surface}};
+inline constexpr auto kModelNames = std::to_array<Named<engine::ModelKind>>(
+    {{"paper", engine::ModelKind::paper}, {"surface", engine::ModelKind::surface}});
 
-inline constexpr std::array kEqualiseNames = {
-    Named<engine::Equalise>{"none", engine::Equalise::none},
-    Named<engine::Equalise>{"rms", engine::Equalise::rms},
-    Named<engine::Equalise>{"level", engine::Equalise::level}};
+inline constexpr auto kEqualiseNames =
+    std::to_array<Named<engine::Equalise>>({{"none", engine::Equalise::none},
+                                            {"rms", engine::Equalise::rms},
+                                            {"level", engine::Equalise::level}});
 
-inline constexpr std::array kEstimandNames = {
-    Named<Estimand>{"mean-accuracy", Estimand::mean_accuracy},
-    Named<Estimand>{"difference", Estimand::difference}};
+inline constexpr auto kEstimandNames = std::to_array<Named<Estimand>>(
+    {{"mean-accuracy", Estimand::mean_accuracy}, {"difference", Estimand::difference}});
 
-inline constexpr std::array kRegisteredTestNames = {
-    Named<RegisteredTest>{"t", RegisteredTest::t},
-    Named<RegisteredTest>{"sign-flip", RegisteredTest::sign_flip},
-    Named<RegisteredTest>{"crossover", RegisteredTest::crossover}};
+inline constexpr auto kRegisteredTestNames =
+    std::to_array<Named<RegisteredTest>>({{"t", RegisteredTest::t},
+                                          {"sign-flip", RegisteredTest::sign_flip},
+                                          {"crossover", RegisteredTest::crossover}});
 
-inline constexpr std::array kSidesNames = {Named<bool>{"one", true}, Named<bool>{"two", false}};
+inline constexpr auto kSidesNames = std::to_array<Named<bool>>({{"one", true}, {"two", false}});
 
-inline constexpr std::array kVisitMethodsNames = {
-    Named<VisitMethods>{"all", VisitMethods::all},
-    Named<VisitMethods>{"divided", VisitMethods::divided}};
+inline constexpr auto kVisitMethodsNames = std::to_array<Named<VisitMethods>>(
+    {{"all", VisitMethods::all}, {"divided", VisitMethods::divided}});
 
-inline constexpr std::array kRegisteredVisitsNames = {
-    Named<RegisteredVisits>{"all", RegisteredVisits::all},
-    Named<RegisteredVisits>{"first", RegisteredVisits::first},
-    Named<RegisteredVisits>{"last", RegisteredVisits::last}};
+inline constexpr auto kRegisteredVisitsNames =
+    std::to_array<Named<RegisteredVisits>>({{"all", RegisteredVisits::all},
+                                            {"first", RegisteredVisits::first},
+                                            {"last", RegisteredVisits::last}});
 
-inline constexpr std::array kSpendingNames = {
-    Named<Spending>{"obrien-fleming", Spending::obrien_fleming},
-    Named<Spending>{"pocock", Spending::pocock}};
-
-/// The word for a value; every value of the enumeration is in its table.
-template <typename Value, std::size_t size>
-[[nodiscard]] constexpr std::string_view word_for(const std::array<Named<Value>, size>& table,
-                                                  Value value) {
-  for (const Named<Value>& entry : table) {
-    if (entry.value == value) return entry.name;
-  }
-  return {};
-}
+inline constexpr auto kSpendingNames = std::to_array<Named<Spending>>(
+    {{"obrien-fleming", Spending::obrien_fleming}, {"pocock", Spending::pocock}});
 
 /// Whether a text contains a C0 character (line feeds and tabs included), DEL, or a C1 character.
 [[nodiscard]] bool has_control_character(std::string_view text);
@@ -145,10 +130,10 @@ void check_registration(const JsonValue& file, const Study& study);
 
 /// The sections in the form of the study file, with every key explicit. A method has only the keys
 /// that belong to it, "control" if it has one, and "label" if it is not the default. The trials
-/// have "max_run", "on_interruption", "resume_within_h", "validity" and "answer_after" only if
-/// these differ from their defaults, as the session has "texts", "text_scale" and "high_contrast",
-/// and a registration has the keys of its analysis only if it has one, so that studies sealed
-/// before these keys existed keep their seals. Equal options give equal JSON.
+/// have "max_run", "rove_db", "on_interruption", "resume_within_h", "validity" and "answer_after"
+/// only if these differ from their defaults, as the session has "texts", "text_scale" and
+/// "high_contrast", and a registration has the keys of its analysis only if it has one, so that
+/// studies sealed before these keys existed keep their seals. Equal options give equal JSON.
 [[nodiscard]] nlohmann::json to_json(const engine::ExtractionOptions& method);
 [[nodiscard]] nlohmann::json to_json(const StudyMethod& method);
 [[nodiscard]] nlohmann::json to_json(const engine::RenderingOptions& rendering);

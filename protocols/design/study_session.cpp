@@ -204,7 +204,7 @@ nlohmann::json to_json(const std::vector<Question>& questions) {
   nlohmann::json list = nlohmann::json::array();
   for (const Question& question : questions) {
     nlohmann::json item = {{"id", question.id},
-                           {"kind", word_for(kQuestionKindNames, question.kind)},
+                           {"kind", name_in(kQuestionKindNames, question.kind)},
                            {"text", question.text},
                            {"required", question.required}};
     if (!question.options.empty()) item["options"] = question.options;
@@ -252,7 +252,7 @@ nlohmann::json to_json(const SessionPlan& session) {
   nlohmann::json text = {
       {"language", session.language},
       {"instructions", instructions},
-      {"sight", word_for(kSightNames, session.sight)},
+      {"sight", name_in(kSightNames, session.sight)},
       {"masking", {{"wanted", session.masking.wanted}, {"level_dbfs", session.masking.level_dbfs}}},
       {"handedness", session.handedness},
       {"confidence", session.confidence_levels},

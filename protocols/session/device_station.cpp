@@ -1,6 +1,7 @@
 #include "protocols/session/device_station.hpp"
 
 #include "core/errors.hpp"
+#include "core/named.hpp"
 #include "device/platform/stop_signals.hpp"
 #include "device/servo/servo.hpp"
 
@@ -12,23 +13,19 @@ namespace touchtrial::session {
 namespace {
 
 std::string need_of(device::DeviceReadiness readiness) {
-  switch (readiness) {
-    case device::DeviceReadiness::needs_homing:
-      return "the device is not homed; move its handle through the whole range";
-    case device::DeviceReadiness::needs_inkwell:
-      return "the device is not calibrated; put the stylus into its inkwell";
-    case device::DeviceReadiness::needs_reset:
-      return "the device is not calibrated; put its arm at the reset position, with all links at "
-             "right angles, hold it still, and press h for here";
-    case device::DeviceReadiness::needs_calibration:
-      return "the device is not calibrated; put it at its rest position, or run its vendor's "
-             "calibration";
-    case device::DeviceReadiness::needs_force_on:
-      return "force is switched off at the device; press its force button";
-    case device::DeviceReadiness::ready:
-      break;
-  }
-  return "";
+  using enum device::DeviceReadiness;
+  static constexpr auto kNames = std::to_array<Named<device::DeviceReadiness>>(
+      {{"the device is not homed; move its handle through the whole range", needs_homing},
+       {"the device is not calibrated; put the stylus into its inkwell", needs_inkwell},
+       {"the device is not calibrated; put its arm at the reset position, with all links at "
+        "right angles, hold it still, and press h for here",
+        needs_reset},
+       {"the device is not calibrated; put it at its rest position, or run its vendor's "
+        "calibration",
+        needs_calibration},
+       {"force is switched off at the device; press its force button", needs_force_on},
+       {"", ready}});
+  return std::string(name_in(kNames, readiness));
 }
 
 std::string identity_of(const device::DeviceInfo& device) {

@@ -38,7 +38,7 @@ class TrialRun {
   [[nodiscard]] int came_again() const noexcept { return came_again_; }
 
  private:
-  [[nodiscard]] const engine::RenderingModel& model() const;
+  [[nodiscard]] engine::RenderingModel model() const;
   /// Presents all planes of a trial with intervals.
   void run_intervals();
   /// When an exploration began, by the servo's clock, and ended.
@@ -83,7 +83,7 @@ void TrialRun::run() {
   hand_was_off_ = hand_off;
   if (!desk_.attend(ReadyStep{session_.presentations_begun() + 1, of_, false, hand_off})) return;
   if (intervals_) return run_intervals();
-  const engine::RenderingModel& presented = model();
+  const engine::RenderingModel presented = model();
   if (explore(presented)) answer(presented);
   const bool is_lost =
       time_is_up_ && parts_.key.study.trials.on_timeout == design::OnTimeout::no_response;
@@ -93,10 +93,10 @@ void TrialRun::run() {
       desk_.attend(NoticeStep{NoticeStep::What::time_is_up, session_.presentations_begun()}));
 }
 
-const engine::RenderingModel& TrialRun::model() const {
+engine::RenderingModel TrialRun::model() const {
   const design::Presentation& presentation = *session_.current();
   if (presentation.kind == design::PresentationKind::catch_trial) return parts_.source.flat();
-  return parts_.source.model(parts_.key.code_of(presentation.stimulus));
+  return parts_.source.model(parts_.key.code_of(presentation.stimulus), presentation.gain_db);
 }
 
 bool TrialRun::explore(const engine::RenderingModel& model) {

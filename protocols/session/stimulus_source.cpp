@@ -58,6 +58,11 @@ const engine::RenderingModel& StimulusSource::model(const std::string& code) con
   return stimulus(code).model;
 }
 
+engine::RenderingModel StimulusSource::model(const std::string& code, double gain_db) const {
+  const Stimulus& found = stimulus(code);
+  return {found.field, rendering_, engine::scaled_db(found.gains, gain_db)};
+}
+
 engine::FieldWithGains StimulusSource::field(const std::string& code) const {
   const Stimulus& found = stimulus(code);
   return {found.field, found.gains};

@@ -28,6 +28,11 @@ class StimulusSource {
   /// \throws FileError if the pack has no such code
   [[nodiscard]] const engine::RenderingModel& model(const std::string& code) const;
 
+  /// The model of a field at another gain than the pack's. Cheap: reads no sample.
+  /// \param gain_db  re the pack's gain
+  /// \throws FileError if the pack has no such code
+  [[nodiscard]] engine::RenderingModel model(const std::string& code, double gain_db) const;
+
   /// A field with its gains, which refers to this.
   /// \throws FileError if the pack has no such code
   [[nodiscard]] engine::FieldWithGains field(const std::string& code) const;

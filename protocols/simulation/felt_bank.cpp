@@ -53,7 +53,8 @@ FeltBank::FeltBank(const LabelledFields& fields, const design::Study& study,
   const auto feel = [&](std::size_t i) {
     const std::size_t place = i / each;
     const std::uint64_t index = (std::uint64_t{place} << kExplorationBits) + i % each;
-    felt_[i] = feel_exploration(*fields.all()[place].model, fields.plane(), subject, servo,
+    const double gain_db = fields.draw_gain_db({options.seed, "subject: felt bank gain", index});
+    felt_[i] = feel_exploration(fields.all()[place].model(gain_db), fields.plane(), subject, servo,
                                 RandomStream(options.seed, "subject: felt bank", index),
                                 hand_of_participant(subject, options.seed, 1 + i % each));
     count.one_more();
@@ -69,10 +70,11 @@ int FeltBank::place_of(const design::StimulusIndex& stimulus) const {
   return static_cast<int>(found - stimuli_.begin());
 }
 
-engine::FeltFeatures feel_trial(const LabelledField& field, const PlaneGeometry& plane,
-                                const design::Study& study, const SubjectModel& subject,
-                                std::uint64_t seed, int number, std::uint64_t nth) {
-  return feel_exploration(*field.model, plane, subject,
+engine::FeltFeatures feel_trial(const LabelledField& field, double gain_db,
+                                const PlaneGeometry& plane, const design::Study& study,
+                                const SubjectModel& subject, std::uint64_t seed, int number,
+                                std::uint64_t nth) {
+  return feel_exploration(field.model(gain_db), plane, subject,
                           session::trial_servo_options(study, device::kServoRateHz, {}),
                           stream_of_trial(seed, kExplorationPurpose, number, nth),
                           hand_of_participant(subject, seed, static_cast<std::uint64_t>(number)));

@@ -22,9 +22,10 @@ struct FeltBankOptions {
 
 /// The features, before noise, of many explorations of each stimulus (class x exemplar x method).
 /// Hand, servo, force limit and sense are those of trials, so that exploration i of a stimulus is
-/// an independent draw from what any trial with it feels like. Exploration i is a function of
-/// study, fields, subject (hand and path alone, no noise or bias), seed, the stimulus's place and
-/// i: a larger bank begins with the smaller one. Refers to nothing; immutable, thread-safe.
+/// an independent draw from what any trial with it feels like, its gain included. Exploration i is
+/// a function of study, fields, subject (hand and path alone, no noise or bias), seed, the
+/// stimulus's place and i: a larger bank begins with the smaller one. Refers to nothing; immutable,
+/// thread-safe.
 class FeltBank {
  public:
   /// Explores every stimulus. Cost: explorations x stimuli x explore_s x 0.15 ms of one thread
@@ -59,11 +60,12 @@ class FeltBank {
 
 /// The features that a participant of simulate_study feels in one presentation, to the bit: the
 /// same exploration without its session. Cost: that of one exploration of a bank.
+/// \param gain_db  the presentation's
 /// \param seed  of the simulation
 /// \param number  of the participant, from 1
 /// \param nth  place of the presentation among those that the participant begins, from 1; unscored
 ///   ones count
-[[nodiscard]] engine::FeltFeatures feel_trial(const LabelledField& field,
+[[nodiscard]] engine::FeltFeatures feel_trial(const LabelledField& field, double gain_db,
                                               const PlaneGeometry& plane,
                                               const design::Study& study,
                                               const SubjectModel& subject, std::uint64_t seed,

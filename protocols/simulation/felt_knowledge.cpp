@@ -5,8 +5,8 @@
 #include "device/servo/servo.hpp"
 #include "protocols/simulation/felt_exploration.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace touchtrial::simulation {
 namespace {
@@ -21,15 +21,18 @@ device::ServoOptions training_options(const SubjectModel& subject, double max_fo
 }  // namespace
 
 LabelledFields::LabelledFields(const design::StudyCodes& key, const session::StimulusSource& source)
-    : plane_(source.plane()) {
-  // Sorted by stimulus and not by code: codes are random, and training must not depend on them.
-  std::map<design::StimulusIndex, const engine::RenderingModel*> by_stimulus;
+    : plane_(source.plane()), trials_(key.study.trials) {
   for (const design::KeyedStimulus& keyed : key.stimuli) {
-    by_stimulus[keyed.stimulus] = &source.model(keyed.code);
+    static_cast<void>(source.model(keyed.code));
+    fields_.push_back(
+        {key.study.classes[keyed.stimulus.class_index].label, keyed.stimulus, &source, keyed.code});
   }
-  for (const auto& [stimulus, model] : by_stimulus) {
-    fields_.push_back({key.study.classes[stimulus.class_index].label, model, stimulus});
-  }
+  // By stimulus and not by code: codes are random, and training must not depend on them.
+  std::ranges::sort(fields_, {}, &LabelledField::stimulus);
+}
+
+double LabelledFields::draw_gain_db(RandomStream random) const {
+  return trials_.own_gain_db() + design::drawn_rove_db(trials_.rove_db, random);
 }
 
 FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel& subject,
@@ -47,9 +50,10 @@ FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel&
     RandomStream random(seed, "subject: training pass", pass);
     device::SimulatedHand hand = make_exploring_hand(subject, fields.plane(), random);
     hand.foresee();
+    const double gain_db = fields.draw_gain_db({seed, "subject: training gain", pass});
     for (std::size_t prototype = 0; prototype < fields.all().size(); ++prototype) {
-      const engine::FeltFeatures felt =
-          feel_exploration(*fields.all()[prototype].model, fields.plane(), subject, options, hand);
+      const engine::FeltFeatures felt = feel_exploration(fields.all()[prototype].model(gain_db),
+                                                         fields.plane(), subject, options, hand);
       knowledge.examples[prototype * passes + pass] = {static_cast<int>(prototype),
                                                        {felt.begin(), felt.end()}};
     }

@@ -1,6 +1,7 @@
 /// \file What simulated participants learn before the first trial: how each class feels.
 #pragma once
 
+#include "core/random.hpp"
 #include "engine/perception/felt_classifier.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/session/stimulus_source.hpp"
@@ -12,11 +13,17 @@
 
 namespace touchtrial::simulation {
 
-/// A field with the name of its class: one image of the class by one method.
+/// A field with the name of its class: one image of the class by one method. Refers to the source.
 struct LabelledField {
   std::string label;
-  const engine::RenderingModel* model = nullptr;
   design::StimulusIndex stimulus{};
+  const session::StimulusSource* source = nullptr;
+  std::string code{};
+
+  /// \param gain_db  re the pack's gain
+  [[nodiscard]] engine::RenderingModel model(double gain_db) const {
+    return source->model(code, gain_db);
+  }
 };
 
 /// The only way to a field by its label, which the code of trials does not have. Holds every
@@ -29,10 +36,13 @@ class LabelledFields {
 
   [[nodiscard]] const std::vector<LabelledField>& all() const noexcept { return fields_; }
   [[nodiscard]] const PlaneGeometry& plane() const noexcept { return plane_; }
+  /// A gain as trials have them, dB re the pack's.
+  [[nodiscard]] double draw_gain_db(RandomStream random) const;
 
  private:
   std::vector<LabelledField> fields_;
   PlaneGeometry plane_;
+  design::TrialOptions trials_;
 };
 
 /// Remembered explorations. An example's label is the index of its prototype, which is one
@@ -44,8 +54,9 @@ struct FeltKnowledge {
 };
 
 /// Feels every labelled field `training_passes` times, with the device and servo of the trials.
-/// Each pass has its own path, which is the same on every field and differs from those of all
-/// trials. A function of its arguments, except for `jobs`.
+/// Each pass has its own path and, where gains are roved, its own gain. They are the same on every
+/// field, and the path differs from those of all trials. A function of its arguments, except for
+/// `jobs`.
 /// \param max_force_n  limit of the servo's force, N
 /// \param jobs  threads, >= 1
 [[nodiscard]] FeltKnowledge learn_by_feeling(const LabelledFields& fields,

@@ -95,6 +95,9 @@ std::optional<std::size_t> weakest(const std::vector<double>& levels) {
 std::string levers(const design::Study& study, std::span<const engine::FieldView> views,
                    const device::DeviceModel& device, const LevelMeter& meter) {
   std::string text;
+  if (study.trials.rove_db > 0.0) {
+    text = fmt::format("/trials/rove_db 0 gives {:.1f} dB more", -study.trials.own_gain_db());
+  }
   const auto name = [&](const std::string& change, const Fields& fields) {
     const std::vector<double> levels = meter.levels(fields);
     const auto place = weakest(levels);

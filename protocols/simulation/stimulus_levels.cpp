@@ -271,9 +271,9 @@ FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
   const auto felt_on = [&](std::size_t device, std::size_t field, double factor,
                            std::size_t explorations) {
     const engine::FieldWithGains& stroked_field = fields[field];
-    return stroked(
-        {stroked_field.field, study.rendering, engine::scaled(stroked_field.gains, factor)}, plane,
-        servo, std::span(hands[device]).first(explorations));
+    const engine::Gains own = engine::scaled_db(stroked_field.gains, study.trials.own_gain_db());
+    return stroked({stroked_field.field, study.rendering, engine::scaled(own, factor)}, plane,
+                   servo, std::span(hands[device]).first(explorations));
   };
   std::vector<Felt> blanks(devices.size());
   in_parallel(jobs, devices.size(),

@@ -73,6 +73,7 @@ struct FieldLevels {
   PlaneLevels blank;                ///< of the same wall without a texture
 };
 
+/// Where the study roves gains, levels are those of a stimulus's own gain.
 /// A hand of the default subject model strokes every field and the blank plane on each device: the
 /// same paths on all. A function of its arguments, but for `jobs`. Cost: some 15 ms of one thread
 /// for each plane and device.

@@ -1,5 +1,9 @@
 #include "protocols/simulation/subject_changes_json.hpp"
 
+#include "core/named.hpp"
+
+#include <array>
+
 #include <nlohmann/json.hpp>
 
 namespace touchtrial::simulation {
@@ -21,15 +25,10 @@ constexpr NumberRange kLongestS{0.1, 600.0};
 }  // namespace
 
 std::string_view name_of(Training training) noexcept {
-  switch (training) {
-    case Training::own:
-      return "own";
-    case Training::none:
-      return "none";
-    case Training::shared:
-      break;
-  }
-  return "shared";
+  using enum Training;
+  static constexpr auto kNames =
+      std::to_array<Named<Training>>({{"own", own}, {"none", none}, {"shared", shared}});
+  return name_in(kNames, training);
 }
 
 void read_number(const JsonObject& object, std::string_view key, const NumberRange& range,

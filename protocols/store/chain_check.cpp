@@ -25,20 +25,6 @@ std::string trace_of(const TrialId& id) {
   return "trace of trial " + std::to_string(id.second);
 }
 
-/// The first id at which two sorted lists of rows differ.
-template <typename Id, typename Row, typename IdOf>
-std::optional<Id> first_difference(const std::map<Id, Row>& expected, const std::vector<Row>& found,
-                                   IdOf id_of) {
-  auto row = found.begin();
-  for (const auto& [id, expected_row] : expected) {
-    if (row == found.end() || id < id_of(*row)) return id;
-    if (!(*row == expected_row)) return id_of(*row);
-    ++row;
-  }
-  if (row != found.end()) return id_of(*row);
-  return std::nullopt;
-}
-
 /// The signatures of one file chain. Where not everything is checked, those of the last event,
 /// which vouches for the events before it, and of unblindings.
 class SignatureCheck {
@@ -72,13 +58,13 @@ struct SessionOnItsWay {
   const SessionOnFile* on_file = nullptr;
   std::vector<Event> events;
   std::exception_ptr unreadable;  ///< after `events`
-  DerivedRows rows;
   std::map<int, TraceClaim> claims;
   std::exception_ptr fault;
 
   void check(const StudyCommitment& commitment, const SessionReader& reader) noexcept {
     try {
       SessionCheck check(session, *on_file, commitment);
+      DerivedRows rows;
       for (const Event& event : events) check.add(event, rows);
       if (unreadable) std::rethrow_exception(unreadable);
       check.finish(rows);
@@ -111,12 +97,8 @@ class Inspection {
     if (!file_.commitment()) throw EventFault(0, kNoEvent, "the file's chain is empty");
     inspect_length(collected);
     inspect_sessions();
-    // Only now do the rows of sessions exist that exclusions and withdrawals change.
-    for_each_event(database_, 0, [&](const Event& event) { fold(expected_, event); });
     inspect_keys();
     if (traces == TraceCheck::full) inspect_traces();
-    inspect_session_rows();
-    inspect_trial_rows();
     inspect_schema();
   }
 
@@ -251,8 +233,6 @@ class Inspection {
   }
 
   void add_session(SessionOnItsWay& one) {
-    expected_.sessions.merge(one.rows.sessions);
-    expected_.trials.merge(one.rows.trials);
     for (const auto& [trial, claim] : one.claims) {
       claims_.emplace(TrialId(one.session, trial), claim);
     }
@@ -311,33 +291,6 @@ class Inspection {
     if (claim != claims_.end()) missing();
   }
 
-  void inspect_session_rows() const {
-    const auto differs = first_difference(expected_.sessions, read_sessions(database_),
-                                          [](const SessionRow& row) { return row.session; });
-    if (differs)
-      throw EventFault(*differs, kNoEvent, "derived table sessions disagrees with the events");
-    inspect_empty_columns();
-  }
-
-  /// What is absent is NULL. Rows read alike without, but queries and indices tell the two apart.
-  void inspect_empty_columns() const {
-    Query query = database_.query(
-        "SELECT session FROM sessions WHERE replaced_by = '' OR own_session = session");
-    if (!query.step()) return;
-    throw EventFault(query.integer(0), kNoEvent,
-                     "derived table sessions has a value where its events give none");
-  }
-
-  void inspect_trial_rows() const {
-    const std::vector<TrialRow> found = read_trials(database_);
-    const auto id_of = [](const TrialRow& row) { return TrialId(row.session, row.trial); };
-    const auto differs = first_difference(expected_.trials, found, id_of);
-    if (!differs) return;
-    throw EventFault(differs->first, kNoEvent,
-                     "derived table trials disagrees with the events at trial " +
-                         std::to_string(differs->second));
-  }
-
   /// Runs last: a fault of stored data is named before the missing trigger that allowed it.
   void inspect_schema() const {
     if (const auto differs = schema_fault(database_)) throw EventFault(0, kNoEvent, *differs);
@@ -347,7 +300,6 @@ class Inspection {
   const SessionReader& reader_;
   FileChain file_;
   bool is_collected_ = false;
-  DerivedRows expected_;
   std::map<TrialId, TraceClaim> claims_;
 };
 

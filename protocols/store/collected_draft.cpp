@@ -91,19 +91,11 @@ struct CollectedDraft::Impl {
     }
   }
 
-  /// Adds to the session's row where it is from, and whether its participant was excluded, withdrew
-  /// or was replaced.
-  void settle(int number, DerivedRows& rows) const {
-    const auto [first, last] = about.equal_range(number);
-    for (auto event = first; event != last; ++event) fold(rows, chain.events[event->second]);
-  }
-
   std::unique_ptr<DraftFile> file;
   Database database;
   std::filesystem::path target;
   CollectedChain chain;
   FileChain on_file{UniquePlaces::in_the_end};
-  std::multimap<int, std::size_t> about;  ///< by session: places in `chain` that change its row
   std::optional<bool> visual;
   int session = 0;  ///< that was added last
   std::map<int, TraceClaim> claims;
@@ -126,11 +118,7 @@ CollectedDraft CollectedDraft::temporary(const std::string& name) {
 
 const CollectedChain& CollectedDraft::begin(std::span<const StationChain> stations) {
   impl_->chain = collected_chain(stations);
-  for (const Event& event : impl_->chain.events) {
-    impl_->on_file.add(event);
-    const auto place = static_cast<std::size_t>(event.sequence);
-    if (const auto session = scope_of(event).session) impl_->about.emplace(*session, place);
-  }
+  for (const Event& event : impl_->chain.events) impl_->on_file.add(event);
   impl_->database.change([&] {
     // In the order of the table's key, so that the table grows only at its end.
     for (int number = static_cast<int>(stations.size()); number > 0; --number) {
@@ -154,14 +142,12 @@ void CollectedDraft::add_session(int session, std::span<const Event> events,
       check.add(here.back(), rows);
     }
     check.finish(rows);
-    impl_->settle(session, rows);
     check.check_keys(keys);
     impl_->check_kind(here.front());
   });
   impl_->claims = check.claims();
   impl_->database.change([&] {
     for (const Event& event : here) insert_event(impl_->database, event);
-    write_rows(impl_->database, rows);
     insert_keys(impl_->database, session, keys);
   });
 }

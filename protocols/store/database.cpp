@@ -1,7 +1,5 @@
 #include "protocols/store/database.hpp"
 
-#include "protocols/store/tables.hpp"
-
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -76,25 +74,18 @@ bool has_log(const std::filesystem::path& path) {
   return !error && size > 0;
 }
 
-/// Looks at a file before SQLite does, so that a foreign, newer, too old or truncated file is
-/// refused untouched.
-void check_header(const std::filesystem::path& path, int newest_version) {
+/// Looks at a file before SQLite does, so that a foreign or truncated file, or one of another
+/// version, is refused untouched.
+void check_header(const std::filesystem::path& path) {
   const Header header = read_header(path);
   if (big_endian_32(header, 68) != static_cast<std::uint32_t>(kApplicationId)) {
     refuse_file(path, "is an SQLite database, but none of Touchtrial; check the name");
   }
   const std::uint32_t version = big_endian_32(header, 60);
-  if (version > static_cast<std::uint32_t>(newest_version)) {
-    refuse_file(path, "was written by a newer Touchtrial (schema " + std::to_string(version) +
-                          ", this one knows " + std::to_string(newest_version) +
-                          "); use that version");
-  }
-  if (version == 0) refuse_damaged(path, "has no schema version, so it is damaged");
-  if (version < std::uint32_t{kOldestSchemaVersion}) {
-    refuse_file(path, "was written by an older Touchtrial (schema " + std::to_string(version) +
-                          ", the oldest that this one knows is " +
-                          std::to_string(kOldestSchemaVersion) +
-                          "); use the program that wrote it");
+  if (version == 0) refuse_damaged(path, "has no version, so it is damaged");
+  if (version != std::uint32_t{kSchemaVersion}) {
+    refuse_file(path, "is a database of version " + std::to_string(version) + ", not " +
+                          std::to_string(kSchemaVersion) + "; use the program that wrote it");
   }
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
@@ -230,8 +221,8 @@ void make_empty_file(const std::filesystem::path& path) {
 void refuse_address(const std::filesystem::path& path) {
   if (path.string().find("://") == std::string::npos) return;
   throw StoreError(
-      "an address is no file: a study on a server is written by sync, and read by report, export, "
-      "verify and merge");
+      "an address is no file: make a file of what is there with `touchtrial merge ADDRESS -o "
+      "all.db`");
 }
 
 }  // namespace
@@ -284,9 +275,9 @@ Database Database::temporary(const std::string& name) {
   }
 }
 
-Database Database::open(const std::filesystem::path& path, Mode mode, int newest_version) {
+Database Database::open(const std::filesystem::path& path, Mode mode) {
   refuse_address(path);
-  check_header(path, newest_version);
+  check_header(path);
   try {
     Database database(path, connected(path, mode));
     if (mode == Mode::read_write &&

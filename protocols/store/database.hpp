@@ -14,7 +14,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 
 #include <SQLiteCpp/Column.h>
 #include <SQLiteCpp/Database.h>
@@ -41,27 +40,17 @@ class Query {
     statement_->bind(++bound_, std::int64_t{value});
     return *this;
   }
-  Query& bind(double value) {
-    statement_->bind(++bound_, value);
-    return *this;
-  }
   Query& bind(std::string_view text) {
     statement_->bind(++bound_, std::string(text));
     return *this;
   }
   Query& bind(ByteView blob);
-  /// NULL.
-  Query& bind(std::monostate) {
-    statement_->bind(++bound_);
-    return *this;
-  }
+  /// Empty: NULL.
   template <typename Value>
   Query& bind(const std::optional<Value>& value) {
-    return value ? bind(*value) : bind(std::monostate());
-  }
-  template <typename... Values>
-  Query& bind(const std::variant<std::monostate, Values...>& value) {
-    return std::visit([this](const auto& held) -> Query& { return this->bind(held); }, value);
+    if (value) return bind(*value);
+    statement_->bind(++bound_);
+    return *this;
   }
 
   /// \return whether there is another row
@@ -72,7 +61,6 @@ class Query {
   [[nodiscard]] std::int64_t integer(int column) const {
     return statement_->getColumn(column).getInt64();
   }
-  [[nodiscard]] double real(int column) const { return statement_->getColumn(column).getDouble(); }
   [[nodiscard]] std::string text(int column) const {
     return statement_->getColumn(column).getString();
   }
@@ -90,6 +78,9 @@ class Query {
   int bound_ = 0;
 };
 
+/// The version of databases. It counts every change of the tables and of what is in them.
+inline constexpr int kSchemaVersion = 7;
+
 /// Not to be shared between threads.
 class Database {
  public:
@@ -106,12 +97,10 @@ class Database {
 
   /// An existing database. If it is opened for reading and no log lies beside it, no files are left
   /// behind and its folder need not be writable.
-  /// \param newest_version  the newest schema that the program knows
   /// \throws DamagedStore if it is truncated, has no version or cannot be read by SQLite
-  /// \throws StoreError if it is missing, no Touchtrial database, or its schema is newer than
-  ///   `newest_version` or older than kOldestSchemaVersion; it is then untouched
-  [[nodiscard]] static Database open(const std::filesystem::path& path, Mode mode,
-                                     int newest_version);
+  /// \throws StoreError if it is missing, no Touchtrial database, or of another version than
+  ///   kSchemaVersion; it is then untouched
+  [[nodiscard]] static Database open(const std::filesystem::path& path, Mode mode);
 
   Database(Database&&) = default;
 

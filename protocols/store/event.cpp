@@ -1,5 +1,6 @@
 #include "protocols/store/event.hpp"
 
+#include "core/named.hpp"
 #include "protocols/store/damage.hpp"
 
 #include <algorithm>
@@ -18,54 +19,50 @@ auto statement_of(const Event& event) {
   return statement;
 }
 
-constexpr std::array<std::pair<EventKind, std::string_view>, 32> kNames = {{
-    {EventKind::study_committed, "study-committed"},
-    {EventKind::session_opened, "session-opened"},
-    {EventKind::session_closed, "session-closed"},
-    {EventKind::participant_excluded, "participant-excluded"},
-    {EventKind::participant_withdrawn, "participant-withdrawn"},
-    {EventKind::study_closed, "study-closed"},
-    {EventKind::study_unblinded, "study-unblinded"},
-    {EventKind::participant_replaced, "participant-replaced"},
-    {EventKind::participant_noted, "participant-noted"},
-    {EventKind::loss_accepted, "loss-accepted"},
-    {EventKind::opened, "opened"},
-    {EventKind::calibrated, "calibrated"},
-    {EventKind::instructed, "instructed"},
-    {EventKind::practised, "practised"},
-    {EventKind::presented, "presented"},
-    {EventKind::first_contact, "first-contact"},
-    {EventKind::answered, "answered"},
-    {EventKind::interrupted, "interrupted"},
-    {EventKind::timed_out, "timed-out"},
-    {EventKind::trace_stored, "trace-stored"},
-    {EventKind::break_taken, "break-taken"},
-    {EventKind::paused, "paused"},
-    {EventKind::stopped, "stopped"},
-    {EventKind::noted, "noted"},
-    {EventKind::ticked, "ticked"},
-    {EventKind::deviated, "deviated"},
-    {EventKind::questioned, "questioned"},
-    {EventKind::explored_again, "explored-again"},
-    {EventKind::block_restarted, "block-restarted"},
-    {EventKind::resumed, "resumed"},
-    {EventKind::marked, "marked"},
-    {EventKind::closed, "closed"},
-}};
+constexpr auto kNames = std::to_array<Named<EventKind>>({
+    {"study-committed", EventKind::study_committed},
+    {"session-opened", EventKind::session_opened},
+    {"session-closed", EventKind::session_closed},
+    {"participant-excluded", EventKind::participant_excluded},
+    {"participant-withdrawn", EventKind::participant_withdrawn},
+    {"study-closed", EventKind::study_closed},
+    {"study-unblinded", EventKind::study_unblinded},
+    {"participant-replaced", EventKind::participant_replaced},
+    {"participant-noted", EventKind::participant_noted},
+    {"loss-accepted", EventKind::loss_accepted},
+    {"opened", EventKind::opened},
+    {"calibrated", EventKind::calibrated},
+    {"instructed", EventKind::instructed},
+    {"practised", EventKind::practised},
+    {"presented", EventKind::presented},
+    {"first-contact", EventKind::first_contact},
+    {"answered", EventKind::answered},
+    {"interrupted", EventKind::interrupted},
+    {"timed-out", EventKind::timed_out},
+    {"trace-stored", EventKind::trace_stored},
+    {"break-taken", EventKind::break_taken},
+    {"paused", EventKind::paused},
+    {"stopped", EventKind::stopped},
+    {"noted", EventKind::noted},
+    {"ticked", EventKind::ticked},
+    {"deviated", EventKind::deviated},
+    {"questioned", EventKind::questioned},
+    {"explored-again", EventKind::explored_again},
+    {"block-restarted", EventKind::block_restarted},
+    {"resumed", EventKind::resumed},
+    {"marked", EventKind::marked},
+    {"closed", EventKind::closed},
+});
 static_assert(kNames.size() == static_cast<std::size_t>(EventKind::closed) + 1);
 
 }  // namespace
 
 std::string_view name_of(EventKind kind) {
-  const auto index = static_cast<std::size_t>(kind);
-  return index < kNames.size() ? kNames[index].second : std::string_view("unknown");
+  return name_in(kNames, kind);
 }
 
 std::optional<EventKind> event_kind_from_name(std::string_view name) {
-  const auto* const found = std::find_if(kNames.begin(), kNames.end(),
-                                         [&](const auto& entry) { return entry.second == name; });
-  if (found == kNames.end()) return std::nullopt;
-  return found->first;
+  return value_in(kNames, name);
 }
 
 bool belongs_to_file_chain(EventKind kind) {

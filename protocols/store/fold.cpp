@@ -209,11 +209,6 @@ void fold_session_event(DerivedRows& rows, const Event& event) {
   }
 }
 
-bool is_about_a_trial(EventKind kind) {
-  return (kind >= EventKind::presented && kind <= EventKind::trace_stored) ||
-         kind == EventKind::explored_again;
-}
-
 }  // namespace
 
 std::optional<std::chrono::nanoseconds> TrialRow::reaction_time() const {
@@ -238,33 +233,6 @@ int session_about(const Event& event) {
     default:
       return belongs_to_file_chain(event.kind) ? 0 : event.session;
   }
-}
-
-FoldScope scope_of(const Event& event) {
-  switch (event.kind) {
-    case EventKind::study_committed:
-    case EventKind::session_closed:
-    case EventKind::study_closed:
-    case EventKind::study_unblinded:
-    case EventKind::participant_noted:
-    case EventKind::loss_accepted:
-      return {};
-    default:
-      break;
-  }
-  FoldScope scope{.session = session_about(event)};
-  if (is_about_a_trial(event.kind)) {
-    scope.trial = TrialId(event.session, body_of(event, trial_from_json).trial);
-  }
-  if (event.kind == EventKind::paused) {
-    if (const auto trial = body_of(event, pause_from_json).trial) {
-      scope.trial = TrialId(event.session, *trial);
-    }
-  }
-  if (event.kind == EventKind::block_restarted) {
-    scope.block = {event.session, body_of(event, block_from_json).block};
-  }
-  return scope;
 }
 
 void fold(DerivedRows& rows, const Event& event) {

@@ -109,17 +109,6 @@ struct DerivedRows {
 /// \throws EventFault if the event's body names none, and must
 [[nodiscard]] int session_about(const Event& event);
 
-/// The rows that an event may change. `fold` needs these and no others.
-struct FoldScope {
-  std::optional<int> session{};
-  std::optional<TrialId> trial{};
-  /// Session and block: all trials of the block that were presented.
-  std::optional<std::pair<int, int>> block{};
-};
-
-/// \throws EventFault if the event's body cannot be read
-[[nodiscard]] FoldScope scope_of(const Event& event);
-
 /// Brings `rows` up to date with one more event, stored or opened. Sessions may be folded in any
 /// order, the events of each session in theirs, and the file's chain after the sessions that it
 /// names.

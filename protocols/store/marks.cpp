@@ -1,33 +1,30 @@
 #include "protocols/store/marks.hpp"
 
+#include "core/named.hpp"
+
 #include <array>
-#include <utility>
 
 namespace touchtrial::store {
 namespace {
 
-constexpr std::array<std::pair<Mark, std::string_view>, 13> kMarkNames = {
-    {{Mark::session_begins, "session-begins"},
-     {Mark::session_ends, "session-ends"},
-     {Mark::plane_on, "plane-on"},
-     {Mark::contact, "contact"},
-     {Mark::plane_off, "plane-off"},
-     {Mark::time_up, "time-up"},
-     {Mark::answered, "answered"},
-     {Mark::interrupted, "interrupted"},
-     {Mark::paused, "paused"},
-     {Mark::resumed, "resumed"},
-     {Mark::break_taken, "break-taken"},
-     {Mark::stopped, "stopped"},
-     {Mark::practised, "practised"}}};
+constexpr auto kMarkNames = std::to_array<Named<Mark>>({{"session-begins", Mark::session_begins},
+                                                        {"session-ends", Mark::session_ends},
+                                                        {"plane-on", Mark::plane_on},
+                                                        {"contact", Mark::contact},
+                                                        {"plane-off", Mark::plane_off},
+                                                        {"time-up", Mark::time_up},
+                                                        {"answered", Mark::answered},
+                                                        {"interrupted", Mark::interrupted},
+                                                        {"paused", Mark::paused},
+                                                        {"resumed", Mark::resumed},
+                                                        {"break-taken", Mark::break_taken},
+                                                        {"stopped", Mark::stopped},
+                                                        {"practised", Mark::practised}});
 
 }  // namespace
 
 std::string_view name_of(Mark mark) noexcept {
-  for (const auto& [known, name] : kMarkNames) {
-    if (known == mark) return name;
-  }
-  return "unknown";
+  return name_in(kMarkNames, mark);
 }
 
 }  // namespace touchtrial::store

@@ -1,5 +1,5 @@
 /// \file The members of an event's body in one JSON object: read strictly, written compactly.
-/// Private to protocols/store: the only header here that shows nlohmann-json and RapidJSON.
+/// Private to protocols/store: the only header here that shows nlohmann-json.
 #pragma once
 
 #include "core/errors.hpp"
@@ -20,26 +20,20 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <rapidjson/document.h>
 
 namespace touchtrial::store {
 
 /// By enumerator.
 inline constexpr std::array<std::string_view, 3> kKeptNames = {"data", "safety-record", "nothing"};
 
-/// Takes the members of a body from one JSON object. Every function throws StoreError, naming the
-/// key, if the value is missing or not what is asked for. Bodies are read by the million, hence
-/// RapidJSON, whose numbers are the nearest doubles.
+/// Takes the members of a body from one JSON object, of several with one key the last. Every
+/// function throws StoreError, naming the key, if the value is missing or not what is asked for.
 class BodyReader {
  public:
   /// \param more  an object whose members count before those of the first; empty: there is none
   /// \throws StoreError if a text is not one JSON object
-  explicit BodyReader(std::string_view text, std::string_view more = {}) {
-    parse(first_, text);
-    object_ = &first_;
-    if (more.empty()) return;
-    parse(second_, more);
-    more_ = &second_;
+  explicit BodyReader(std::string_view text, std::string_view more = {}) : first_(parsed(text)) {
+    if (!more.empty()) second_ = parsed(more);
   }
   BodyReader(const BodyReader&) = delete;
   BodyReader& operator=(const BodyReader&) = delete;
@@ -49,13 +43,13 @@ class BodyReader {
   }
   void operator()(std::string_view key, bool& value) const {
     const Json& found = at(key);
-    if (!found.IsBool()) refuse(key, "is neither true nor false");
-    value = found.GetBool();
+    if (!found.is_boolean()) refuse(key, "is neither true nor false");
+    value = found.get<bool>();
   }
   void operator()(std::string_view key, double& value) const {
     const Json& found = at(key);
-    if (!found.IsNumber()) refuse(key, "is not a number");
-    value = found.GetDouble();
+    if (!found.is_number()) refuse(key, "is not a number");
+    value = found.get<double>();
   }
   void operator()(std::string_view key, Digest& value) const {
     constexpr const char* kWhy = "is not 64 hexadecimal digits";
@@ -85,20 +79,21 @@ class BodyReader {
   template <std::size_t size>
   void operator()(std::string_view key, std::array<double, size>& value) const {
     const Json& found = at(key);
-    if (!found.IsArray() || found.Size() != size) refuse(key, "is not a list of the right length");
+    if (!found.is_array() || found.size() != size) {
+      refuse(key, "is not a list of the right length");
+    }
     for (std::size_t i = 0; i < size; ++i) {
-      const Json& number = found[static_cast<rapidjson::SizeType>(i)];
-      if (!number.IsNumber()) refuse(key, "holds what is no number");
-      value[i] = number.GetDouble();
+      if (!found[i].is_number()) refuse(key, "holds what is no number");
+      value[i] = found[i].get<double>();
     }
   }
   /// Whole numbers from 0.
   void operator()(std::string_view key, std::vector<std::int64_t>& value) const {
     const Json& found = at(key);
-    if (!found.IsArray()) refuse(key, "is not a list");
-    for (const Json& number : found.GetArray()) {
-      if (!number.IsUint64()) refuse(key, "holds what is no whole number from 0 on");
-      value.push_back(static_cast<std::int64_t>(number.GetUint64()));
+    if (!found.is_array()) refuse(key, "is not a list");
+    for (const Json& number : found) {
+      if (!number.is_number_unsigned()) refuse(key, "holds what is no whole number from 0 on");
+      value.push_back(number.get<std::int64_t>());
     }
   }
   /// Whole numbers from 1.
@@ -131,58 +126,33 @@ class BodyReader {
   void part(std::string_view key, std::optional<Part>& value) const {
     const Json* const found = find(key);
     if (found == nullptr) return;
-    if (!found->IsObject()) refuse(key, "is not an object");
-    const BodyReader within(*found, place_ + "/" + std::string(key));
+    if (!found->is_object()) refuse(key, "is not an object");
+    const BodyReader within(*this, key, *found);
     members(within, value.emplace());
   }
 
  private:
-  using Json = rapidjson::Value;
-  using Pool = rapidjson::MemoryPoolAllocator<>;
-  /// Everything in the pool, so that most bodies take no memory from the heap.
-  using Document = rapidjson::GenericDocument<rapidjson::UTF8<>, Pool, Pool>;
+  using Json = nlohmann::json;
 
-  BodyReader(const Json& object, std::string place) : object_(&object), place_(std::move(place)) {}
+  /// An object within another one.
+  BodyReader(const BodyReader& outer, std::string_view key, const Json& object)
+      : first_(object), place_(outer.place_ + "/" + std::string(key)) {}
 
-  void parse(Document& document, std::string_view text) {
-    constexpr unsigned kFlags = rapidjson::kParseFullPrecisionFlag | rapidjson::kParseIterativeFlag;
-    // Nearly all bodies are ASCII, whose encoding needs no check sign by sign: texts stay where
-    // they are in a copy.
-    if (is_ascii(text)) {
-      auto* const copy = static_cast<char*>(pool_.Malloc(text.size() + 1));
-      *std::ranges::copy(text, copy).out = '\0';
-      document.ParseInsitu<kFlags>(copy);
-    } else {
-      document.Parse<kFlags | rapidjson::kParseValidateEncodingFlag>(text.data(), text.size());
-    }
-    if (document.HasParseError() || !document.IsObject()) {
-      throw StoreError("the body is not a JSON object");
-    }
-  }
-
-  /// Looks at all signs, several at once.
-  [[nodiscard]] static bool is_ascii(std::string_view text) {
-    unsigned char bits = 0;
-    for (const char sign : text) bits |= static_cast<unsigned char>(sign);
-    return bits < 0x80;
+  [[nodiscard]] static Json parsed(std::string_view text) {
+    Json object = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+    if (!object.is_object()) throw StoreError("the body is not a JSON object");
+    return object;
   }
 
   [[noreturn]] void refuse(std::string_view key, const char* why) const {
     throw StoreError(place_ + "/" + std::string(key) + " " + why);
   }
-  /// \return the last of several, or null
-  [[nodiscard]] static const Json* find_in(const Json& object, std::string_view key) {
-    const Json* found = nullptr;
-    for (const auto& member : object.GetObject()) {
-      if (std::string_view(member.name.GetString(), member.name.GetStringLength()) == key) {
-        found = &member.value;
-      }
-    }
-    return found;
-  }
+  /// \return null if there is none
   [[nodiscard]] const Json* find(std::string_view key) const {
-    const Json* const found = more_ == nullptr ? nullptr : find_in(*more_, key);
-    return found != nullptr ? found : find_in(*object_, key);
+    for (const Json* const object : {&second_, &first_}) {
+      if (const auto found = object->find(key); found != object->end()) return &*found;
+    }
+    return nullptr;
   }
   [[nodiscard]] const Json& at(std::string_view key) const {
     const Json* const found = find(key);
@@ -191,27 +161,22 @@ class BodyReader {
   }
   [[nodiscard]] std::string_view text(std::string_view key, const char* otherwise) const {
     const Json& found = at(key);
-    if (!found.IsString()) refuse(key, otherwise);
-    return {found.GetString(), found.GetStringLength()};
+    if (!found.is_string()) refuse(key, otherwise);
+    return found.get_ref<const std::string&>();
   }
   [[nodiscard]] std::int64_t whole(std::string_view key, std::int64_t least,
                                    std::int64_t most) const {
     const Json& found = at(key);
-    if (!found.IsInt64()) refuse(key, "is not a whole number");
-    const std::int64_t number = found.GetInt64();
-    if (number < least || number > most) refuse(key, "is out of range");
+    if (!found.is_number_integer()) refuse(key, "is not a whole number");
+    const auto number = found.get<std::int64_t>();
+    const bool is_too_large = found.is_number_unsigned() && number < 0;
+    if (is_too_large || number < least || number > most) refuse(key, "is out of range");
     return number;
   }
 
-  static constexpr std::size_t kStack = 512;
-  // Most bodies fit into the buffer.
-  std::array<std::byte, 8192> buffer_;
-  Pool pool_{buffer_.data(), buffer_.size()};
-  Document first_{&pool_, kStack, &pool_};
-  Document second_{&pool_, kStack, &pool_};
-  const Json* object_ = nullptr;
-  const Json* more_ = nullptr;
-  std::string place_;  ///< JSON pointer
+  Json first_ = Json::object();
+  Json second_ = Json::object();  ///< whose members count before those of the first
+  std::string place_;             ///< JSON pointer
 };
 
 /// Puts the members of a body into one JSON object. The limits that BodyReader checks mean nothing

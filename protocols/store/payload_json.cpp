@@ -86,9 +86,8 @@ void members(Io& io, In<Io, StationRecord>& body) {
   io("scheduling", body.scheduling);
   io("calibration", body.calibration);
   io.part("screen", body.screen);
-  // Not in sessions that were recorded before 0.2.
-  io.if_any("force_scale", body.force_scale);
-  io.if_any("length_scale", body.length_scale);
+  io("force_scale", body.force_scale);
+  io("length_scale", body.length_scale);
 }
 
 template <typename Io>

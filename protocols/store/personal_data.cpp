@@ -42,25 +42,19 @@ void set_up(SQLite::Database& connection, const std::filesystem::path& path) {
   const int id = connection.execAndGet("PRAGMA application_id").getInt();
   const int version = connection.execAndGet("PRAGMA user_version").getInt();
   if (id == kPersonalApplicationId && version == kPersonalVersion) return;
-  if (id == kPersonalApplicationId && version > kPersonalVersion) {
-    refuse_personal_data(path, "was written by a newer Touchtrial; use that version");
+  if (id == kPersonalApplicationId) {
+    refuse_personal_data(path, "has personal data of version " + std::to_string(version) +
+                                   ", not " + std::to_string(kPersonalVersion) +
+                                   "; use the program that wrote it");
   }
-  const bool is_first_version = id == kPersonalApplicationId && version == 1;
-  if (!is_first_version &&
-      (id != 0 || connection.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() != 0)) {
+  if (id != 0 || connection.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() != 0) {
     refuse_personal_data(path, "is no personal-data file of Touchtrial; move it away");
   }
   SQLite::Transaction transaction(connection);
-  if (is_first_version) connection.exec("ALTER TABLE people RENAME TO former_people");
   connection.exec(
       "CREATE TABLE people(participant TEXT NOT NULL, number INTEGER NOT NULL, consent_version "
       "TEXT NOT NULL, consented_utc TEXT NOT NULL, age INTEGER, gender TEXT NOT NULL, contact TEXT "
       "NOT NULL, PRIMARY KEY(participant, number)) STRICT");
-  if (is_first_version) {
-    connection.exec(
-        "INSERT INTO people SELECT participant, 1, consent_version, consented_utc, age, gender, "
-        "contact FROM former_people; DROP TABLE former_people");
-  }
   connection.exec("PRAGMA application_id = " + std::to_string(kPersonalApplicationId));
   connection.exec("PRAGMA user_version = " + std::to_string(kPersonalVersion));
   transaction.commit();

@@ -1,4 +1,4 @@
-/// \file Events, traces and derived rows in the tables of an SQLite file. Private to
+/// \file Events, traces and keys in the tables of an SQLite file. Private to
 /// protocols/store. All functions throw SQLite::Exception; call them inside Database::run.
 #pragma once
 
@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -46,20 +47,18 @@ void for_each_event(const Database& database, std::int64_t session, const EventV
 [[nodiscard]] std::optional<Event> read_event(const Database& database, int session,
                                               std::int64_t sequence);
 
+/// The last event of one chain, if there is one; those before it are not read.
+/// \throws the same
+[[nodiscard]] std::optional<Event> read_last_event(const Database& database, int session);
+
 /// The number of every session that has events, except 0, ascending.
 [[nodiscard]] std::vector<std::int64_t> sessions_with_events(const Database& database);
 
-/// By session.
-/// \throws EventFault if a row holds a value that no event can give rise to
-[[nodiscard]] std::vector<SessionRow> read_sessions(const Database& database);
-/// By session and trial.
+/// What the events of each session come to, and the file's chain says of it, by number.
+/// \throws EventFault if an event cannot be read, or cannot follow those before
+[[nodiscard]] std::map<int, SessionRow> read_sessions(const Database& database);
+/// What the events come to for each trial, by session and trial.
 /// \throws the same
 [[nodiscard]] std::vector<TrialRow> read_trials(const Database& database);
-
-/// The rows that `scope` names, as far as they exist.
-/// \throws the same
-[[nodiscard]] DerivedRows read_rows(const Database& database, const FoldScope& scope);
-/// Adds or changes every row of `rows`.
-void write_rows(const Database& database, const DerivedRows& rows);
 
 }  // namespace touchtrial::store

@@ -1,60 +1,51 @@
 #include "protocols/store/schema.hpp"
 
-#include <algorithm>
-#include <array>
 #include <map>
 #include <utility>
 
 namespace touchtrial::store {
 namespace {
 
-constexpr std::array<Migration, kSchemaVersion - kOldestSchemaVersion> kMigrations = {
-    [](SQLite::Database& database) { database.exec(add_visits_sql("INTEGER")); }};
-
-/// All others are WITHOUT ROWID, which suits small rows under keys of several columns.
-bool has_row_numbers(const TableDefinition& table) {
-  return table.key.size() == 1 || std::ranges::any_of(table.columns, &TableColumn::bulky);
-}
+/// Without row numbers where rows are small, under keys of several columns.
+constexpr const char* kTablesSql = R"sql(
+CREATE TABLE events(
+  session INTEGER NOT NULL,
+  sequence INTEGER NOT NULL,
+  kind TEXT NOT NULL,
+  at_ns INTEGER NOT NULL,
+  body TEXT NOT NULL,
+  sealed BLOB NOT NULL,
+  previous BLOB NOT NULL,
+  hash BLOB NOT NULL,
+  signature BLOB NOT NULL,
+  own_session INTEGER,
+  PRIMARY KEY(session, sequence)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE traces(
+  session INTEGER NOT NULL,
+  trial INTEGER NOT NULL,
+  box BLOB NOT NULL,
+  PRIMARY KEY(session, trial)
+) STRICT;
+CREATE TABLE participant_keys(session INTEGER PRIMARY KEY, wrapped BLOB NOT NULL) STRICT;
+CREATE TABLE safety_keys(session INTEGER PRIMARY KEY, wrapped BLOB NOT NULL) STRICT;
+CREATE TABLE station_keys(session INTEGER PRIMARY KEY, kept BLOB NOT NULL) STRICT;
+)sql";
 
 /// REPLACE deletes rows without running the delete trigger, so a third trigger refuses to insert
 /// over an existing row.
-std::string append_only_sql(const TableDefinition& table) {
-  const std::string name(table.name);
-  std::string same_key;
-  for (const std::string_view column : table.key) {
-    same_key +=
-        (same_key.empty() ? "" : " AND ") + std::string(column) + " = NEW." + std::string(column);
-  }
+std::string append_only_sql(const std::string& table, const std::string& key) {
   const std::string refusal =
-      "\n  BEGIN SELECT RAISE(ABORT, '" + name + " are append-only'); END;\n";
-  return "CREATE TRIGGER " + name + "_no_update BEFORE UPDATE ON " + name + refusal +
-         "CREATE TRIGGER " + name + "_no_delete BEFORE DELETE ON " + name + refusal +
-         "CREATE TRIGGER " + name + "_no_replace BEFORE INSERT ON " + name +
-         "\n  WHEN EXISTS(SELECT 1 FROM " + name + " WHERE " + same_key + ")" + refusal;
+      "\n  BEGIN SELECT RAISE(ABORT, '" + table + " are append-only'); END;\n";
+  return "CREATE TRIGGER " + table + "_no_update BEFORE UPDATE ON " + table + refusal +
+         "CREATE TRIGGER " + table + "_no_delete BEFORE DELETE ON " + table + refusal +
+         "CREATE TRIGGER " + table + "_no_replace BEFORE INSERT ON " + table +
+         "\n  WHEN EXISTS(SELECT 1 FROM " + table + " WHERE session = NEW.session AND " + key +
+         " = NEW." + key + ")" + refusal;
 }
 
 std::string schema_sql() {
-  std::string sql;
-  for (const TableDefinition& table : table_definitions()) {
-    sql += create_table_sql(table, {"INTEGER", "REAL", "TEXT", "BLOB"}) + " STRICT" +
-           (has_row_numbers(table) ? ";\n" : ", WITHOUT ROWID;\n") + create_indices_sql(table);
-    if (table.append_only) sql += append_only_sql(table);
-  }
-  return sql;
-}
-
-void set_version(SQLite::Database& connection, int version) {
-  connection.exec("PRAGMA user_version = " + std::to_string(version));
-}
-
-void bring_forward(const Database& database, std::span<const Migration> steps) {
-  const auto done = static_cast<std::size_t>(schema_version(database) - kOldestSchemaVersion);
-  if (done >= steps.size()) return;
-  database.change([&] {
-    for (const Migration step : steps.subspan(done)) step(database.connection());
-    set_version(database.connection(), kOldestSchemaVersion + static_cast<int>(steps.size()));
-  });
-  database.run([&] { database.checkpoint(); });
+  return kTablesSql + append_only_sql("events", "sequence") + append_only_sql("traces", "trial");
 }
 
 /// By type and name: the table that an object belongs to, and its SQL without blanks and line ends.
@@ -80,34 +71,11 @@ SchemaObjects expected_objects() {
 
 }  // namespace
 
-std::span<const Migration> migrations() {
-  return kMigrations;
-}
-
 void make_tables(const Database& database) {
   database.change([&] {
     database.connection().exec(schema_sql());
-    set_version(database.connection(), kSchemaVersion);
+    database.connection().exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
   });
-}
-
-Database open_current(const std::filesystem::path& path, Database::Mode mode,
-                      std::span<const Migration> steps) {
-  const int newest = kOldestSchemaVersion + static_cast<int>(steps.size());
-  Database database = Database::open(path, mode, newest);
-  if (mode == Database::Mode::read_write) {
-    bring_forward(database, steps);
-  } else if (schema_version(database) < newest) {
-    throw StoreError(
-        database.refusal("is of an older schema; copy it, and bring it up to date with `touchtrial "
-                         "migrate`"));
-  }
-  return database;
-}
-
-int schema_version(const Database& database) {
-  return database.run(
-      [&] { return database.connection().execAndGet("PRAGMA user_version").getInt(); });
 }
 
 std::optional<std::string> schema_fault(const Database& database) {

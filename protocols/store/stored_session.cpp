@@ -170,35 +170,39 @@ void StoredStudy::refuse_mixture(const SessionOpening& opening) const {
 }
 
 void StoredStudy::refuse_if_taken(const SessionOpening& opening) const {
-  Query query = database_.query(
-      "SELECT session, participant FROM sessions WHERE (participant = ?1 OR enrolment = ?2) "
-      "AND replaced_by IS NULL ORDER BY participant = ?1 DESC, visit DESC");
-  query.bind(opening.participant).bind(opening.enrolment);
-  if (!query.step()) {
+  // Of sessions with the participant's id or number, one of the participant's own before others.
+  const SessionRow* taken = nullptr;
+  const auto rank = [&](const SessionRow& row) {
+    return std::pair(row.participant == opening.participant, row.visit);
+  };
+  for (const auto& [session, row] : sessions()) {
+    const bool is_own = row.participant == opening.participant;
+    if (!row.replaced_by.empty() || (!is_own && row.enrolment != opening.enrolment)) continue;
+    if (taken == nullptr || rank(row) > rank(*taken)) taken = &row;
+  }
+  if (taken == nullptr) {
     if (opening.visit == 1) return;
     refuse("participant " + opening.participant + " has no visit before visit " +
            std::to_string(opening.visit) + "; begin with the first");
   }
-  const std::string session = "session " + std::to_string(query.integer(0));
-  if (query.text(1) == opening.participant) {
-    const SessionRow last = this->session(static_cast<int>(query.integer(0)));
-    if (is_next_visit(opening, last)) return;
+  const std::string session = "session " + std::to_string(taken->session);
+  if (taken->participant == opening.participant) {
+    if (is_next_visit(opening, *taken)) return;
     if (opening.visit > 1) {
       refuse("visit " + std::to_string(opening.visit) + " of participant " + opening.participant +
-             " does not follow " + session + ", which is visit " + std::to_string(last.visit) +
+             " does not follow " + session + ", which is visit " + std::to_string(taken->visit) +
              "; a visit follows the one before it, complete and with the same number");
     }
     refuse("participant " + opening.participant + " already has " + session +
            "; give another participant id");
   }
   refuse("enrolment " + std::to_string(opening.enrolment) + ", asked for participant " +
-         opening.participant + ", belongs to participant " + query.text(1) + " (" + session +
+         opening.participant + ", belongs to participant " + taken->participant + " (" + session +
          "); give the next free number");
 }
 
 void StoredStudy::refuse_if_promised(const SessionOpening& opening) const {
-  const std::vector<ReplacedSession> replaced = replaced_sessions();
-  const std::map<int, std::string> promised = promised_enrolments(replaced);
+  const std::map<int, std::string> promised = promised_enrolments();
   const auto kept = promised.find(opening.enrolment);
   if (kept != promised.end() && kept->second != opening.participant) {
     refuse("enrolment " + std::to_string(opening.enrolment) + " is kept for participant " +
@@ -212,16 +216,14 @@ void StoredStudy::refuse_if_promised(const SessionOpening& opening) const {
            std::to_string(own->first) + "; leave the number out, or give that one");
   }
   if (own != promised.end()) return;
-  const auto last = std::find_if(
-      replaced.rbegin(), replaced.rend(),
-      [&](const ReplacedSession& row) { return row.participant == opening.participant; });
-  if (last == replaced.rend()) return;
-  Query later = database_.query(
-      "SELECT 1 FROM sessions WHERE participant = ? AND replaced_by IS NULL AND session > ?");
-  later.bind(opening.participant).bind(last->session);
-  if (later.step()) return;  // an earlier visit
-  refuse("participant " + opening.participant + " was replaced by participant " + last->by +
-         " (session " + std::to_string(last->session) + "); give another participant id");
+  const SessionRow* last = nullptr;
+  for (const auto& [session, row] : sessions()) {
+    if (row.participant == opening.participant) last = &row;
+  }
+  if (last == nullptr || last->replaced_by.empty()) return;  // new, or here for an earlier visit
+  refuse("participant " + opening.participant + " was replaced by participant " +
+         last->replaced_by + " (session " + std::to_string(last->session) +
+         "); give another participant id");
 }
 
 Event StoredStudy::last_of_open(int session) const {
@@ -261,10 +263,9 @@ void StoredStudy::store_whole(const BufferedEvents& session, const NewKeys& keys
   DerivedRows rows;
   for (const Event& event : session.events) {
     fold(rows, event);
-    insert_event(database_, event);
+    append(event, std::nullopt);
   }
   for (const SealedTrace& trace : session.traces) insert_trace(database_, trace);
-  write_rows(database_, rows);
   conclude(session.events.back(), at);
 }
 
@@ -308,7 +309,7 @@ void StoredStudy::replace(const ReplacementBody& replacement, std::chrono::nanos
   check_replaced(row);
   check_replacement(row, replacement.by);
   if (replacement.by != row.participant) {
-    for (const SessionRow& other : read_sessions(database_)) {
+    for (const auto& [session, other] : std::map(sessions())) {
       const bool is_visit = other.participant == row.participant && other.session != row.session &&
                             other.replaced_by.empty();
       if (!is_visit) continue;
@@ -340,13 +341,12 @@ void StoredStudy::check_replaced(const SessionRow& row) const {
 void StoredStudy::check_replacement(const SessionRow& row, const std::string& by) const {
   require_participant_id(by);
   if (by == row.participant) return;
-  Query query = database_.query("SELECT session FROM sessions WHERE participant = ?");
-  query.bind(by);
-  if (query.step()) {
-    refuse("participant " + by + " already has session " + std::to_string(query.integer(0)) +
+  for (const auto& [session, other] : sessions()) {
+    if (other.participant != by) continue;
+    refuse("participant " + by + " already has session " + std::to_string(session) +
            "; only somebody new can take a place");
   }
-  for (const auto& [enrolment, promised] : promised_enrolments(replaced_sessions())) {
+  for (const auto& [enrolment, promised] : promised_enrolments()) {
     if (promised != by) continue;
     refuse("participant " + by + " already replaces somebody, with enrolment " +
            std::to_string(enrolment) + "; name another participant");
@@ -357,7 +357,9 @@ StoredSession::StoredSession(StoredStudy& study, int session, SessionKeys keys, 
     : StoredSession(study, ChainLink(session), std::move(keys), std::move(utc)) {}
 
 StoredSession::StoredSession(StoredStudy& study, const Event& last, UtcClock utc)
-    : StoredSession(study, ChainLink::after(last), {}, std::move(utc)) {}
+    : StoredSession(study, ChainLink::after(last), {}, std::move(utc)) {
+  for_each_event(study.database(), last.session, [&](const Event& event) { fold(rows_, event); });
+}
 
 StoredSession::StoredSession(StoredStudy& study, ChainLink chain, SessionKeys keys, UtcClock utc)
     : study_(study), chain_(chain), keys_(std::move(keys)), utc_(std::move(utc)) {
@@ -375,17 +377,19 @@ void StoredSession::accept(const Event& event, const std::optional<SealedTrace>&
 
 void StoredSession::accept_together(std::span<const RecordedEvent> events) {
   ChainLink chain = chain_;
+  DerivedRows rows = rows_;
   bool erased_key = false;
-  study_.database().change([&] {
+  study_.change([&] {
     if (chain_.length() > 0) refuse_if_others_wrote(events.front().event.session);
-    for (const auto& [event, trace] : events) {
+    for (const RecordedEvent& recorded : events) {
       const bool first = chain.length() == 0;
-      chain.extend(event);
-      require_match(event, trace ? &*trace : nullptr);
-      erased_key = store(event, trace, first);
+      chain.extend(recorded.event);
+      require_match(recorded.event, recorded.trace ? &*recorded.trace : nullptr);
+      erased_key = store(recorded, first, rows);
     }
   });
   chain_ = chain;
+  rows_ = std::move(rows);
   const EventKind last = events.back().event.kind;
   if (is_known_by_heads(last)) {
     study_.tell_heads({.session = events.back().event.session,
@@ -403,9 +407,12 @@ void StoredSession::refuse_if_others_wrote(int session) const {
                 " was continued by another program, which has it now; end this one");
 }
 
-bool StoredSession::store(const Event& event, const std::optional<SealedTrace>& trace, bool first) {
+bool StoredSession::store(const RecordedEvent& recorded, bool first, DerivedRows& rows) {
+  const Event& event = recorded.event;
   if (first) study_.admit(event, keys_, utc_());
-  study_.append(event, trace);
+  study_.refuse_after_withdrawal(event);
+  fold(rows, event);
+  study_.append(event, recorded.trace);
   return event.kind == EventKind::closed && study_.conclude(event, utc_());
 }
 

@@ -63,74 +63,81 @@ int StoredStudy::next_session() const {
   return static_cast<int>(std::max(last, std::int64_t{0})) + 1;
 }
 
+void StoredStudy::forget() const {
+  sessions_.reset();
+  trials_.reset();
+}
+
+void StoredStudy::refresh() const {
+  Query query = database_.query("PRAGMA data_version");
+  const std::int64_t version = query.step() ? query.integer(0) : 0;
+  if (version != read_version_) forget();
+  read_version_ = version;
+}
+
+const std::map<int, SessionRow>& StoredStudy::sessions() const {
+  refresh();
+  if (!sessions_) sessions_ = DerivedRows{.sessions = read_sessions(database_), .trials = {}};
+  return sessions_->sessions;
+}
+
+const std::vector<TrialRow>& StoredStudy::trials() const {
+  refresh();
+  if (!trials_) trials_ = read_trials(database_);
+  return *trials_;
+}
+
 SessionRow StoredStudy::session(int session) const {
-  const DerivedRows rows = read_rows(database_, {.session = session});
-  if (rows.sessions.empty()) {
+  const auto found = sessions().find(session);
+  if (found == sessions().end()) {
     refuse("there is no session " + std::to_string(session) +
            "; see the sessions with `touchtrial report`");
   }
-  return rows.sessions.begin()->second;
+  return found->second;
 }
 
 std::optional<SessionRow> StoredStudy::session_of(const std::string& participant) const {
-  Query query = database_.query(
-      "SELECT session FROM sessions WHERE participant = ? AND replaced_by IS NULL "
-      "ORDER BY visit DESC");
-  query.bind(participant);
-  if (!query.step()) return std::nullopt;
-  return session(static_cast<int>(query.integer(0)));
+  std::optional<SessionRow> latest;
+  for (const auto& [session, row] : sessions()) {
+    if (row.participant != participant || !row.replaced_by.empty()) continue;
+    if (!latest || row.visit > latest->visit) latest = row;
+  }
+  return latest;
 }
 
 int StoredStudy::next_enrolment() const {
-  const std::map<int, std::string> promised = promised_enrolments(replaced_sessions());
-  Query query = database_.query(
-      "SELECT enrolment FROM sessions WHERE replaced_by IS NULL ORDER BY enrolment");
-  std::set<std::int64_t> taken;
-  while (query.step()) taken.insert(query.integer(0));
+  const std::map<int, std::string> promised = promised_enrolments();
+  std::set<int> taken;
+  for (const auto& [session, row] : sessions()) {
+    if (row.replaced_by.empty()) taken.insert(row.enrolment);
+  }
   int number = 1;
   while (taken.contains(number) || promised.contains(number)) ++number;
   return number;
 }
 
 int StoredStudy::enrolment_for(const std::string& participant) const {
-  for (const auto& [enrolment, by] : promised_enrolments(replaced_sessions())) {
+  for (const auto& [enrolment, by] : promised_enrolments()) {
     if (by == participant) return enrolment;
   }
   return next_enrolment();
 }
 
-std::vector<ReplacedSession> StoredStudy::replaced_sessions() const {
-  Query query = database_.query(
-      "SELECT session, participant, enrolment, replaced_by FROM sessions "
-      "WHERE replaced_by IS NOT NULL ORDER BY session");
-  std::vector<ReplacedSession> replaced;
-  while (query.step()) {
-    replaced.push_back({.session = query.integer(0),
-                        .participant = query.text(1),
-                        .enrolment = static_cast<int>(query.integer(2)),
-                        .by = query.text(3)});
-  }
-  return replaced;
-}
-
-std::map<int, std::string> StoredStudy::promised_enrolments(
-    std::span<const ReplacedSession> replaced) const {
+std::map<int, std::string> StoredStudy::promised_enrolments() const {
   // A number belongs to its last session; if that was replaced, it is kept for the successor.
   std::map<int, std::string> promised;
-  for (const ReplacedSession& row : replaced) {
-    Query later = database_.query(
-        "SELECT 1 FROM sessions WHERE enrolment = ? AND replaced_by IS NULL AND session > ?");
-    later.bind(row.enrolment).bind(row.session);
-    if (!later.step()) promised[row.enrolment] = row.by;
+  for (const auto& [session, row] : sessions()) {
+    if (row.replaced_by.empty()) {
+      promised.erase(row.enrolment);
+    } else {
+      promised[row.enrolment] = row.replaced_by;
+    }
   }
   return promised;
 }
 
 std::optional<Event> StoredStudy::last_event(int session) const {
-  Query query = database_.query("SELECT max(sequence) FROM events WHERE session = ?");
-  query.bind(session);
-  if (!query.step() || query.is_null(0)) return std::nullopt;
-  return read_event(database_, session, query.integer(0));
+  return read_last_event(database_, session);
 }
 
 ChainHead StoredStudy::head(int session) const {
@@ -215,19 +222,19 @@ void StoredStudy::require_signed(const Event& last) const {
 }
 
 void StoredStudy::append(const Event& event, const std::optional<SealedTrace>& trace) {
-  DerivedRows rows = read_rows(database_, scope_of(event));
-  if (event.session != 0) refuse_after_withdrawal(rows, event);
-  fold(rows, event);
+  static_cast<void>(sessions());  // of before
+  if (event.session == 0 || event.kind == EventKind::opened || event.kind == EventKind::closed) {
+    fold(*sessions_, event);
+  }
+  if (event.session != 0) trials_.reset();
   insert_event(database_, event);
   if (trace) insert_trace(database_, *trace);
-  write_rows(database_, rows);
 }
 
-/// After a participant withdrew or was replaced during the session, only its end is recorded.
-void StoredStudy::refuse_after_withdrawal(const DerivedRows& rows, const Event& event) const {
+void StoredStudy::refuse_after_withdrawal(const Event& event) const {
   if (event.kind == EventKind::stopped || event.kind == EventKind::closed) return;
-  const auto found = rows.sessions.find(event.session);
-  if (found == rows.sessions.end()) return;
+  const auto found = sessions().find(event.session);
+  if (found == sessions().end()) return;
   const SessionRow& row = found->second;
   if (!row.withdrawn && row.replaced_by.empty()) return;
   refuse("participant " + row.participant +

@@ -1,7 +1,7 @@
 /// \file A study in its database: the operations that StudyStore is made of, and its two inner
 /// parts (sessions that are stored event by event, the check of everything that is stored). Private
 /// to protocols/store. Call everything here inside Database::run, and functions that write inside
-/// Database::change.
+/// StoredStudy::change.
 #pragma once
 
 #include "protocols/store/database.hpp"
@@ -33,14 +33,6 @@ struct HeadNews {
   std::int64_t answers = 0;  ///< how many came
 };
 
-/// A session whose place somebody took, or is to take.
-struct ReplacedSession {
-  std::int64_t session = 0;
-  std::string participant;
-  int enrolment = 0;
-  std::string by;  ///< participant
-};
-
 class StoredStudy {
  public:
   explicit StoredStudy(Database opened) : database_(std::move(opened)) {}
@@ -61,6 +53,11 @@ class StoredStudy {
   [[nodiscard]] int next_enrolment() const;
   /// The number that the participant inherits, else next_enrolment.
   [[nodiscard]] int enrolment_for(const std::string& participant) const;
+  /// What events and file's chain say of every session, by number. Read once, then kept up with
+  /// what is appended here, and read anew when another program has written.
+  [[nodiscard]] const std::map<int, SessionRow>& sessions() const;
+  /// The same of all trials, by session and trial; read anew after an event of a session.
+  [[nodiscard]] const std::vector<TrialRow>& trials() const;
   /// The participant's session of the last visit that nobody replaced, if any.
   [[nodiscard]] std::optional<SessionRow> session_of(const std::string& participant) const;
   /// \throws StoreError if there is no such session
@@ -68,7 +65,7 @@ class StoredStudy {
 
   /// \throws StoreError if neither the file's station nor its investigator signs so
   void sign_with(const Signer& signer);
-  /// Adds a signed event to the file's chain, and brings the derived rows up to date.
+  /// Adds a signed event to the file's chain.
   /// \throws StoreError if nobody signs, or the event is for the investigator alone
   /// \throws EventFault if the last event is signed by none of the two
   void append_to_file(EventKind kind, std::chrono::nanoseconds at, const std::string& body,
@@ -81,8 +78,22 @@ class StoredStudy {
   /// \param body  whole
   void append_about(int session, EventKind kind, std::chrono::nanoseconds at,
                     const std::string& body);
-  /// Adds an event of a session, and brings the derived rows up to date.
+  /// Adds an event of a chain, and brings `sessions` up to date.
   void append(const Event& event, const std::optional<SealedTrace>& trace);
+  /// After a participant withdrew or was replaced during a session, only its end is recorded.
+  /// \throws StoreError for any other event of the session
+  void refuse_after_withdrawal(const Event& event) const;
+
+  /// As Database::change; nothing is known of what was not committed.
+  template <typename Work>
+  void change(Work&& work) {
+    try {
+      database_.change(std::forward<Work>(work));
+    } catch (...) {
+      forget();
+      throw;
+    }
+  }
 
   /// Lets a session in: stores its key, and its opening on the file's chain.
   /// \throws StoreError if the study is closed, the session is not the next, belongs to another
@@ -99,7 +110,7 @@ class StoredStudy {
   bool conclude(const Event& closed, std::chrono::nanoseconds at);
   /// Empties the log into the file, so that less is lost with a damaged log, and pages with a
   /// station's copy of a key that was erased are gone. Does nothing if the disk fails or another
-  /// program reads. Call it outside of Database::change.
+  /// program reads. Call it outside of `change`.
   void empty_log() const;
 
   /// Holds the events of a finished session against each other.
@@ -120,11 +131,13 @@ class StoredStudy {
   void require_reason(const std::string& reason, const std::string& what) const;
 
  private:
+  /// Forgets what another program has changed.
+  void refresh() const;
+  void forget() const;
   /// \throws StoreError if the database takes no more sessions: it was collected, or is closed
   void refuse_if_over() const;
   void require_participant_id(const std::string& id) const;
   void require_signed(const Event& last) const;
-  void refuse_after_withdrawal(const DerivedRows& rows, const Event& event) const;
   /// The first event about a session on the file's chain.
   [[nodiscard]] Event opening_on_file(int session) const;
   void refuse_while_kept(int session, std::chrono::nanoseconds at) const;
@@ -136,15 +149,14 @@ class StoredStudy {
   void refuse_if_promised(const SessionOpening& opening) const;
   void check_replaced(const SessionRow& row) const;
   void check_replacement(const SessionRow& row, const std::string& by) const;
-  /// In the order of their numbers.
-  [[nodiscard]] std::vector<ReplacedSession> replaced_sessions() const;
   /// Enrolment numbers that are kept for somebody, and for whom.
-  /// \param replaced  replaced_sessions
-  [[nodiscard]] std::map<int, std::string> promised_enrolments(
-      std::span<const ReplacedSession> replaced) const;
+  [[nodiscard]] std::map<int, std::string> promised_enrolments() const;
 
   Database database_;
   mutable std::optional<StudyCommitment> commitment_;
+  mutable std::optional<DerivedRows> sessions_;  ///< without trials
+  mutable std::optional<std::vector<TrialRow>> trials_;
+  mutable std::int64_t read_version_ = 0;  ///< SQLite's data_version of both
   std::optional<Signer> signer_;
   HeadKeeper heads_;
   HeadRecord known_;  ///< for a head file that is not there, and the answers so far
@@ -165,18 +177,20 @@ class StoredSession final : public EventSink {
  private:
   StoredSession(StoredStudy& study, ChainLink chain, SessionKeys keys, UtcClock utc);
   void refuse_if_others_wrote(int session) const;
+  /// \param rows  is brought up to date
   /// \return whether the station's copy of the session's key was erased
-  bool store(const Event& event, const std::optional<SealedTrace>& trace, bool first);
+  bool store(const RecordedEvent& recorded, bool first, DerivedRows& rows);
 
   StoredStudy& study_;
   ChainLink chain_;
+  DerivedRows rows_;  ///< what its events come to, which says what may follow
   SessionKeys keys_;
   UtcClock utc_;
 };
 
 /// Finds the first fault of a database. Checks, in this order: the file's structure, its chain,
-/// every session's chain, what the file's chain says of the sessions, keys, traces, the derived
-/// tables, and the schema. Call it inside a transaction.
+/// every session's chain, what the file's chain says of the sessions, keys, traces, and the
+/// schema. Call it inside a transaction.
 /// \param traces  `skip` leaves structure and traces out
 /// \param reader  gets every session whose chain is intact; may be empty
 [[nodiscard]] std::optional<ChainFault> find_first_fault(const Database& database,

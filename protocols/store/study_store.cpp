@@ -29,17 +29,11 @@ void remove_database(const std::filesystem::path& path) {
 }
 
 void check_tables(const Database& database) {
-  for (const TableDefinition& table : table_definitions()) {
-    if (database.connection().tableExists(std::string(table.name))) continue;
+  for (const char* const table : kTables) {
+    if (database.connection().tableExists(table)) continue;
     throw DamagedStore(
         database.refusal("lacks tables of its schema; it is damaged, restore it from a backup"));
   }
-}
-
-std::vector<SessionRow> of_participant(std::vector<SessionRow> rows,
-                                       const std::string& participant) {
-  std::erase_if(rows, [&](const SessionRow& row) { return row.participant != participant; });
-  return rows;
 }
 
 /// Skips the stations' own chains, whose content the collected study's chain repeats.
@@ -63,7 +57,7 @@ struct StudyStore::Impl {
   /// As Database::change.
   template <typename Work>
   void change(Work&& work) {
-    database().change(std::forward<Work>(work));
+    study.change(std::forward<Work>(work));
     study.tell_heads({});
   }
 
@@ -111,7 +105,7 @@ void StudyStore::fill_new(const std::filesystem::path& draft, const StudyCommitm
 }
 
 StudyStore StudyStore::open(const std::filesystem::path& path, Access access) {
-  auto impl = std::make_unique<Impl>(open_current(
+  auto impl = std::make_unique<Impl>(Database::open(
       path, access == Access::read_write ? Database::Mode::read_write : Database::Mode::read_only));
   impl->run([&] {
     check_tables(impl->database());
@@ -157,7 +151,9 @@ std::optional<SessionRow> StudyStore::session_of(const std::string& participant)
 }
 
 std::vector<SessionRow> StudyStore::sessions_of(const std::string& participant) const {
-  return of_participant(sessions(), participant);
+  std::vector<SessionRow> rows = sessions();
+  std::erase_if(rows, [&](const SessionRow& row) { return row.participant != participant; });
+  return rows;
 }
 
 std::optional<Event> StudyStore::last_event(int session) const {
@@ -177,11 +173,15 @@ std::int64_t StudyStore::answers() const {
 }
 
 std::vector<SessionRow> StudyStore::sessions() const {
-  return impl_->run([&] { return read_sessions(impl_->database()); });
+  return impl_->run([&] {
+    std::vector<SessionRow> rows;
+    for (const auto& [session, row] : impl_->study.sessions()) rows.push_back(row);
+    return rows;
+  });
 }
 
 std::vector<TrialRow> StudyStore::trials() const {
-  return impl_->run([&] { return read_trials(impl_->database()); });
+  return impl_->run([&] { return impl_->study.trials(); });
 }
 
 std::vector<Event> StudyStore::events(int session) const {
@@ -237,13 +237,12 @@ std::optional<Bytes> StudyStore::kept_key(int session) const {
 
 std::optional<SealedTrace> StudyStore::sealed_trace(int session, int trial) const {
   return impl_->run([&]() -> std::optional<SealedTrace> {
-    Query query = impl_->database().query(
-        "SELECT coalesce(s.own_session, s.session), t.box FROM traces t JOIN sessions s "
-        "USING(session) WHERE t.session = ? AND t.trial = ?");
+    Query query = impl_->database().query("SELECT box FROM traces WHERE session = ? AND trial = ?");
     query.bind(session).bind(trial);
     if (query.step()) {
-      return SealedTrace{
-          .session = static_cast<int>(query.integer(0)), .trial = trial, .box = query.blob(1)};
+      return SealedTrace{.session = impl_->study.session(session).own_session,
+                         .trial = trial,
+                         .box = query.blob(0)};
     }
     if (!impl_->fetch_trace) return std::nullopt;
     return impl_->fetch_trace(session, trial);
@@ -321,8 +320,7 @@ void StudyStore::look_at_question(std::chrono::nanoseconds at, const std::string
 void StudyStore::look_at(const std::string& participant, std::chrono::nanoseconds at,
                          const std::string& reason) {
   impl_->change([&] {
-    const std::vector<SessionRow> rows =
-        of_participant(read_sessions(impl_->database()), participant);
+    const std::vector<SessionRow> rows = sessions_of(participant);
     const std::string whose = "participant " + participant;
     impl_->study.require_reason(reason, "a look at outcomes");
     if (rows.empty()) impl_->study.refuse(whose + " has no session; check the participant id");
@@ -441,7 +439,7 @@ void StudyStore::copy_to(const std::filesystem::path& path) const {
 }
 
 void copy_database(const std::filesystem::path& from, const std::filesystem::path& to) {
-  copy(Database::open(from, Database::Mode::read_only, kSchemaVersion), to);
+  copy(Database::open(from, Database::Mode::read_only), to);
 }
 
 }  // namespace touchtrial::store

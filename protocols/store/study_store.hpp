@@ -1,6 +1,7 @@
-/// \file The database of a study, one SQLite file: events, sealed traces, wrapped participant keys,
-/// and tables derived from the events. Each station has one; several can be collected into one
-/// (protocols/collect/collect.hpp). Format: docs/data-dictionary.md, "Database".
+/// \file The database of a study, one SQLite file: events, sealed traces and wrapped participant
+/// keys; what the events come to is worked out as it is asked for. Each station has one; several
+/// can be collected into one (protocols/collect/collect.hpp). Format: docs/data-dictionary.md,
+/// "Database".
 #pragma once
 
 #include "protocols/store/file_chain.hpp"
@@ -58,13 +59,13 @@ class StudyStore {
 
   enum class Access { read_only, read_write };
 
-  /// Opens an existing database. A database of another schema is refused untouched, unless this
-  /// program knows how to bring it forward and may write. Reading changes nothing (except that it
-  /// folds in a log left by a crash), leaves nothing beside the file, and sees what other programs
-  /// write. A file without a -wal can be read in a folder that cannot be written; other programs
-  /// should not write to it then. Opening checks only what it reads: see first_fault.
+  /// Opens an existing database. One of another version is refused untouched. Reading changes
+  /// nothing (except that it folds in a log left by a crash), leaves nothing beside the file, and
+  /// sees what other programs write. A file without a -wal can be read in a folder that cannot be
+  /// written; other programs should not write to it then. Opening checks only what it reads: see
+  /// first_fault.
   /// \throws DamagedStore if it is truncated, lacks tables or cannot be read by SQLite
-  /// \throws StoreError if it is missing, no Touchtrial database, or of another schema
+  /// \throws StoreError if it is missing, no Touchtrial database, or of another version
   [[nodiscard]] static StudyStore open(const std::filesystem::path& path, Access access);
 
   /// Whose signature stands under all that is recorded on the file's chain from now on. Functions
@@ -104,6 +105,7 @@ class StudyStore {
   /// every event: count on from it during a session.
   [[nodiscard]] std::int64_t answers() const;
   /// All trials of all sessions, by session and trial: without answers and times, which are sealed.
+  /// Reads every event that is about a trial.
   [[nodiscard]] std::vector<TrialRow> trials() const;
   /// Events of one chain in order (0: the file's).
   [[nodiscard]] std::vector<Event> events(int session) const;
@@ -113,8 +115,8 @@ class StudyStore {
   void for_each_of(std::span<const EventKind> kinds,
                    const std::function<void(const Event&)>& visit) const;
 
-  /// Stores a finished session in one transaction: its key, events and traces, its opening and
-  /// closing on the file's chain, and its derived rows.
+  /// Stores a finished session in one transaction: its key, events and traces, and its opening
+  /// and closing on the file's chain.
   /// \param keys  wrap_participant_key's result
   /// \throws StoreError if participant or enrolment is already taken (by which session), a later
   ///   visit follows no complete one, the study is closed, the session is a pilot and the study not
@@ -224,8 +226,8 @@ class StudyStore {
   [[nodiscard]] std::vector<Event> station_chain(int station) const;
 
   /// Recomputes every hash of every chain, and holds the file's chain against the sessions' heads
-  /// and lengths, stored traces against their events, and the derived tables against the events. It
-  /// cannot find events that were cut off the end of the file's chain, or of an open session.
+  /// and lengths, and stored traces against their events. It cannot find events that were cut off
+  /// the end of the file's chain, or of an open session.
   /// \return the first fault, or nothing
   /// \param reader  gets the events of every session whose chain is intact, so that who needs them
   ///   as well reads them with the check; what it was given counts only if no fault is found

@@ -484,7 +484,7 @@ def evaluate(*images: Image, sweep: bool = False) -> Dict[str, Any]:
 
 
 def read(db: Path, key: Optional[Path] = None, *, passphrase: Optional[str] = None) -> Study:
-    """Opens an unblinded study: a database file, or a postgresql:// address.
+    """Opens an unblinded study: a database file.
 
     key: the study's key, by default DB.key or the one that was named last time.
     passphrase: of a protected key.

@@ -2,8 +2,11 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/named.hpp"
 #include "core/version.hpp"
 #include "stimuli/default_set.hpp"
+
+#include <array>
 
 #include <nlohmann/json.hpp>
 
@@ -15,17 +18,10 @@ using Json = nlohmann::ordered_json;
 constexpr int kImportVersion = 1;
 
 const char* name_of(LevelEqualising which) {
-  switch (which) {
-    case LevelEqualising::none:
-      return "none";
-    case LevelEqualising::mean:
-      return "mean";
-    case LevelEqualising::rms:
-      return "rms";
-    case LevelEqualising::both:
-      return "both";
-  }
-  return "";
+  using enum LevelEqualising;
+  static constexpr auto kNames = std::to_array<Named<LevelEqualising>>(
+      {{"none", none}, {"mean", mean}, {"rms", rms}, {"both", both}});
+  return name_in(kNames, which).data();
 }
 
 Json or_null(const std::optional<double>& number) {

@@ -8,8 +8,6 @@
 
 #include <algorithm>
 
-#include <SQLiteCpp/Database.h>
-
 namespace touchtrial {
 namespace {
 
@@ -149,19 +147,6 @@ TEST_CASE("load_outcomes names the key that does not belong") {
   CHECK(contains(complaint_of<VerificationError>(
                      [&] { static_cast<void>(analysis::load_outcomes(study.store(), changed)); }),
                  "seal"));
-}
-
-TEST_CASE("Outcomes are not shown if the tables do not follow from the events") {
-  FakeStudy study(design::identification::classification());
-  study.add({.participant = "P01", .answers = FakeStudy::always_right()});
-  study.close_and_unblind();
-  SQLite::Database(study.database().string(), SQLite::OPEN_READWRITE)
-      .exec("UPDATE trials SET state = 'timed-out' WHERE trial = 3");
-  const std::string complaint = complaint_of<VerificationError>(
-      [&] { static_cast<void>(analysis::load_outcomes(study.store(), study.key())); });
-  CHECK(contains(complaint, "session 1"));
-  CHECK(contains(complaint, "trials"));
-  CHECK(contains(complaint, "restore"));
 }
 
 TEST_CASE("An interim look shows only sessions that had ended before it") {

@@ -248,11 +248,11 @@ TEST_CASE("a merge of an altered station file ends like its verification") {
   const SimulatedStations study;
   {
     SQLite::Database raw(study.in("s3.db"), SQLite::OPEN_READWRITE);
-    raw.exec("UPDATE trials SET overruns = overruns + 1 WHERE session = 1 AND trial = 1");
+    raw.exec("UPDATE participant_keys SET wrapped = x'00' WHERE session = 1");
   }
   const ProgramResult ran = study.merge({"s1.db", "s3.db"}, {"-o", study.in("C.db")});
   CHECK(ran.exit_code == 3);
-  CHECK(ran.errors.find("derived table trials disagrees") != std::string::npos);
+  CHECK(ran.errors.find("the participant's key was altered") != std::string::npos);
   CHECK(study.run({"verify", study.in("s3.db")}).exit_code == 3);
   CHECK_FALSE(fs::exists(study.in("C.db")));
 }

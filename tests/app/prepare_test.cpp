@@ -39,36 +39,6 @@ TEST_CASE("prepare says which method the protocol does not present, and does not
   CHECK(result.output.find("tv-gabor") != std::string::npos);
 }
 
-TEST_CASE("prepare explains stage by stage, in text and as JSON, without a code") {
-  const StudyFolder study;
-  json two = study_of("comparison");
-  two["methods"] = {{{"name", "adaptive"}}, {{"name", "adaptive"}, {"control", "phase-scrambled"}}};
-  replace_file(study.path() / "cloths.json", two.dump());
-  const ProgramResult text = study.run({"prepare", study.in("cloths.json"), "--explain"});
-  INFO(text.errors);
-  REQUIRE(text.exit_code == 0);
-  CHECK_THAT(text.output, holds_text("linen, exemplar 1, adaptive-phase-scrambled: built"));
-  CHECK_THAT(text.output, holds_text("taken for another stimulus of this image"));
-  CHECK_THAT(text.output, holds_text("computed "));
-  const ProgramResult result =
-      study.run({"prepare", study.in("cloths.json"), "--explain", "--json"});
-  REQUIRE(result.exit_code == 0);
-  const json object = json::parse(result.output);
-  REQUIRE(object["stimuli"].size() == 6);
-  CHECK(object["stimuli"][1]["method"] == "adaptive-phase-scrambled");
-  CHECK(object["stimuli"][1]["state"] == "reused");
-  CHECK(object["stimuli"][1]["stages"][1]["stage"] == "field");
-  CHECK(object["totals"]["bytes_written"] == 0);
-  // Fields, pictures of the second method, pack.json, statistics and gains; and pictures that were
-  // not written just now.
-  CHECK(object["totals"]["reused"]["stages"] >= 6 + 3 + 1 + 6 + 1);
-  CHECK(object["stimuli"][1]["stages"][2]["state"] == "reused");
-  const json manifest = json::parse(content(study.path() / "cloths.pack" / "pack.json"));
-  for (const json& field : manifest["fields"]) {
-    CHECK(text.output.find(field["code"].get<std::string>()) == std::string::npos);
-    CHECK(result.output.find(field["code"].get<std::string>()) == std::string::npos);
-  }
-}
 TEST_CASE("prepare keeps the key of a study that changed, and refuses that of another study") {
   const StudyFolder study;
   REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
@@ -167,15 +137,6 @@ TEST_CASE("prepare says how large the plane is, and whether it is a hand's") {
   CHECK(plane.at("remark") == "");
 }
 
-TEST_CASE("prepare explains what it did for each stimulus") {
-  const StudyFolder study;
-  const ProgramResult result = study.run({"prepare", study.in("cloths.json"), "--explain"});
-  CHECK(result.exit_code == 0);
-  CHECK(result.output.find(" kB  ") != std::string::npos);
-  CHECK(result.output.find("the pack had no field of this picture with these options") !=
-        std::string::npos);
-}
-
 TEST_CASE("prepare prints the gain of the study's model, even if it is zero") {
   const StudyFolder study;
   json document = study_of("classification");
@@ -251,4 +212,9 @@ TEST_CASE("thresholds of pilots take the curve's place, and a file that is none 
   const ProgramResult missing = prepare("missing.db");
   CHECK(missing.exit_code != 0);
   CHECK_THAT(missing.errors, holds_text("missing.db"));
+  std::filesystem::rename(study.path() / "pilots.db.key", study.path() / "elsewhere.key");
+  const ProgramResult without_key = prepare("pilots.db");
+  CHECK(without_key.exit_code == 2);
+  CHECK_THAT(without_key.errors, holds_text("/rendering/gains/curve: ") &&
+                                     holds_text(study.in("pilots.db.key")) && !holds_text("--key"));
 }

@@ -1,5 +1,5 @@
 // The commands that record something beside the sessions: consent, exclude, replace, withdraw,
-// note; and migrate.
+// note.
 #include "app/study_folder.hpp"
 #include "app/touchtrial_process.hpp"
 #include "core/cipher.hpp"
@@ -204,7 +204,7 @@ TEST_CASE("every consent is kept and shown, and an id that may be mistyped is as
       {"none.db: there is neither such a database nor a consent beside it"});
 }
 
-TEST_CASE("consent refuses personal details on the command line, and details that it cannot read") {
+TEST_CASE("consent refuses details that it cannot read") {
   const TempFolder folder;
   const fs::path database = folder.path() / "study.db";
   const auto refused = [&](const std::vector<std::string>& more, const std::string& input,
@@ -215,12 +215,6 @@ TEST_CASE("consent refuses personal details on the command line, and details tha
     check_refused(run_touchtrial(folder.path(), arguments, input), 2, words);
     CHECK_FALSE(fs::exists(personal_data_path(database)));
   };
-  for (const auto& option : {std::vector<std::string>{"--age", "34"},
-                             {"--gender", "woman"},
-                             {"--contact"},
-                             {"--contact", "ann@example.org"}}) {
-    refused(option, "", {"list of programs", "--details -"});
-  }
   refused({"--details", "-"}, "", {"standard input", "empty"});
   refused({"--details", "-"}, "age: 34\nphone: 12345\n", {"line 2", "contact: WORDS"});
   refused({"--details", "-"}, "age: 34\nage: 35\n", {"line 2", "twice"});
@@ -700,18 +694,14 @@ TEST_CASE("a second look at the same sessions is refused, and one at more is not
   check_verified(study);
 }
 
-TEST_CASE("migrate does not change a current database, and refuses an unknown one") {
+TEST_CASE("a database of another version is refused in one line, and stays as it is") {
   const PeopleStudy study;
-  const Bytes before = read_file(study.database());
-  CHECK(study.run({"migrate", study.in("study.db")}).exit_code == 0);
-  CHECK(read_file(study.database()) == before);
-  check_refused(study.run({"migrate", study.in("none.db")}), 1, {"none.db", "no such database"});
   SQLite::Database(study.database().string(), SQLite::OPEN_READWRITE)
-      .exec("PRAGMA user_version = 2");
+      .exec("PRAGMA user_version = 6");
   const Bytes older = read_file(study.database());
-  for (const char* const command : {"migrate", "report", "verify"}) {
+  for (const char* const command : {"report", "verify"}) {
     check_refused(study.run({command, study.in("study.db")}), 1,
-                  {"study.db", "older Touchtrial (schema 2", "use the program that wrote it"});
+                  {"study.db", "a database of version 6", "use the program that wrote it"});
   }
   CHECK(read_file(study.database()) == older);
 }

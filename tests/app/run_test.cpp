@@ -152,10 +152,6 @@ TEST_CASE("a run that is refused leaves nothing, and the corrected command runs"
     CHECK(files() == before);
   };
   refused({"--subject", study.in("nobody.json"), "--headless"}, "nobody.json");
-  // In simulations and with people, with a device and with anything that might allow it.
-  refused({"--compensate", "--subject", "", "--headless"}, "accelerometer's certificate");
-  refused({"--compensate", "--device", "falcon", "--allow-unverified", "--pilot"},
-          "accelerometer's certificate of this very device");
   if (is_prepared) {
     refused({"--device", "mouse"}, "give --pilot");
     // There are never so many monitors, nor any where there is no display.

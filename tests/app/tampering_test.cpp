@@ -111,15 +111,6 @@ const std::vector<Tampering> kTamperings = {
     {"a wrapped key",
      [](const StudyFolder& study) { flip_in(study, "participant_keys", "wrapped", "session = 2"); },
      {"chain", "failed", "key"}},
-    {"a row of trials",
-     [](const StudyFolder& study) {
-       SQLite::Database(study.in("study.db"), SQLite::OPEN_READWRITE)
-           .exec("UPDATE trials SET overruns = overruns + 1 WHERE session = 2 AND trial = 3");
-     },
-     {"chain", "failed", "session 2"}},
-    {"a row of sessions",
-     [](const StudyFolder& study) { flip_in(study, "sessions", "participant", "session = 2"); },
-     {"chain", "failed"}},
     {"the pack's list",
      [](const StudyFolder& study) {
        const fs::path list = study.path() / "cloths.pack" / "pack.json";

@@ -237,14 +237,14 @@ std::string rows_of(const fs::path& database) {
   std::string rows;
   try {
     const SQLite::Database raw(database.string(), SQLite::OPEN_READONLY);
-    for (const store::TableDefinition& table : store::table_definitions()) {
-      std::string columns;
-      for (const store::TableColumn& column : table.columns) {
-        columns +=
-            (columns.empty() ? "" : " || ',' || ") + ("quote(" + std::string(column.name)) + ")";
-      }
-      SQLite::Statement query(
-          raw, "SELECT " + columns + " FROM " + std::string(table.name) + " NOT INDEXED");
+    for (const std::string table : store::kTables) {
+      const std::string columns =
+          raw.execAndGet(
+                 "SELECT group_concat('quote(' || name || ')', ' || '','' || ') FROM "
+                 "pragma_table_info('" +
+                 table + "')")
+              .getString();
+      SQLite::Statement query(raw, "SELECT " + columns + " FROM " + table + " NOT INDEXED");
       while (query.executeStep()) rows += query.getColumn(0).getString() + '\n';
       rows += '\n';
     }

@@ -61,6 +61,10 @@ def main(work):
     check("no pack is made in the installation",
           inside.returncode == 2 and "touchtrial examples" in inside.stderr and not list(own.parent.glob("*.pack")))
 
+    server = subprocess.run([program, "merge", f"postgresql:///study?host={work}", "-o", work / "all.db"],
+                            capture_output=True, text=True)
+    check("merge finds the module for servers", server.returncode == 1 and "cannot connect" in server.stderr)
+
     run(program, "examples", work / "mine")
     studies = sorted((work / "mine" / "config").glob("*.json"))
     ready = [study for study in studies if study.name != "devices.json"]
@@ -119,12 +123,13 @@ def main(work):
         check("the moved Python package extracts what the program does, bit for bit", True)
 
     script = tree / "share/bash-completion/completions/touchtrial"
-    check("completion knows commands", completed(script, "touchtrial", "device", "acc") == ["accept"])
-    check("completion knows options", "--precision" in completed(script, "touchtrial", "extract", "--pre"))
+    check("completion knows commands", completed(script, program, "device", "acc") == ["accept"])
+    check("completion knows options", "--precision" in completed(script, program, "extract", "--pre"))
     check("completion knows values",
-          completed(script, "touchtrial", "extract", "--precision", "") == ["float", "double"])
-    check("completion leaves files to the shell", completed(script, "touchtrial", "extract", "-o", "") == [])
-    commands = [line.split()[0] for line in run(program, "--help").partition("Subcommands:")[2].splitlines()
+          completed(script, program, "extract", "--precision", "") == ["float", "double"])
+    check("completion knows device models", "falcon" in completed(script, program, "simulate", "--on", ""))
+    check("completion leaves files to the shell", completed(script, program, "extract", "-o", "") == [])
+    commands = [line.split()[0] for line in run(program, "--help").partition("Options:")[0].splitlines()
                 if line.startswith("  ") and not line.startswith("   ")]
     pages = {path.name for path in (tree / "share/man/man1").iterdir()}
     missing = [name for name in commands if f"touchtrial-{name}.1.gz" not in pages]

@@ -37,7 +37,8 @@ fs::path find_programs() {
   }
   if (found.empty()) {
     throw std::runtime_error(
-        "PostgreSQL is not installed, which these tests need; run scripts/install-dependencies tests");
+        "PostgreSQL is not installed, which these tests need; run scripts/install-dependencies "
+        "tests");
   }
   return std::max_element(found.begin(), found.end())->second;
 }
@@ -88,8 +89,7 @@ using Result = std::unique_ptr<PGresult, decltype(&PQclear)>;
 
 }  // namespace
 
-PostgresServer::PostgresServer(Writes writes, Passwords passwords)
-    : writes_(writes), passwords_(passwords), programs_(find_programs()) {
+PostgresServer::PostgresServer(Writes writes) : writes_(writes), programs_(find_programs()) {
   give(folder_.path(), other_user());
   for (const fs::path& folder : {folder_.path() / "data", socket_folder()}) {
     fs::create_directory(folder);
@@ -107,9 +107,6 @@ PostgresServer::~PostgresServer() {
 void PostgresServer::initialise() const {
   run({(programs_ / "initdb").string(), "--no-sync", "--pgdata", (folder_.path() / "data").string(),
        "--auth=trust", "--username", kAdministrator, "--encoding=UTF8", "--locale=C"});
-  if (passwords_ == Passwords::none_asked) return;
-  std::ofstream rules(folder_.path() / "data" / "pg_hba.conf");
-  rules << "local all " << kAdministrator << " trust\nlocal all all scram-sha-256\n";
 }
 
 pid_t PostgresServer::launch(const std::vector<std::string>& arguments) const {
@@ -174,14 +171,8 @@ void PostgresServer::kill() {
   }
 }
 
-void PostgresServer::stop() {
-  ::kill(process_, SIGINT);
-  waitpid(process_, nullptr, 0);
-  process_ = -1;
-}
-
-void PostgresServer::make_database(const std::string& name, const std::string& encoding) {
-  ask("postgres", "CREATE DATABASE " + name + " TEMPLATE template0 ENCODING '" + encoding + "'");
+void PostgresServer::make_database(const std::string& name) {
+  ask("postgres", "CREATE DATABASE " + name);
 }
 
 std::vector<std::string> PostgresServer::ask(const std::string& database,

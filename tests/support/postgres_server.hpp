@@ -17,20 +17,17 @@ namespace touchtrial::testing {
 class PostgresServer {
  public:
   enum class Writes { safe, unsafe };  ///< unsafe: without fsync, for tests that kill nothing
-  enum class Passwords { none_asked, scram };  ///< scram: asked of everybody but `kAdministrator`
 
   static constexpr const char* kAdministrator = "postgres";
 
   /// \throws std::runtime_error if PostgreSQL is not installed or does not start; with the remedy
-  explicit PostgresServer(Writes writes = Writes::unsafe,
-                          Passwords passwords = Passwords::none_asked);
+  explicit PostgresServer(Writes writes = Writes::unsafe);
   ~PostgresServer();
   PostgresServer(const PostgresServer&) = delete;
   PostgresServer& operator=(const PostgresServer&) = delete;
 
   /// Makes a new, empty database.
-  /// \param encoding  of its texts
-  void make_database(const std::string& name, const std::string& encoding = "UTF8");
+  void make_database(const std::string& name);
   /// Executes statements in a database as the administrator.
   /// \return the first column of the result's rows
   std::vector<std::string> ask(const std::string& database, const std::string& sql) const;
@@ -43,10 +40,8 @@ class PostgresServer {
 
   /// Every process of it dies at once, as if by a power cut.
   void kill();
-  /// After kill() or stop(): comes back with what it had on disk.
+  /// After kill(): comes back with what it had on disk.
   void start();
-  /// In good order, ending connections.
-  void stop();
 
  private:
   void initialise() const;
@@ -55,7 +50,6 @@ class PostgresServer {
   [[nodiscard]] bool answers() const;
 
   Writes writes_;
-  Passwords passwords_;
   TempFolder folder_;
   std::filesystem::path programs_;
   pid_t process_ = -1;

@@ -1,8 +1,10 @@
 #include "protocols/identification/analysis/subsets.hpp"
 
+#include "core/named.hpp"
 #include "protocols/identification/analysis/counted_trials.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <map>
 #include <set>
@@ -123,19 +125,14 @@ bool has_several_exemplars(const Outcomes& outcomes) {
 }  // namespace
 
 std::string name_of(BreakdownKind kind) {
-  switch (kind) {
-    case BreakdownKind::exemplar:
-      return "exemplar";
-    case BreakdownKind::trial:
-      return "trial";
-    case BreakdownKind::visit:
-      return "visit";
-    case BreakdownKind::group:
-      return "group";
-    case BreakdownKind::order_group:
-      break;
-  }
-  return "order_group";
+  using enum BreakdownKind;
+  static constexpr auto kNames =
+      std::to_array<Named<BreakdownKind>>({{"exemplar", exemplar},
+                                           {"trial", trial},
+                                           {"visit", visit},
+                                           {"group", group},
+                                           {"order_group", order_group}});
+  return std::string(name_in(kNames, kind));
 }
 
 std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method) {
@@ -217,17 +214,13 @@ void count(Proportion& proportion, bool correct) {
 }  // namespace
 
 std::string name_of(TrialSubset subset) {
-  switch (subset) {
-    case TrialSubset::counted:
-      return "counted";
-    case TrialSubset::answered:
-      return "answered";
-    case TrialSubset::valid:
-      return "valid";
-    case TrialSubset::with_excluded_sessions:
-      break;
-  }
-  return "with_excluded_sessions";
+  using enum TrialSubset;
+  static constexpr auto kNames =
+      std::to_array<Named<TrialSubset>>({{"counted", counted},
+                                         {"answered", answered},
+                                         {"valid", valid},
+                                         {"with_excluded_sessions", with_excluded_sessions}});
+  return std::string(name_in(kNames, subset));
 }
 
 std::vector<SubsetAccuracy> robustness(const Outcomes& outcomes, int method) {

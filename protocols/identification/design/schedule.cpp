@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/random.hpp"
+#include "core/strict_json.hpp"
 #include "protocols/design/random_orders.hpp"
 #include "protocols/identification/design/block_order.hpp"
 
@@ -128,6 +129,16 @@ void number(std::vector<Presentation>& presentations, int first) {
   for (Presentation& shown : presentations) shown.trial = first++;
 }
 
+/// Roves gains below the pack's, so that no presentation is stronger than what was prepared. Catch
+/// trials have none.
+void rove(const Study& study, RandomStream random, std::vector<Presentation>& presentations) {
+  if (study.trials.rove_db == 0.0) return;
+  for (Presentation& shown : presentations) {
+    if (shown.kind == PresentationKind::catch_trial) continue;
+    shown.gain_db = study.trials.own_gain_db() + drawn_rove_db(study.trials.rove_db, random);
+  }
+}
+
 /// Leaves a visit's own blocks, if the study divides its methods between visits. They keep their
 /// numbers, which are those of one long session.
 void keep_visit(const Study& study, int visit, std::vector<Presentation>& shown) {
@@ -166,6 +177,7 @@ Schedule scheduled(const Study& study, const ScheduleDraw& draw) {
   RandomStream random(draw.secret, "schedule: catch");
   schedule.presentations =
       with_catch_trials(schedule.presentations, study.trials.catch_trials, random);
+  rove(study, RandomStream(draw.secret, "schedule: rove"), schedule.presentations);
   keep_visit(study, draw.visit, schedule.presentations);
   number(schedule.presentations, 1);
   schedule.layout = picture_layout(study, draw);
@@ -189,6 +201,7 @@ std::vector<Presentation> scheduled_again(const Study& study, const ScheduleDraw
       make_block_order(study, methods, purpose + restart, draw.secret), block, exemplars);
   RandomStream random(draw.secret, "schedule: catch, " + purpose + restart);
   std::vector<Presentation> again = with_catch_trials(shown, static_cast<int>(caught), random);
+  rove(study, RandomStream(draw.secret, "schedule: rove, " + purpose + restart), again);
   number(again, first_trial);
   return again;
 }
@@ -208,6 +221,7 @@ std::string rule_of_schedule(const Study& study) {
          "; blocks=" + std::string(name_of(trials.blocks)) +
          "; lead_in=" + std::to_string(trials.lead_in) +
          (trials.max_run > 0 ? "; max_run=" + std::to_string(trials.max_run) : "") +
+         (trials.rove_db > 0.0 ? "; rove_db=" + number_text(trials.rove_db) : "") +
          (trials.catch_trials > 0 ? "; catch=" + std::to_string(trials.catch_trials) : "") +
          (study.visits.count > 1 ? "; visits=" + std::to_string(study.visits.count) : "") +
          (study.groups.labels.empty() ? ""

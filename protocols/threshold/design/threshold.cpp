@@ -79,7 +79,7 @@ class TrialDraw {
     };
     interval.stimulus.exemplar = exemplar_of(interval.stimulus);
     if (interval.other) interval.other->exemplar = exemplar_of(*interval.other);
-    const double rove_db = options.rove_db * (random.uniform() - 0.5);
+    const double rove_db = drawn_rove_db(options.rove_db, random);
     if (interval.blank || options.rove_db == 0.0) return;
     interval.gain_db += rove_db;
     if (options.along != Along::gain) interval.gain_db -= options.rove_db / 2.0;

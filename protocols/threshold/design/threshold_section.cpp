@@ -15,30 +15,24 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array kTaskNames = {Named<Task>{"detection", Task::detection},
-                                   Named<Task>{"discrimination", Task::discrimination}};
-constexpr std::array kQuestionNames = {Named<Question>{"which-interval", Question::which_interval},
-                                       Named<Question>{"odd-one-out", Question::odd_one_out},
-                                       Named<Question>{"same-different", Question::same_different}};
-constexpr std::array kAlongNames = {
-    Named<Along>{"gain", Along::gain}, Named<Along>{"pitch", Along::pitch},
-    Named<Along>{"order", Along::order}, Named<Along>{"blend", Along::blend}};
-constexpr std::array kShapeNames = {
-    Named<procedures::Shape>{"weibull", procedures::Shape::weibull},
-    Named<procedures::Shape>{"logistic", procedures::Shape::logistic},
-    Named<procedures::Shape>{"normal", procedures::Shape::normal}};
+constexpr auto kTaskNames = std::to_array<Named<Task>>(
+    {{"detection", Task::detection}, {"discrimination", Task::discrimination}});
+constexpr auto kQuestionNames =
+    std::to_array<Named<Question>>({{"which-interval", Question::which_interval},
+                                    {"odd-one-out", Question::odd_one_out},
+                                    {"same-different", Question::same_different}});
+constexpr auto kAlongNames = std::to_array<Named<Along>>({{"gain", Along::gain},
+                                                          {"pitch", Along::pitch},
+                                                          {"order", Along::order},
+                                                          {"blend", Along::blend}});
+constexpr auto kShapeNames =
+    std::to_array<Named<procedures::Shape>>({{"weibull", procedures::Shape::weibull},
+                                             {"logistic", procedures::Shape::logistic},
+                                             {"normal", procedures::Shape::normal}});
 
 constexpr std::size_t kMostValues = 200;
 constexpr NumberRange kLevelRange{-200.0, 40.0};
 constexpr double kMostTables = 20e6;  ///< numbers of all tracks' posteriors
-
-template <typename Value, std::size_t size>
-std::string_view word(const std::array<Named<Value>, size>& table, Value value) {
-  for (const Named<Value>& entry : table) {
-    if (entry.value == value) return entry.name;
-  }
-  return {};
-}
 
 /// A list, or {"from", "to", "step"}.
 std::vector<double> read_values(const JsonValue& place, const NumberRange& range,
@@ -199,13 +193,13 @@ json values_json(const std::vector<double>& values) {
 }  // namespace
 
 std::string_view name_of(Task task) {
-  return word(kTaskNames, task);
+  return name_in(kTaskNames, task);
 }
 std::string_view name_of(Question question) {
-  return word(kQuestionNames, question);
+  return name_in(kQuestionNames, question);
 }
 std::string_view name_of(Along along) {
-  return word(kAlongNames, along);
+  return name_in(kAlongNames, along);
 }
 
 std::shared_ptr<const ThresholdOptions> read_section(const JsonValue& section) {
@@ -267,7 +261,7 @@ std::string section_json(const ThresholdOptions& o) {
                         {"first_level", track.levels[track.up_down.first_level]}}},
                       {"blocked", track.blocked},
                       {"grid",
-                       {{"shape", word(kShapeNames, track.grid.shape)},
+                       {{"shape", name_in(kShapeNames, track.grid.shape)},
                         {"thresholds", values_json(track.grid.thresholds)},
                         {"slopes", values_json(track.grid.slopes)},
                         {"lapses", values_json(track.grid.lapses)}}},
@@ -362,6 +356,9 @@ void check_section(const JsonValue& file, const Study& study) {
   }
   if (trials.catch_trials > 0) {
     refuse_trials("/catch", "belongs to other protocols; use /threshold/catch");
+  }
+  if (trials.rove_db > 0.0) {
+    refuse_trials("/rove_db", "belongs to other protocols; use /threshold/rove_db");
   }
   if (trials.lead_in > 0) refuse_trials("/lead_in", "must be 0: a track has no lead-in");
   if (trials.on_interruption != OnInterruption::repeat) {

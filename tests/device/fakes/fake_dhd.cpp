@@ -29,7 +29,6 @@ constexpr int kErrorExpertModeDisabled = 9;
 
 // [H]: causes for which force went off.
 constexpr int kOffByButton = 1;
-constexpr int kOffByWatchdog = 3;
 constexpr int kOffBySoftware = 4;
 
 // [D] Device Modes: an active device is in one of four modes. RESET: a person is expected to put
@@ -132,20 +131,13 @@ void press_force_button() {
   }
 }
 
-// [D] setWatchdog: the firmware disables force if the duration is exceeded before a new force
-// command comes; in multiples of 125 us, 0 disables it.
-void silence(std::chrono::microseconds time) {
-  const int watchdog = state->watchdog;
-  if (watchdog > 0 && time > std::chrono::microseconds(125) * watchdog) force_off(kOffByWatchdog);
-}
-
 std::chrono::nanoseconds now() {
   return std::chrono::milliseconds(inside().forces.load());
 }
 
 /// Takes the position from the device.
 void exchange() {
-  if (!state->encoders_stop) inside().read_mm = state->hand.position_mm.get();
+  inside().read_mm = state->hand.position_mm.get();
   inside().read_at = inside().forces;
 }
 
@@ -233,7 +225,6 @@ FakeDhdExports* fake_dhd_exports() {
                                 calls,
                                 force_off,
                                 press_force_button,
-                                silence,
                                 now};
   return &exports;
 }

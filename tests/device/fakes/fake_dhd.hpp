@@ -20,7 +20,6 @@ struct FakeDhd {
   std::atomic<bool> device_error{false};
   std::atomic<bool> position_fails{false};  ///< although the device is connected
   std::atomic<bool> exchanges{true};        ///< false: every answer is that of the time guard
-  std::atomic<bool> encoders_stop{false};   ///< exchanges go on, with the same position
   std::atomic<bool> saturated{false};
   std::atomic<bool> refuses_mass{false};
   std::atomic<bool> limits_sum{false};  ///< the largest force holds for force and weight together
@@ -60,8 +59,6 @@ struct FakeDhdExports {
   /// The device switches force off by itself, or its button does.
   void (*force_off)(int cause);
   void (*press_force_button)();
-  /// No command comes for this time: the host was stopped or killed.
-  void (*silence)(std::chrono::microseconds time);
   /// The fake's time: a millisecond for each force.
   std::chrono::nanoseconds (*now)();
 };

@@ -227,7 +227,7 @@ TEST_CASE("a manifest's text has sorted keys and every key once") {
   const engine::PackManifest manifest{"00ff", {entry("aaaaaaaaaaaaaaaa", 1, {0.1, 0.5})}};
   CHECK(engine::manifest_to_json({"00ff", {}}) ==
         "{\n  \"fields\": [],\n  \"format\": \"touchtrial-pack\",\n  \"study_id\": \"00ff\",\n"
-        "  \"version\": 2\n}\n");
+        "  \"version\": 3\n}\n");
   CHECK(engine::manifest_to_json(manifest).find(
             "\"normal_n\": 0.5,\n        \"tangential_n\": 0.1\n") != std::string::npos);
 }
@@ -273,11 +273,11 @@ TEST_CASE("manifest_from_json names the place of what it refuses") {
   };
   const auto tried = GENERATE(values<Case>({
       {"touchtrial-pack", "zip", "/format: must be"},
-      {"\"version\": 2", "\"version\": 1", "/version: is not 2"},
-      {"\"version\": 2", "\"version\": \"2\"", "/version: must be a whole number"},
-      {"\"version\": 2", "\"version\": 2, \"note\": 0", "/note: is not a known key"},
-      {"\"version\": 2", "\"version\": 2, \"a/b~c\": 0", "/a~1b~0c: is not a known key"},
-      {",\n  \"version\": 2", "", "/version: is missing"},
+      {"\"version\": 3", "\"version\": 2", "/version: is not 3"},
+      {"\"version\": 3", "\"version\": \"3\"", "/version: must be a whole number"},
+      {"\"version\": 3", "\"version\": 3, \"note\": 0", "/note: is not a known key"},
+      {"\"version\": 3", "\"version\": 3, \"a/b~c\": 0", "/a~1b~0c: is not a known key"},
+      {",\n  \"version\": 3", "", "/version: is missing"},
       {"\"00ff\"", "\"bark\"", "/study_id: must be hexadecimal"},
       {"\"00ff\"", "17", "/study_id: must be text"},
       {"aaaaaaaaaaaaaaaa", "../aaaaaaaaaaaaa", "/fields/0/code: must be 16"},
@@ -316,7 +316,7 @@ TEST_CASE("manifest_from_json refuses texts that are not manifests") {
 }
 
 TEST_CASE("manifest_from_json refuses a key that is twice in one object") {
-  CHECK(is_refused(with("\"version\": 2", "\"version\": 2, \"version\": 2"),
+  CHECK(is_refused(with("\"version\": 3", "\"version\": 3, \"version\": 3"),
                    "/version: is there twice"));
   CHECK(is_refused(with("\"normal_n\"", "\"tangential_n\": 9, \"normal_n\""),
                    "/fields/0/gains/tangential_n: is there twice"));

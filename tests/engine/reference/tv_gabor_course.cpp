@@ -234,7 +234,7 @@ class TvGaborCourse<Real>::OnDual final : public Solver {
       : problem_(engine::tv_gabor_problem<Real>(image, options)),
         spectrum_(converted<Real>(engine::gabor_spectrum(
             options.components, problem_.image.height(), problem_.image.width()))),
-        fft_(problem_.image.height(), problem_.image.width(), engine::FftPlan::measured),
+        fft_(problem_.image.height(), problem_.image.width()),
         method_(problem_, spectrum_, fft_) {}
 
   void advance(int steps) override {

@@ -1,6 +1,6 @@
 /// \file The law that distinguishes the rendering models: a hand that goes round a closed path
 /// under `surface` returns with the energy that it had.
-#include "engine/rendering/loop_work.hpp"
+#include "engine/reference/loop_work.hpp"
 
 #include "engine/rendering/gains.hpp"
 #include "engine/rendering/sample_fields.hpp"
@@ -45,15 +45,15 @@ std::vector<Vec3> random_loop(std::uint64_t seed) {
 double largest_loop_mj(const engine::RenderingModel& model) {
   double largest_mj = 0.0;
   for (std::uint64_t seed = 0; seed < 15; ++seed) {
-    largest_mj = std::max(largest_mj, std::abs(engine::loop_work_mj(model, random_loop(seed))));
+    largest_mj = std::max(largest_mj, std::abs(reference::loop_work_mj(model, random_loop(seed))));
     RandomStream random(seed, "planar and pressing loops");
     const Vec3 centre_mm{random.uniform(0.0, 10.0), random.uniform(0.0, 8.0), -1.75};
     const double radius_mm = random.uniform(0.1, 4.0);
     const Vec2 from_mm{centre_mm.x, centre_mm.y};
     const Vec2 to_mm{random.uniform(0.0, 10.0), random.uniform(0.0, 8.0)};
-    for (const auto& loop : {engine::circle_path(centre_mm, radius_mm),
-                             engine::press_slide_lift_path(from_mm, to_mm, 2.0, -1.75)}) {
-      largest_mj = std::max(largest_mj, std::abs(engine::loop_work_mj(model, loop)));
+    for (const auto& loop : {reference::circle_path(centre_mm, radius_mm),
+                             reference::press_slide_lift_path(from_mm, to_mm, 2.0, -1.75)}) {
+      largest_mj = std::max(largest_mj, std::abs(reference::loop_work_mj(model, loop)));
     }
   }
   return largest_mj;
@@ -70,8 +70,8 @@ TEST_CASE("surface does no work round closed loops, also across the plane's edge
 TEST_CASE("the rest of surface's work comes from the quadrature, and shrinks with the step") {
   const engine::TextureField field = random_surface(40, 50, 2, 80.0);
   const engine::RenderingModel model = model_at_budget(field.view(), surface_options());
-  const std::vector<Vec3> loop = engine::circle_path({5.0, 4.0, -1.75}, 3.0);
-  CHECK(std::abs(engine::loop_work_mj(model, loop, 0.001)) < 1e-11);
+  const std::vector<Vec3> loop = reference::circle_path({5.0, 4.0, -1.75}, 3.0);
+  CHECK(std::abs(reference::loop_work_mj(model, loop, 0.001)) < 1e-11);
 }
 
 TEST_CASE("paper does work round the same loops, which is why there is a second model") {
@@ -92,11 +92,11 @@ TEST_CASE("loop_work of a wall is zero, and of a ramp the difference between bor
   // neighbours above and below are missing.
   const std::vector<Vec3> square = {
       {0.05, 3.0, -1.0}, {6.0, 3.0, -1.0}, {6.0, 8.0, -1.0}, {0.05, 8.0, -1.0}};
-  CHECK(engine::loop_work_mj(model, square) == Approx(0.01 * (-4.0 + 3.0) * 5.0).epsilon(1e-9));
+  CHECK(reference::loop_work_mj(model, square) == Approx(0.01 * (-4.0 + 3.0) * 5.0).epsilon(1e-9));
   const std::vector<Vec3> back(square.rbegin(), square.rend());
-  CHECK(engine::loop_work_mj(model, back) == Approx(-0.01 * (-4.0 + 3.0) * 5.0).epsilon(1e-9));
+  CHECK(reference::loop_work_mj(model, back) == Approx(-0.01 * (-4.0 + 3.0) * 5.0).epsilon(1e-9));
   const engine::RenderingModel wall(ramp, options, {});
-  CHECK(engine::loop_work_mj(wall, random_loop(3)) == Approx(0.0).margin(1e-7));
+  CHECK(reference::loop_work_mj(wall, random_loop(3)) == Approx(0.0).margin(1e-7));
 }
 
 TEST_CASE("with friction a hand loses energy round every loop, and never gains") {
@@ -105,10 +105,11 @@ TEST_CASE("with friction a hand loses energy round every loop, and never gains")
   const engine::TextureField field = random_surface(40, 50, 3, 80.0);
   const engine::RenderingModel model = model_at_budget(field.view(), options);
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    CHECK(engine::loop_work_mj(model, random_loop(seed)) < 1e-6);
+    CHECK(reference::loop_work_mj(model, random_loop(seed)) < 1e-6);
   }
   // Kinetic friction over a long circle: about mu * load * length.
-  const double lost_mj = -engine::loop_work_mj(model, engine::circle_path({5.0, 4.0, -1.75}, 3.0));
+  const double lost_mj =
+      -reference::loop_work_mj(model, reference::circle_path({5.0, 4.0, -1.75}, 3.0));
   CHECK(lost_mj == Approx(options.friction * 0.7 * 6.0 * 3.14159).epsilon(0.15));
 }
 

@@ -401,23 +401,3 @@ TEST_CASE("decisions are recorded in a collected study as in any other") {
   CHECK(store.state().unblinded);
   CHECK_FALSE(store.state().interim);
 }
-
-TEST_CASE("a study collected for reading equals the one in a file, with traces fetched or copied") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  const StudyStore file = merged(lab, {a, b});
-  for (const TraceUse traces : {TraceUse::copied, TraceUse::fetched}) {
-    CollectReport report;
-    const StudyStore store = collected_for_reading(stations_in({b, a}), "the lab", traces, &report);
-    CHECK(report.sessions == 4);
-    CHECK(store.sessions() == file.sessions());
-    CHECK(store.trials() == file.trials());
-    CHECK(store.file_head() == file.file_head());
-    CHECK(store.sealed_trace(4, 3) == file.sealed_trace(4, 3));
-    CHECK(store.sealed_trace(4, 3));
-    CHECK_FALSE(store.sealed_trace(4, 9));
-    CHECK_FALSE(store.sealed_trace(9, 1));
-    const bool whole = traces == TraceUse::copied;
-    CHECK_FALSE(store.first_fault(whole ? TraceCheck::full : TraceCheck::skip));
-  }
-}

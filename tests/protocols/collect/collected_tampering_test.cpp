@@ -1,4 +1,4 @@
-// A collected study that was tampered with, or that has a station with an older schema.
+// A collected study that was tampered with.
 #include "protocols/collect/lab_fixture.hpp"
 #include "support/catch.hpp"
 
@@ -39,10 +39,6 @@ TEST_CASE("every alteration of a collected study is found") {
   CHECK(fault_after("UPDATE events SET own_session = 4 WHERE session = 4") ==
         "4/0 the event belongs to another chain");
   CHECK(fault_after("DELETE FROM events WHERE session = 3") == "0/5 session 2 has no events");
-  CHECK(fault_after("UPDATE sessions SET station = 2 WHERE session = 3") ==
-        "3/0 derived table sessions disagrees with the events");
-  CHECK(fault_after("UPDATE sessions SET own_session = NULL WHERE session = 3") ==
-        "3/0 derived table sessions disagrees with the events");
   CHECK(fault_after("DELETE FROM traces WHERE session = 4 AND trial = 2") ==
         "4/9 trace of trial 2 is missing");
 }
@@ -84,13 +80,4 @@ TEST_CASE("a station's own file that pretends to hold a station is found") {
   const auto fault = StudyStore::open(a, Access::read_only).first_fault();
   REQUIRE(fault);
   CHECK(fault->what == "opens no session");
-}
-
-TEST_CASE("a station's file of an older schema is refused untouched") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  tamper_file(b, "PRAGMA user_version = 2");
-  const Bytes before = read_file(b);
-  CHECK(contains(merge_refusal(lab, {a, b}), "older Touchtrial (schema 2"));
-  CHECK(read_file(b) == before);
 }

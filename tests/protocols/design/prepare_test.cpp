@@ -134,23 +134,6 @@ TEST_CASE("a study with the surface model has packs of coefficients, of the same
   CHECK(reused(laboratory.prepare()) == 3);
 }
 
-TEST_CASE("a pack of the former format is built again, with a warning") {
-  const Laboratory laboratory;
-  static_cast<void>(laboratory.prepare());
-  const auto whole = laboratory.files();
-  const std::filesystem::path path = laboratory.pack() / "pack.json";
-  json former = json::parse(text_of(read_file(path)));
-  former["version"] = 1;
-  for (json& field : former["fields"]) field["gains"].erase("height_mm");
-  replace_file(path, std::string_view(former.dump(2)));
-  CHECK_THROWS_WITH(engine::Pack(laboratory.pack()),
-                    holds_text("/version: is not 2, the only version"));
-  const design::PrepareReport report = laboratory.prepare();
-  CHECK(reused(report) == 0);
-  CHECK(warns(report, "all fields were built anew"));
-  CHECK(laboratory.files() == whole);
-}
-
 TEST_CASE("a damaged or missing field is built again") {
   const Laboratory laboratory;
   static_cast<void>(laboratory.prepare());
@@ -384,6 +367,72 @@ TEST_CASE("a solver that gives up causes a warning with the gap that it reached"
   const design::PrepareReport report = laboratory.prepare();
   CHECK(report.warnings.size() == 3);
   CHECK(warns(report, "method tv-gabor: stopped after 1 steps at a relative gap of "));
+}
+
+TEST_CASE("the field of a flat image is what an extraction would give") {
+  Laboratory laboratory;
+  for (std::uint64_t c = 0; c < 3; ++c)
+    engine::write_png(laboratory.image(c), GreyImage(kSide, kSide, 90));
+  for (const char* method : {"adaptive", "luminance", "tv-gabor"}) {
+    INFO(method);
+    laboratory.document["methods"] = {{{"name", method}}};
+    static_cast<void>(laboratory.prepare());
+    const design::StudyKey key = laboratory.key();
+    const auto texture = engine::extract_texture<double>(
+                             engine::read_grey_image(laboratory.image(0)), key.study.methods[0])
+                             .texture;
+    const engine::TextureField expected = engine::make_texture_field(texture, key.study.rendering);
+    const engine::MappedField field = engine::Pack(laboratory.pack()).map(key.stimuli[0].code);
+    CHECK(std::ranges::equal(field.view().heights, expected.view().heights));
+  }
+}
+
+TEST_CASE("a method's control is made of its texture, and differs by image") {
+  Laboratory laboratory;
+  std::filesystem::copy_file(laboratory.image(0), laboratory.image(2),
+                             std::filesystem::copy_options::overwrite_existing);
+  laboratory.document["protocol"] = "comparison";
+  laboratory.document["methods"] = {{{"name", "adaptive"}},
+                                    {{"name", "adaptive"}, {"control", "phase-scrambled"}}};
+  static_cast<void>(laboratory.prepare());
+  const design::StudyKey key = laboratory.key();
+  const GreyImage image = engine::read_grey_image(laboratory.image(0));
+  const engine::ExtractionOptions control = design::method_of(key.study, {0, 0, 1});
+  const auto texture = engine::extract_texture<double>(image, control).texture;
+  const engine::TextureField expected = engine::make_texture_field(texture, key.study.rendering);
+  const engine::Pack pack(laboratory.pack());
+  const engine::MappedField field = pack.map(key.code_of({0, 0, 1}));
+  CHECK(std::ranges::equal(field.view().heights, expected.view().heights));
+  CHECK(pack.entry(key.code_of({0, 0, 1})).checksum != pack.entry(key.code_of({2, 0, 1})).checksum);
+  CHECK(pack.entry(key.code_of({0, 0, 0})).checksum == pack.entry(key.code_of({2, 0, 0})).checksum);
+  const design::PrepareReport again = laboratory.prepare();
+  CHECK(reused(again) == 6);
+  CHECK(again.stimuli[1].method == "adaptive-phase-scrambled");
+  laboratory.document["seed"] = 5;
+  CHECK(reused(laboratory.prepare()) == 3);
+}
+
+TEST_CASE("large images, which are prepared one at a time, give the pack of small ones") {
+  Laboratory laboratory;
+  engine::write_png(laboratory.image(1), GreyImage(3, 5, 7));
+  static_cast<void>(laboratory.prepare());
+  const auto whole = laboratory.files();
+  std::filesystem::remove_all(laboratory.pack());
+  int done = 0;
+  const design::PrepareReport report = design::prepare_pack(laboratory.key(), laboratory.pack(),
+                                                            [&](int count, int) { done = count; },
+                                                            {.large_image_px = kSide * kSide - 1});
+  CHECK(laboratory.files() == whole);
+  CHECK(done == 3);
+  CHECK(reused(report) == 0);
+  CHECK(report.stimuli[0].statistics.tangential_rms_n > 0.0);
+}
+
+TEST_CASE("statistics are computed only if they are asked for") {
+  const Laboratory laboratory;
+  const design::PrepareReport report =
+      design::prepare_pack(laboratory.key(), laboratory.pack(), {}, {.statistics = false});
+  CHECK(report.stimuli[0].statistics.tangential_rms_n == 0.0);
 }
 
 TEST_CASE("progress counts every stimulus once") {

@@ -186,10 +186,10 @@ TEST_CASE("a file that is no key, and a key of another version, are told apart f
   replace_file(path, minimal_study().dump(), FileMode::owner_only);
   CHECK(
       refuses<FileError>([&] { return design::load_study_key(path); }, "is not a Touchtrial key"));
-  replace_file(path, std::string(R"({"format": "touchtrial-key", "version": 1})"),
+  replace_file(path, std::string(R"({"format": "touchtrial-key", "version": 2})"),
                FileMode::owner_only);
   CHECK(refuses<FileError>([&] { return design::load_study_key(path); },
-                           "is a key of version 1, not 2"));
+                           "is a key of version 2, not 3"));
   CHECK(refuses<FileError>([&] { return design::load_study_key(folder.path() / "none.key"); },
                            "cannot be read"));
 }

@@ -133,19 +133,13 @@ json full_study(const json& method, const json& model = kPaper) {
                         {"neighbourhood", 3},
                         {"max_force_n", 3.3}};
   study["rendering"].update(model);
-  study["trials"] = {{"repeats", 2},
-                     {"order", "shuffled"},
-                     {"explore_limit_s", 60},
-                     {"on_timeout", "fade"},
-                     {"practice", 0},
-                     {"break_every", 0},
-                     {"break_after_min", 0},
-                     {"catch", 0},
-                     {"lead_in", 0},
-                     {"blocks", "by-method"},
-                     {"max_run", 0},
-                     {"resume_within_h", 24},
-                     {"on_interruption", "repeat"}};
+  study["trials"] = {{"repeats", 2},          {"order", "shuffled"},
+                     {"explore_limit_s", 60}, {"on_timeout", "fade"},
+                     {"practice", 0},         {"break_every", 0},
+                     {"break_after_min", 0},  {"catch", 0},
+                     {"lead_in", 0},          {"blocks", "by-method"},
+                     {"max_run", 0},          {"rove_db", 0},
+                     {"resume_within_h", 24}, {"on_interruption", "repeat"}};
   study["trials"]["validity"] = {{"exploring_s", 5},      {"contact_s", 5},
                                  {"path_mm", 300},        {"least_median_n", 0.2},
                                  {"largest_median_n", 2}, {"saturated_share", 0.01}};
@@ -284,7 +278,7 @@ double step_of(const json& property) {
 TEST_CASE("the schema describes every section of the study file") {
   std::set<std::string> places;
   for (const Property& property : all_properties()) places.insert(property.place.to_string());
-  CHECK(places.size() == 13 + 2 + 18 + 16 + (13 + 2 + 6 + 2) + (3 + 2) +
+  CHECK(places.size() == 13 + 2 + 18 + 17 + (13 + 2 + 6 + 2) + (3 + 2) +
                              (14 + 6 + 1 + 2 + 5 + 2 * 6) + 4 + 2 + (15 + 3));
   for (const char* place :
        {"/seed", "/rendering/gains/normal_n", "/rendering/gains/height_mm", "/trials/catch",
@@ -458,7 +452,7 @@ TEST_CASE("the schema's defaults are the reader's") {
     CHECK(written.registration == bare.registration);
     CHECK(written.seed == bare.seed);
   }
-  CHECK(defaults == (24 + 9 + 3 + 2 + 13 + 2 + 1 + 10) * (static_cast<int>(kMethods.size()) + 1));
+  CHECK(defaults == (24 + 9 + 3 + 2 + 14 + 2 + 1 + 10) * (static_cast<int>(kMethods.size()) + 1));
 }
 
 TEST_CASE("the schema's defaults of the methods' keys are the reader's") {

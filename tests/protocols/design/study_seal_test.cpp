@@ -140,6 +140,7 @@ TEST_CASE("any change of what people read or are asked changes the seal") {
       [](json& d) { d["trials"]["practice"] = 6; },
       [](json& d) { d["trials"]["catch"] = 1; },
       [](json& d) { d["trials"]["max_run"] = 2; },
+      [](json& d) { d["trials"]["rove_db"] = 3; },
       [](json& d) { d["trials"]["order"] = "williams"; },
       [](json& d) { d["trials"]["on_interruption"] = "restart-block"; },
       [](json& d) { d["trials"]["resume_within_h"] = 1; }};

@@ -178,8 +178,8 @@ TEST_CASE("a catch trial belongs to the block of the presentation before it") {
 
 TEST_CASE("a schedule with catch trials is read as it was written, with a code like the others") {
   SeededEntropy entropy(1);
-  const design::StudyKey key =
-      design::make_study_key(study_with(study_of(3), {{"catch", 2}}), entropy, false);
+  const design::StudyKey key = design::make_study_key(
+      study_with(study_of(3), {{"catch", 2}, {"rove_db", 6}}), entropy, false);
   const design::Schedule schedule = schedule_of(key.study, 1);
   const std::string text = design::schedule_to_json(schedule, key);
   CHECK(design::schedule_from_json(text, key) == schedule);
@@ -197,8 +197,57 @@ TEST_CASE("a schedule with catch trials is read as it was written, with a code l
 TEST_CASE("the schedule rule names limits and catch trials only where there are some") {
   const std::string plain = design::schedule_rule(study_with(study_of(3), {{"repeats", 5}}));
   CHECK(plain.ends_with("; lead_in=0"));
-  CHECK(design::schedule_rule(study_with(study_of(3), {{"max_run", 2}, {"catch", 4}})) ==
-        plain + "; max_run=2; catch=4");
+  CHECK(design::schedule_rule(
+            study_with(study_of(3), {{"max_run", 2}, {"rove_db", 1.5}, {"catch", 4}})) ==
+        plain + "; max_run=2; rove_db=1.5; catch=4");
+}
+
+TEST_CASE("roved gains are uniform below the pack's, and tell nothing of class and method") {
+  const json trials = {{"repeats", 4}, {"catch", 2}, {"lead_in", 1}};
+  json roved = trials;
+  roved["rove_db"] = 6;
+  const design::Study study = study_with(comparison_of(3), roved);
+  std::map<int, int> by_gain;
+  std::map<std::tuple<int, int, bool>, int> by_stimulus_and_half;
+  for (int enrolment = 1; enrolment <= 200; ++enrolment) {
+    for (const design::Presentation& shown : schedule_of(study, enrolment).presentations) {
+      if (shown.kind == design::PresentationKind::catch_trial) {
+        CHECK(shown.gain_db == 0.0);
+        continue;
+      }
+      REQUIRE(shown.gain_db <= 0.0);
+      REQUIRE(shown.gain_db >= -6.0);
+      ++by_gain[static_cast<int>(-2.0 * shown.gain_db)];
+      if (shown.kind != design::PresentationKind::scored) continue;
+      const auto& [class_index, exemplar, method] = shown.stimulus;
+      ++by_stimulus_and_half[{class_index, method, shown.gain_db < -3.0}];
+    }
+  }
+  // 99.9999 % with 11 degrees of freedom each.
+  CHECK(chi_square_uniform(by_gain, 12) < 50.0);
+  CHECK(chi_square_uniform(by_stimulus_and_half, 12) < 50.0);
+  design::Schedule schedule = schedule_of(study, 1);
+  for (design::Presentation& shown : schedule.presentations) shown.gain_db = 0.0;
+  CHECK(schedule == schedule_of(study_with(comparison_of(3), trials), 1));
+}
+
+TEST_CASE("a restarted block has new gains") {
+  const design::Study study = study_with(comparison_of(3), {{"rove_db", 6}});
+  std::set<double> gains;
+  std::size_t presentations = 0;
+  const auto add = [&](const std::vector<design::Presentation>& block) {
+    presentations += block.size();
+    for (const design::Presentation& shown : block) gains.insert(shown.gain_db);
+  };
+  add(schedule_of(study, 2).presentations);
+  for (int restart = 0; restart < 2; ++restart) {
+    for (int block = 0; block < 2; ++block) {
+      add(design::restarted_block(study, drawn(study, 2), block, restart, 101));
+    }
+  }
+  CHECK(gains.size() == presentations);
+  CHECK(*gains.begin() >= -6.0);
+  CHECK(*gains.rbegin() <= 0.0);
 }
 
 TEST_CASE("a restarted block is a fresh order of the same block under new numbers") {

@@ -56,7 +56,7 @@ struct Laboratory {
         empty, session::commitment_of(study.key(), study.pack(), true, false),
         std::chrono::seconds(1), study.key().signer()));
   }
-  TinyStudy study{{.side_px = 120, .trials = R"({"repeats": 5})"}};
+  TinyStudy study{{.side_px = 120, .trials = R"({"repeats": 5, "rove_db": 20})"}};
   session::StimulusSource source{study.pack(), study.key().study.rendering};
   SecretKey participant_key = sha256(bytes_of("participant"));
   std::filesystem::path empty = study.next_database();
@@ -142,6 +142,21 @@ void require_kept(const std::vector<store::Event>& stored,
   }
 }
 
+/// Requires that the stylus felt the plane at its own roved gain.
+void require_felt(const store::StudyStore& store, const design::Presentation& shown) {
+  const Laboratory& lab = laboratory();
+  const auto box = store.sealed_trace(1, shown.trial);
+  REQUIRE(box);
+  const store::Trace trace = store::unsealed_trace(*box, lab.participant_key).value();
+  const auto strongest = std::ranges::max_element(
+      trace.samples, {}, [](const store::TraceSample& sample) { return norm(sample.force_n); });
+  engine::Bristle touch;
+  const Vec3 wanted_n = lab.source.model(lab.study.key().code_of(shown.stimulus), shown.gain_db)
+                            .force_n(strongest->position_mm, {}, touch);
+  REQUIRE(std::hypot(wanted_n.x, wanted_n.y) > 0.0);
+  REQUIRE(norm(strongest->force_n - wanted_n) < 1e-3);
+}
+
 /// Requires 25 answers, five for each class, and an intact chain.
 void require_complete(const KilledSession& session) {
   const store::StudyStore store = store::StudyStore::open(session.path, Access::read_only);
@@ -155,6 +170,7 @@ void require_complete(const KilledSession& session) {
                              laboratory().study.key().draw_of(1, design::Draws::rehearsal))
            .presentations) {
     class_of_trial[one.trial] = one.stimulus.class_index;
+    require_felt(store, one);
   }
   std::map<int, int> answered;
   for (const store::TrialRow& trial : store.trials()) {

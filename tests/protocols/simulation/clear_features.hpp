@@ -28,16 +28,6 @@ class FeatureReader {
  public:
   void add(const std::string& name, double value) { numbers_[name].push_back(value); }
   void add(const std::string& name, const std::string& text) { texts_[name].push_back(text); }
-  /// The rows of a query, which has one row for each trial.
-  void add_columns(SQLite::Statement& query) {
-    while (query.executeStep()) {
-      for (int i = 0; i < query.getColumnCount(); ++i) {
-        const SQLite::Column cell = query.getColumn(i);
-        const std::string name = cell.getName();
-        cell.isText() ? add(name, cell.getString()) : add(name, cell.getDouble());
-      }
-    }
-  }
   [[nodiscard]] Features features() const {
     Features features = numbers_;
     for (const auto& [name, texts] : texts_) {
@@ -183,11 +173,7 @@ inline Features features_in_clear(const std::filesystem::path& path) {
   FeatureReader seen;
   add_events(database, seen);
   add_traces(database, path, seen);
-  SQLite::Statement trials(database, "SELECT * FROM trials ORDER BY session, trial");
-  seen.add_columns(trials);
-  Features features = seen.features();
-  features.erase("session");  // the same for all trials that are compared
-  return features;
+  return seen.features();
 }
 
 }  // namespace touchtrial

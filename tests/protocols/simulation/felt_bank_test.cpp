@@ -51,8 +51,9 @@ simulation::FeltBank bank_of(const TinyStudy& study, const simulation::FeltBankO
 
 TEST_CASE("answers to trials that are felt without a session equal those of sessions, one by one") {
   // A limit that is shorter than the exploration: the force's fading is felt as well.
-  const std::string trials = GENERATE(R"({"repeats": 3, "lead_in": 2, "catch": 0})",
-                                      R"({"repeats": 2, "explore_limit_s": 1.2})");
+  const std::string trials =
+      GENERATE(R"({"repeats": 3, "lead_in": 2, "catch": 0})",
+               R"({"repeats": 2, "explore_limit_s": 1.2})", R"({"repeats": 2, "rove_db": 12})");
   TinyStudy study({.images = 2, .trials = trials, .rendering = R"({"max_force_n": 0.9})"});
   const simulation::SubjectModel subject = erring_subject();
   constexpr std::uint64_t kSeed = 17;
@@ -78,8 +79,8 @@ TEST_CASE("answers to trials that are felt without a session equal those of sess
     std::uint64_t nth = 0;
     for (const design::Presentation& shown : schedule.presentations) {
       const simulation::LabelledField& field = fields.all.all()[places.place_of(shown.stimulus)];
-      const engine::FeltFeatures felt =
-          simulation::feel_trial(field, fields.all.plane(), design, subject, kSeed, number, ++nth);
+      const engine::FeltFeatures felt = simulation::feel_trial(
+          field, shown.gain_db, fields.all.plane(), design, subject, kSeed, number, ++nth);
       RandomStream random =
           simulation::stream_of_trial(kSeed, simulation::kAnswerPurpose, number, nth);
       REQUIRE(row < rows.size());
@@ -138,8 +139,8 @@ TEST_CASE("a bank's explorations are draws from what trials feel like") {
   double square = 0.0;
   for (int i = 0; i < 60; ++i) {
     const double trial =
-        simulation::feel_trial(fields.all.all()[0], fields.all.plane(), study.key().study, subject,
-                               5, i + 1, 1)[engine::kLateralBandsAt + 2];
+        simulation::feel_trial(fields.all.all()[0], 0.0, fields.all.plane(), study.key().study,
+                               subject, 5, i + 1, 1)[engine::kLateralBandsAt + 2];
     const double banked = bank.felt(0)[i][engine::kLateralBandsAt + 2];
     difference += trial - banked;
     square += (trial - banked) * (trial - banked);
@@ -147,6 +148,26 @@ TEST_CASE("a bank's explorations are draws from what trials feel like") {
   // Within 3.3 standard errors of nothing.
   CHECK(std::abs(difference) <= 3.3 * std::sqrt(square));
   CHECK(square > 0.0);
+}
+
+TEST_CASE("a bank of roved planes is as strong as gains drawn evenly over the range") {
+  const TinyStudy study;
+  const TinyStudy roved({.trials = R"({"rove_db": 20})"});
+  const simulation::FeltBank whole = bank_of(study, {.explorations = 60, .jobs = 2});
+  const simulation::FeltBank bank = bank_of(roved, {.explorations = 60, .jobs = 2});
+  double sum_db = 0.0;
+  double weakest_db = 0.0;
+  constexpr double kDbPerNeper = 8.685889638;
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t lateral = engine::kLateralBandsAt + 2;
+    const double db = kDbPerNeper * (bank.felt(0)[i][lateral] - whole.felt(0)[i][lateral]);
+    CHECK(db < 0.5);  // a weaker texture leaves another path, but for little
+    sum_db += db;
+    weakest_db = std::min(weakest_db, db);
+  }
+  // The mean of 60 uniform draws has a standard error of 20 / sqrt(12 * 60).
+  CHECK(sum_db / 60.0 == Approx(-10.0).margin(3.3 * 20.0 / std::sqrt(12.0 * 60.0)));
+  CHECK(weakest_db < -17.0);
 }
 
 TEST_CASE("a bank counts its explorations, and refuses impossible numbers") {

@@ -18,8 +18,9 @@ using simulation::LevelledGains;
 /// A tiny study that wants a level on a Touch X.
 class WantedStudy {
  public:
-  explicit WantedStudy(double level_db, bool all_alike = false)
-      : study_({.rendering = R"({"device": "touch_x", "gains": {"level_db": )" +
+  explicit WantedStudy(double level_db, bool all_alike = false, const std::string& trials = "{}")
+      : study_({.trials = trials,
+                .rendering = R"({"device": "touch_x", "gains": {"level_db": )" +
                              std::to_string(level_db) + R"(, "curve": "israr_2006"})" +
                              (all_alike ? R"(, "equalise": "level"})" : "}")}) {
     for (const design::KeyedStimulus& stimulus : study_.key().stimuli) {
@@ -90,6 +91,21 @@ TEST_CASE("stimuli out of reach are alike at the level that the weakest can have
   CHECK(std::ranges::max(levels) - std::ranges::min(levels) < 0.2);
   CHECK(std::ranges::min(levels) ==
         Approx(std::ranges::min(study.levels(study.largest_gains()))).margin(0.2));
+}
+
+TEST_CASE(
+    "a roved study has its level in the middle, and the largest gain within the same bounds") {
+  const WantedStudy roved(0.0, false, R"({"rove_db": 4})");
+  const std::vector<engine::Gains> gains = roved.gains().gains.of_field;
+  CHECK(std::ranges::min(roved.levels(gains)) == Approx(0.0).margin(0.1));
+  // The strongest presentation is as strong as that of a study with 2 dB more.
+  const double highest = WantedStudy(2.0).gains().gains.of_field[0].tangential_n;
+  CHECK(20.0 * std::log10(gains[0].tangential_n / highest) == Approx(0.0).margin(0.3));
+  const WantedStudy too_far(40.0, false, R"({"rove_db": 4})");
+  const LevelledGains found = too_far.gains();
+  CHECK(found.gains.of_field == too_far.largest_gains());
+  REQUIRE(found.remarks.size() == 1);
+  CHECK_THAT(found.remarks[0], holds_text("/trials/rove_db 0 gives 2.0 dB more"));
 }
 
 TEST_CASE("less sensitive pilots get larger gains, by as many decibels") {

@@ -171,43 +171,10 @@ TEST_CASE("an altered, missing or added key is named by its session") {
           "the participant withdrew, but the key is still there");
 }
 
-TEST_CASE("every altered column of the derived tables is noticed") {
-  const std::string where = "session = 2";
-  for (const std::string column :
-       {"enrolment", "simulated", "pilot", "excluded", "withdrawn", "erased"}) {
-    REQUIRE(contains(fault_after(next_number("sessions", column, where)),
-                     "2/0 derived table sessions"));
-  }
-  for (const std::string column : {"participant", "state", "device"}) {
-    REQUIRE(contains(fault_after(flipped_text("sessions", column, where)),
-                     "2/0 derived table sessions"));
-  }
-  const std::string trial = "session = 2 AND trial = 2";
-  for (const std::string column : {"block", "valid", "contact_ok", "path_ok", "force_ok",
-                                   "speed_ok", "overruns", "rate_hz", "explorations"}) {
-    REQUIRE(
-        contains(fault_after(next_number("trials", column, trial)), "2/0 derived table trials"));
-  }
-  REQUIRE(
-      contains(fault_after(flipped_text("trials", "state", trial)), "2/0 derived table trials"));
-}
-
-TEST_CASE("missing and added derived rows are noticed") {
-  REQUIRE(fault_after("DELETE FROM trials WHERE session = 2 AND trial = 3") ==
-          "2/0 derived table trials disagrees with the events at trial 3");
-  REQUIRE(fault_after("UPDATE trials SET trial = 7 WHERE session = 1 AND trial = 3") ==
-          "1/0 derived table trials disagrees with the events at trial 3");
-  REQUIRE(fault_after("DELETE FROM sessions WHERE session = 1") ==
-          "1/0 derived table sessions disagrees with the events");
-  REQUIRE(fault_after("UPDATE sessions SET session = 7 WHERE session = 2") ==
-          "2/0 derived table sessions disagrees with the events");
-}
-
 TEST_CASE("a tampered database answers with one line, not with invented data") {
   StoredFixture study(1);
   tamper(study,
          "UPDATE events SET kind = 'gone' WHERE session = 1 AND sequence = 2;"
-         "UPDATE trials SET state = 'gone' WHERE trial = 1;"
          "UPDATE events SET body = '{}' WHERE session = 0 AND sequence = 0");
   for (const std::string& line : {refusal_of([&] { return study.store->events(1); }),
                                   refusal_of([&] { return study.store->trials(); }),
@@ -241,13 +208,13 @@ TEST_CASE("an object of the schema that is missing, altered or added is named") 
   REQUIRE(altered("") == "");
   REQUIRE(altered("DROP TRIGGER events_no_delete") ==
           "trigger events_no_delete is missing from the schema");
-  REQUIRE(altered("CREATE VIEW results AS SELECT * FROM trials") ==
+  REQUIRE(altered("CREATE VIEW results AS SELECT * FROM events") ==
           "view results does not belong to the schema");
   REQUIRE(altered("CREATE TABLE notes(x)") == "table notes does not belong to the schema");
-  REQUIRE(altered("CREATE INDEX quick ON trials(block)") ==
+  REQUIRE(altered("CREATE INDEX quick ON events(kind)") ==
           "index quick does not belong to the schema");
-  REQUIRE(altered("ALTER TABLE trials ADD COLUMN presented TEXT") ==
-          "table trials is not as its schema has it");
+  REQUIRE(altered("ALTER TABLE traces ADD COLUMN presented TEXT") ==
+          "table traces is not as its schema has it");
   REQUIRE(altered("DROP TRIGGER traces_no_update; CREATE TRIGGER traces_no_update BEFORE UPDATE ON "
                   "traces BEGIN SELECT 1; END") ==
           "trigger traces_no_update is not as its schema has it");

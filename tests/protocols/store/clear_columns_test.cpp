@@ -1,4 +1,5 @@
 // What a database tells whoever has no key.
+#include "protocols/store/schema.hpp"
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
 
@@ -68,8 +69,7 @@ std::vector<std::string> lines_of(const std::filesystem::path& path) {
   static const std::regex hash("[0-9a-f]{64}");
   SQLite::Database raw(path.string());
   std::vector<std::string> lines;
-  for (const char* const table : {"events", "traces", "participant_keys", "safety_keys",
-                                  "station_keys", "sessions", "trials"}) {
+  for (const char* const table : kTables) {
     SQLite::Statement query(raw, "SELECT * FROM " + std::string(table) + " ORDER BY 1, 2");
     while (query.executeStep()) {
       std::string line = table;

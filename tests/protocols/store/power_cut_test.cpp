@@ -1,7 +1,6 @@
 // Kills and power cuts at every operation on the disk: nothing acknowledged is lost.
 #include "core/files.hpp"
 #include "protocols/store/power_cut_fixture.hpp"
-#include "protocols/store/schema.hpp"
 
 #include <algorithm>
 #include <array>
@@ -113,32 +112,6 @@ TEST_CASE("a database that is being made is whole or not there after a kill or a
       REQUIRE_FALSE(StudyStore::open(path, StudyStore::Access::read_only).first_fault());
       StudyStore store = writable(path);
       add(store, 1);
-    }
-    REQUIRE(fault.at > 10);
-  }
-}
-
-TEST_CASE("a database that is brought forward is the old one or the new one after a kill") {
-  FaultVfs vfs;
-  std::vector<Migration> steps(migrations().begin(), migrations().end());
-  steps.push_back(
-      [](SQLite::Database& database) { database.exec("CREATE TABLE later(x INTEGER) STRICT"); });
-  const auto bring_forward = [&](const std::filesystem::path& path) {
-    static_cast<void>(open_current(path, Database::Mode::read_write, steps));
-  };
-  for (const Kind kind : kEnds) {
-    Fault fault{.kind = kind, .at = 1};
-    for (;; ++fault.at) {
-      INFO("kind " << static_cast<int>(kind) << " at operation " << fault.at);
-      StoredFixture study(finished_session());
-      vfs.plan(fault);
-      static_cast<void>(refusal_of([&] { bring_forward(study.path); }));
-      if (!vfs.struck()) break;
-      vfs.start_anew();
-      bring_forward(study.path);
-      SQLite::Database raw(study.path.string());
-      REQUIRE(raw.tableExists("later"));
-      REQUIRE(raw.execAndGet("SELECT count(*) FROM trials").getInt() == 3);
     }
     REQUIRE(fault.at > 10);
   }

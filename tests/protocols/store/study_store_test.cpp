@@ -123,13 +123,6 @@ TEST_CASE("sessions and trials are derived from the events") {
   REQUIRE_FALSE(opened_trials(*study.store, 2)[2].position);
 }
 
-TEST_CASE("the derived tables agree with the events after an exclusion and a withdrawal") {
-  StoredFixture study(3);
-  study.store->exclude(2, kUtc, "fell asleep");
-  study.store->withdraw(3, kUtc, "asked to");
-  REQUIRE_FALSE(study.store->first_fault());
-}
-
 TEST_CASE("events of one kind are visited by session and sequence") {
   StoredFixture study(2);
   std::vector<std::pair<int, std::int64_t>> visited;

@@ -37,7 +37,7 @@ int pages_of_adding(StoredStudy& study, int session) {
   const BufferedEvents events = session_of(session);
   const NewKeys keys = wrapped_key_of(session);
   const int before = pages_looked_at(study.database());
-  study.database().change([&] { study.store_whole(events, keys, kUtc); });
+  study.change([&] { study.store_whole(events, keys, kUtc); });
   return pages_looked_at(study.database()) - before;
 }
 
@@ -49,7 +49,7 @@ struct PagesOfCheck {
 };
 
 PagesOfCheck pages_of_check(const std::filesystem::path& path) {
-  const Database database = open_current(path, Database::Mode::read_only, migrations());
+  const Database database = Database::open(path, Database::Mode::read_only);
   database.connection().exec("PRAGMA cache_size = 100000");
   const int looked_at = pages_looked_at(database);
   const int read = counted(database, SQLITE_DBSTATUS_CACHE_MISS);
@@ -67,7 +67,7 @@ TEST_CASE("what a session costs does not depend on how many there are") {
   StoredFixture few(kFew);
   few.store.reset();
   StoredFixture many(few.path);
-  StoredStudy study(open_current(many.path, Database::Mode::read_write, migrations()));
+  StoredStudy study(Database::open(many.path, Database::Mode::read_write));
   study.sign_with(investigator());
   int early = 0;  // of the last ten of the first half: by then trees have the height that they keep
   int late = 0;   // of the last ten

@@ -109,6 +109,7 @@ TEST_CASE("what cannot be presented or answered is refused with its place and a 
   refused(detection_file(), "/trials/on_interruption", "leave-out", "must be \"repeat\"");
   refused(detection_file(), "/trials/explore_limit_s", 1, "shorter than an interval");
   refused(detection_file(), "/trials/practice", 3, "/threshold/practice");
+  refused(detection_file(), "/trials/rove_db", 3, "/trials/rove_db: belongs to other protocols");
   refused(detection_file(), "/rendering/reference_grey", 0, "reference_grey: must be 128");
   refused(detection_file(), "/methods", {{{"name", "adaptive"}}, {{"name", "edge"}}},
           "has 2 entries; a threshold is of one method");

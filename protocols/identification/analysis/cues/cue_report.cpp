@@ -2,12 +2,14 @@
 
 #include "analysis/outcomes.hpp"
 #include "analysis/text_figures.hpp"
+#include "core/named.hpp"
 #include "protocols/identification/analysis/cues/cue_statistics.hpp"
 #include "protocols/identification/analysis/cues/felt_trials.hpp"
 #include "protocols/identification/analysis/cues/ideal_observer.hpp"
 #include "protocols/identification/analysis/cues/study_plane.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -281,27 +283,18 @@ std::vector<std::string> cue_warnings(const Outcomes& outcomes, const CueReport&
 }  // namespace
 
 std::string_view name_of(Cue cue) noexcept {
-  switch (cue) {
-    case Cue::rms:
-      return "rms";
-    case Cue::spectrum:
-      return "spectrum";
-    case Cue::everything:
-      break;
-  }
-  return "everything";
+  using enum Cue;
+  static constexpr auto kNames =
+      std::to_array<Named<Cue>>({{"rms", rms}, {"spectrum", spectrum}, {"everything", everything}});
+  return name_in(kNames, cue);
 }
 
 std::string_view title_of(Cue cue) noexcept {
-  switch (cue) {
-    case Cue::rms:
-      return "force strength (rms)";
-    case Cue::spectrum:
-      return "spectrum's shape";
-    case Cue::everything:
-      break;
-  }
-  return "everything felt";
+  using enum Cue;
+  static constexpr auto kNames = std::to_array<Named<Cue>>({{"force strength (rms)", rms},
+                                                            {"spectrum's shape", spectrum},
+                                                            {"everything felt", everything}});
+  return name_in(kNames, cue);
 }
 
 int traces_to_read(const Outcomes& outcomes) {

@@ -1,9 +1,11 @@
 #include "analysis/page/frame_sections.hpp"
 #include "analysis/page/wording.hpp"
 #include "analysis/text_figures.hpp"
+#include "core/named.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
@@ -370,17 +372,13 @@ Section times_section(const StudyReport& report) {
 namespace {
 
 const char* words_of(TrialSubset subset) {
-  switch (subset) {
-    case TrialSubset::counted:
-      return "as counted (a missing response is wrong)";
-    case TrialSubset::answered:
-      return "trials without a response left out";
-    case TrialSubset::valid:
-      return "trials that break the validity rule left out";
-    case TrialSubset::with_excluded_sessions:
-      return "excluded participants' sessions put back";
-  }
-  return "";
+  using enum TrialSubset;
+  static constexpr auto kNames = std::to_array<Named<TrialSubset>>(
+      {{"as counted (a missing response is wrong)", counted},
+       {"trials without a response left out", answered},
+       {"trials that break the validity rule left out", valid},
+       {"excluded participants' sessions put back", with_excluded_sessions}});
+  return name_in(kNames, subset).data();
 }
 
 Table robustness_table(const StudyReport& report, std::size_t index) {

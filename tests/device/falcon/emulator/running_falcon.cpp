@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <utility>
 
 namespace touchtrial::device::falcon {
 namespace {
@@ -46,6 +47,7 @@ RunningFalcon::RunningFalcon(HandModel hand, bool homed) : hand_(std::move(hand)
   move_hand();
   if (homed) {
     homed_.fill(true);
+    homing_ = true;
   } else {
     forget_homing();
   }
@@ -53,7 +55,7 @@ RunningFalcon::RunningFalcon(HandModel hand, bool homed) : hand_(std::move(hand)
 
 void RunningFalcon::forget_homing() {
   homed_.fill(false);
-  travel_begun_ = false;
+  homing_ = travel_begun_ = false;
   origin_ = kUnhomedOrigin;
 }
 
@@ -101,10 +103,10 @@ void RunningFalcon::take_command() {
   }
   const int flags = nibble(received_[13]);
   if (flags < 0) complain("flags that are none");
-  homing_ = flags >= 0 && flags % 2 == 1;
+  homing_ = homing_ || (flags >= 0 && flags % 2 == 1);
   const unsigned bits = flags < 0 ? 0U : static_cast<unsigned>(flags);
   lamps_ = {.red = (bits & 0x08U) != 0, .green = (bits & 0x02U) != 0, .blue = (bits & 0x04U) != 0};
-  if (!homing_) complain("a command without homing");
+  if (!homing_) complain("a command before one for homing");
   if (!all_homed() && motors_ != std::array<std::int16_t, 3>{}) complain("force before homing");
 }
 
@@ -121,8 +123,8 @@ void RunningFalcon::move_hand() {
 }
 
 void RunningFalcon::home_axes() {
-  const bool begins = !homing_ || !travel_begun_;
-  travel_begun_ = homing_;
+  if (!homing_) return;
+  const bool begins = !std::exchange(travel_begun_, true);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     least_[axis] = begins ? counts_[axis] : std::min(least_[axis], counts_[axis]);
     greatest_[axis] = begins ? counts_[axis] : std::max(greatest_[axis], counts_[axis]);

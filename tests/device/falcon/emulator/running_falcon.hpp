@@ -6,15 +6,16 @@
 /// - 16 bytes to the Falcon bring 16 bytes back, and nothing else does (open driver, its notes on
 ///   the firmware). It never speaks first.
 /// - Three int16 as four nibbles each, the least significant first, each plus 0x41 (open driver).
-/// - Bit 0 of byte 13: homing. Bits 1 to 3: the green lamp 0x02, the blue 0x04, the red 0x08 (open
-///   driver, both its C and its C++ code; one of its comments gives another order and is not what
-///   runs).
+/// - Bit 0 of byte 13: homing, which Force Dimension's library asks for once, after loading, and
+/// the
+///   open driver in every command; both drive a Falcon. Bits 1 to 3: the green lamp 0x02, the blue
+///   0x04, the red 0x08 (open driver, both its C and its C++ code; one of its comments gives
+///   another order and is not what runs).
 /// - Bits 0 to 3 of the reply: buttons, 4 to 6: axes homed (open driver).
 /// - An axis homes when the grip is pulled all the way out and pushed in (open driver's advice to
 ///   its users). That 11 degrees of motion are enough is this emulator's choice.
 /// - A motor's value is documented as capped at 4,096 (open driver's header); what the firmware
-/// does
-///   beyond is unknown, so a greater one is a complaint here.
+///   does beyond is unknown, so a greater one is a complaint here.
 /// - 6,616 is 1 N m at the arm (Martin and Hillier 2009), against the encoder's sense (open
 ///   driver). One count is 0.0370066 degrees; the legs are those of Force Dimension's library.
 /// - What the motors do when the host falls silent is unknown. The worst: they keep what they had.
@@ -103,7 +104,7 @@ class RunningFalcon {
   std::array<int, 3> least_{};     ///< since homing began
   std::array<int, 3> greatest_{};  ///< likewise
   std::array<bool, 3> homed_{};
-  bool homing_ = false;
+  bool homing_ = false;  ///< a command asked for it
   bool travel_begun_ = false;
   bool stuck_ = false;
   Lamps lamps_;

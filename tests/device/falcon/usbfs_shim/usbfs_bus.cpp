@@ -166,6 +166,8 @@ int UsbfsBus::ioctl(int descriptor, unsigned long request, void* argument) {
     case USBDEVFS_RELEASEINTERFACE:
       handle.device->claimed_by = -1;
       return 0;
+    case USBDEVFS_SETINTERFACE:  // it has one setting alone
+      return 0;
     case USBDEVFS_SUBMITURB:
       return submit(handle, *static_cast<usbdevfs_urb*>(argument));
     case USBDEVFS_DISCARDURB:

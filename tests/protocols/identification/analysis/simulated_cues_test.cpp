@@ -58,5 +58,20 @@ TEST_CASE("on smooth planes nothing is available to any observer") {
     CHECK(one.mean.mean.value() <= 0.34);
 }
 
+TEST_CASE("roving takes from an observer what strength alone tells, and not what patterns tell") {
+  TinyStudy plain;
+  TinyStudy roved({.trials = R"({"rove_db": 20})"});
+  const auto accuracy = [](const analysis::identification::MethodCues& cues, std::size_t observer) {
+    return cues.observers.at(observer).mean.mean.value();
+  };
+  const analysis::identification::MethodCues strong = simulated_cues(plain, quick_subject(0.0));
+  const analysis::identification::MethodCues weak = simulated_cues(roved, quick_subject(0.0));
+  INFO(accuracy(strong, 0) << ", roved " << accuracy(weak, 0));
+  // As above: 99.9 % of draws at chance.
+  CHECK(accuracy(strong, 0) > 0.34);
+  CHECK(accuracy(weak, 0) <= 0.34);
+  CHECK(accuracy(weak, 1) >= 0.6);
+}
+
 }  // namespace
 }  // namespace touchtrial

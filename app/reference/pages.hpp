@@ -1,0 +1,46 @@
+/// \file The page of a command, read off the parser: the screen of `--help`, the manual page, and
+/// the page of the documentation.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace touchtrial::app {
+
+enum class PageFormat { help, man, markdown };
+
+/// The page of a command, without what is hidden.
+[[nodiscard]] std::string page_of(const CLI::App& command, PageFormat format);
+
+/// Shows page_of in place of the parser's own help.
+class PageFormatter final : public CLI::FormatterBase {
+ public:
+  [[nodiscard]] std::string make_help(const CLI::App* command, std::string /*name*/,
+                                      CLI::AppFormatMode /*mode*/) const override {
+    return page_of(*command, PageFormat::help);
+  }
+};
+
+/// The words of a command, "touchtrial device accept".
+/// \param between  them
+[[nodiscard]] std::string words_of(const CLI::App& command, const std::string& between = " ");
+
+/// The command of this name below another.
+/// \throws UsageError that names the nearest if there is none
+[[nodiscard]] const CLI::App& command_named(const CLI::App& above, const std::string& name);
+
+/// The program and all commands below it that are not hidden, each before its own.
+[[nodiscard]] std::vector<const CLI::App*> every_command(const CLI::App& command);
+
+/// The options and arguments of a command that are not hidden; arguments first.
+[[nodiscard]] std::vector<const CLI::Option*> options_of(const CLI::App& command);
+
+/// "-o", "--out"; of an argument its name alone.
+[[nodiscard]] std::vector<std::string> names_of(const CLI::Option& option);
+
+/// All values that an option takes, if they are few; else empty.
+[[nodiscard]] std::vector<std::string> choices_of(const CLI::Option& option);
+
+}  // namespace touchtrial::app

@@ -1,0 +1,45 @@
+/// \file Words for the values of an enumeration: one table for each, read both ways. A table is
+/// `std::to_array<Named<Value>>({{"word", value}, ..})`.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+namespace touchtrial {
+
+/// A word of a file or of a command, and its meaning.
+template <typename Value>
+struct Named {
+  std::string_view name;
+  Value value;
+};
+
+/// \return the word for a value, the first if it has several; "unknown" if it has none
+template <typename Value, std::size_t size>
+[[nodiscard]] constexpr std::string_view name_in(const std::array<Named<Value>, size>& table,
+                                                 Value value) noexcept {
+  const auto found = std::ranges::find(table, value, &Named<Value>::value);
+  return found == table.end() ? std::string_view("unknown") : found->name;
+}
+
+/// \return the value that a word stands for; nothing for a word that is not in the table
+template <typename Value, std::size_t size>
+[[nodiscard]] constexpr std::optional<Value> value_in(const std::array<Named<Value>, size>& table,
+                                                      std::string_view name) noexcept {
+  const auto found = std::ranges::find(table, name, &Named<Value>::name);
+  return found == table.end() ? std::nullopt : std::optional(found->value);
+}
+
+/// \return all words, in the order of the table
+template <typename Value, std::size_t size>
+[[nodiscard]] constexpr std::array<std::string_view, size> names_in(
+    const std::array<Named<Value>, size>& table) noexcept {
+  std::array<std::string_view, size> names;
+  std::ranges::transform(table, names.begin(), &Named<Value>::name);
+  return names;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,35 @@
+#include "core/user_folders.hpp"
+
+#include <cstdlib>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// \return the variable's value if it is an absolute path, else an empty path
+fs::path absolute_path_in(const char* variable) {
+  const char* value = std::getenv(variable);
+  const fs::path path = value == nullptr ? "" : value;
+  return path.is_absolute() ? path : fs::path();
+}
+
+fs::path user_folder(const char* variable, const char* below_home) {
+  if (const fs::path named = absolute_path_in(variable); !named.empty()) {
+    return named / "touchtrial";
+  }
+  const fs::path home = absolute_path_in("HOME");
+  return home.empty() ? home : home / below_home / "touchtrial";
+}
+
+}  // namespace
+
+fs::path user_config_folder() {
+  return user_folder("XDG_CONFIG_HOME", ".config");
+}
+
+fs::path user_cache_folder() {
+  return user_folder("XDG_CACHE_HOME", ".cache");
+}
+
+}  // namespace touchtrial

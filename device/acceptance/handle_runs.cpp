@@ -1,0 +1,122 @@
+#include "device/acceptance/handle_runs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace touchtrial::device {
+namespace {
+
+constexpr double kMoveRunS = 12.0;
+constexpr double kSilentRunS = 8.0;
+constexpr double kLeastWeightN = 0.1;
+constexpr double kStrokeShareN = 0.2;  ///< that strokes need beside load and friction
+
+}  // namespace
+
+bool HandleRuns::consents(const Prompt& prompt) {
+  return !skip_.contains(prompt.step) && person_.ready(prompt) == Consent::go;
+}
+
+ServoReport HandleRuns::measure(const std::string& name, Measurement& measurement) {
+  const ServoReport report = bench_.run(name, measurement);
+  require_no_fault(report, name);
+  return report;
+}
+
+void HandleRuns::require_no_fault(const ServoReport& report, const std::string& name) {
+  if (report.end != ServoEnd::fault) return;
+  std::string fault(name_of(report.fault));
+  if (report.device_fault != DeviceFault::none) {
+    fault += " (" + std::string(name_of(report.device_fault)) + ")";
+  }
+  throw DeviceFailed{fault, name};
+}
+
+MeasuredOrWhy HandleRuns::encoder_step() {
+  if (!consents({"steps",
+                 Stance::moving,
+                 {},
+                 "Move the handle slowly (1 cm in a second) to and fro along all three axes; no "
+                 "force acts for 12 s."})) {
+    return {{}, std::string(kLeftOut)};
+  }
+  Listening moving(kMoveRunS);
+  measure("steps", moving);
+  return encoder_step_mm(moving.samples());
+}
+
+StrokesOrWhy HandleRuns::empty_strokes(std::string_view step, DeviceAxis axis, Vec3 support_n,
+                                       double step_mm) {
+  if (!consents({step, Stance::free, axis,
+                 fmt::format("Hold the handle in the middle, without a weight. Let go slowly "
+                             "within 2 s of the start: it is held and moved by 5 mm along axis "
+                             "{} for 12 s.",
+                             name_of(axis))})) {
+    return {{}, std::string(kLeftOut)};
+  }
+  const AcceptanceForces forces = acceptance_forces(bench_.info(), bench_.limits());
+  SlowStrokes run(axis, support_n, forces.gains, forces.hold_n);
+  measure("stroke " + std::string(name_of(axis)), run);
+  return stroke_figures(run, step_mm);
+}
+
+WeightOrWhy HandleRuns::weigh(std::string_view step, DeviceAxis axis, const EmptyHandle& empty,
+                              double step_mm) {
+  const AcceptanceForces forces = acceptance_forces(bench_.info(), bench_.limits());
+  const double most_n = std::min(forces.weight_n, forces.hold_n) - std::abs(empty.load_n) -
+                        empty.friction_n - kStrokeShareN;
+  if (most_n < kLeastWeightN) {
+    return {{}, "the handle's own load and friction leave no room for a weight"};
+  }
+  if (skip_.contains(step)) return {{}, std::string(kLeftOut)};
+  const std::optional<double> weight_n = person_.weight_n(axis, kLeastWeightN, most_n);
+  if (!weight_n) return {{}, "no weight"};
+  if (!consents({step, Stance::loaded, axis,
+                 "Hold the handle in the middle with the weight on it. Let go slowly within 2 s of "
+                 "the start: it is held and moved by 5 mm for 12 s."})) {
+    return {{}, std::string(kLeftOut)};
+  }
+  SlowStrokes run(axis, empty.support_n, forces.gains, forces.hold_n);
+  measure("weight " + std::string(name_of(axis)), run);
+  const StrokesOrWhy strokes = stroke_figures(run, step_mm);
+  if (!strokes.figures) return {{}, strokes.why};
+  const Measured& load_n = strokes.figures->load_n;
+  // Over a pulley a weight pulls to either side.
+  const double more_n = std::abs(load_n.value - empty.load_n);
+  const WeighResult result{*weight_n, more_n, load_n.error};
+  const auto scale = AxisResult{.weight = result}.scale();
+  if (!scale) return {{}, "the weight made no difference"};
+  person_.tell(fmt::format(
+      "axis {}: {:.3f} N commanded for {:.3f} N: delivers {:.0f} +- {:.0f} % of the command",
+      name_of(axis), more_n, *weight_n, 100.0 * scale->value, 100.0 * scale->error));
+  return {result};
+}
+
+ReportOrWhy HandleRuns::suspend_program(std::string_view step) {
+  if (!consents({step, Stance::guarding, DeviceAxis::y,
+                 "Hold the handle firmly: it is pushed down by 0.3 N for 8 s. After about 3 s the "
+                 "system suspends this program for 2 s."})) {
+    return {{}, std::string(kLeftOut)};
+  }
+  SteadyPush push(kSilentRunS);
+  const std::optional<ServoReport> report = bench_.run_suspended(push);
+  return {report, report ? "" : "not possible here"};
+}
+
+ReportOrWhy HandleRuns::pull_cable(std::string_view step) {
+  if (!consents({step, Stance::guarding, DeviceAxis::y,
+                 "Hold the handle firmly: it is pushed down by 0.3 N for 8 s. Pull the device's "
+                 "data cable out within that time. Leave this out if the cable must stay."})) {
+    return {{}, std::string(kLeftOut)};
+  }
+  SteadyPush push(kSilentRunS);
+  const ServoReport report = bench_.run("cable", push);
+  if (report.end != ServoEnd::fault) {
+    return {{}, "the device answered to the end: nobody pulled the cable"};
+  }
+  return {report};
+}
+
+}  // namespace touchtrial::device

@@ -1,0 +1,79 @@
+/// \file The runs that an acceptance and a bring-up share: consent, a run, and what it gives or why it
+/// gives nothing.
+#pragma once
+
+#include "device/acceptance/acceptance.hpp"
+#include "device/acceptance/motion_figures.hpp"
+
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace touchtrial::device {
+
+/// Ends an acceptance or a bring-up: the device failed.
+struct DeviceFailed {
+  std::string fault;  ///< its names, for instance "device (link_lost)"
+  std::string run;    ///< the run's name
+};
+
+/// The reason for what a person left out.
+inline constexpr std::string_view kLeftOut = "left out";
+
+struct WeightOrWhy {
+  std::optional<WeighResult> weight;  ///< with a scale
+  std::string why{};
+};
+struct ReportOrWhy {
+  std::optional<ServoReport> report;
+  std::string why{};
+};
+
+/// What an empty handle takes on an axis.
+struct EmptyHandle {
+  Vec3 support_n;       ///< commanded, that carries it
+  double load_n = 0.0;  ///< of it, along the axis
+  double friction_n = 0.0;
+};
+
+/// Leads one person through single runs on one bench. Every function may throw what these throw,
+/// and DeviceFailed. Private to the folders of acceptance and bring-up.
+class HandleRuns {
+ public:
+  /// \param skip  steps that are left out unasked
+  HandleRuns(AcceptanceBench& bench, AcceptancePerson& person,
+             std::set<std::string, std::less<>> skip = {})
+      : bench_(bench), person_(person), skip_(std::move(skip)) {}
+
+  /// \return whether the run may begin
+  [[nodiscard]] bool consents(const Prompt& prompt);
+  ServoReport measure(const std::string& name, Measurement& measurement);
+  static void require_no_fault(const ServoReport& report, const std::string& name);
+
+  /// The person moves the handle slowly along all axes.
+  [[nodiscard]] MeasuredOrWhy encoder_step();
+
+  /// The handle is held and moved slowly along an axis, without a weight.
+  /// \param step  that the prompt names
+  /// \param step_mm  encoder step; 0: not known
+  [[nodiscard]] StrokesOrWhy empty_strokes(std::string_view step, DeviceAxis axis, Vec3 support_n,
+                                           double step_mm);
+
+  /// The same with a known weight on it.
+  [[nodiscard]] WeightOrWhy weigh(std::string_view step, DeviceAxis axis, const EmptyHandle& empty,
+                                  double step_mm);
+
+  /// A small push while the system suspends the program.
+  [[nodiscard]] ReportOrWhy suspend_program(std::string_view step);
+  /// A small push while the person pulls the cable.
+  [[nodiscard]] ReportOrWhy pull_cable(std::string_view step);
+
+ private:
+  AcceptanceBench& bench_;
+  AcceptancePerson& person_;
+  std::set<std::string, std::less<>> skip_;
+};
+
+}  // namespace touchtrial::device
