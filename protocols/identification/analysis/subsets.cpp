@@ -253,8 +253,10 @@ double seconds(std::chrono::nanoseconds time) {
 struct Times {
   std::vector<double> from_plane_on;
   std::vector<double> from_contact;
+  int paused = 0;
 
   void add(const store::TrialRow& row) {
+    if (row.paused) ++paused;
     if (const auto time = row.reaction_time()) from_plane_on.push_back(seconds(*time));
     if (const auto time = row.from_contact()) from_contact.push_back(seconds(*time));
   }
@@ -263,7 +265,7 @@ struct Times {
 ReactionTimes summary_of(Times times) {
   std::ranges::sort(times.from_plane_on);
   return {quartiles(times.from_plane_on), quartiles(std::move(times.from_contact)),
-          times.from_plane_on};
+          times.from_plane_on, times.paused};
 }
 
 }  // namespace
