@@ -57,6 +57,16 @@ std::optional<double> handedness_score(const std::map<std::string, double>& answ
   return sum / static_cast<double>(kItems.size());
 }
 
+/// \param counts  people by band, and under "" those who did not say
+std::optional<Characteristic> shown(const std::string& name, std::map<std::string, int> counts) {
+  Characteristic shown{name, {}, counts[""]};
+  counts.erase("");
+  if (counts.empty()) return std::nullopt;
+  for (const auto& [band, people] : counts) shown.bands.push_back({band, people});
+  shown.others = keep_large_bands(shown.bands, shown.others);
+  return shown;
+}
+
 }  // namespace
 
 std::string handedness_of(double score) {
@@ -96,20 +106,6 @@ int keep_large_bands(std::vector<Band>& bands, int others) {
   }
   return others;
 }
-
-namespace {
-
-/// \param counts  people by band, and under "" those who did not say
-std::optional<Characteristic> shown(const std::string& name, std::map<std::string, int> counts) {
-  Characteristic shown{name, {}, counts[""]};
-  counts.erase("");
-  if (counts.empty()) return std::nullopt;
-  for (const auto& [band, people] : counts) shown.bands.push_back({band, people});
-  shown.others = keep_large_bands(shown.bands, shown.others);
-  return shown;
-}
-
-}  // namespace
 
 std::vector<Characteristic> in_bands(const std::vector<Demographics>& people) {
   std::map<std::string, int> ages;

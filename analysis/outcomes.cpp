@@ -173,15 +173,6 @@ void take_what_was_said(const OpenedSessions& opened, const design::Study& study
                   participant, participant)));
 }
 
-}  // namespace
-
-std::string shown(const store::ChainFault& fault) {
-  return fmt::format("{}, event {}: {}", store::chain_named(fault.session), fault.sequence,
-                     one_line(fault.what));
-}
-
-namespace {
-
 /// Opens the sessions that `shows` names.
 /// \param participant  whose sessions alone are wanted; empty: the study's
 template <typename Shows>
@@ -230,6 +221,11 @@ Outcomes opened(const store::StudyStore& store, const design::StudyKey& key, Sho
 }
 
 }  // namespace
+
+std::string shown(const store::ChainFault& fault) {
+  return fmt::format("{}, event {}: {}", store::chain_named(fault.session), fault.sequence,
+                     one_line(fault.what));
+}
 
 Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& key,
                        const std::string& participant) {

@@ -87,48 +87,6 @@ void count_trace(const store::TrialRow& trial, TrialQuality& quality) {
   quality.lowest_rate_hz = std::min(quality.lowest_rate_hz.value_or(trial.rate_hz), trial.rate_hz);
 }
 
-}  // namespace
-
-std::string name_of(const store::StudyState& state) {
-  if (state.unblinded) return "unblinded";
-  return state.closed ? "closed" : "collecting";
-}
-
-QualityReport make_quality(const store::StudyStore& store) {
-  const store::StudyCommitment& commitment = store.commitment();
-  QualityReport report;
-  report.study = commitment.study;
-  report.protocol = commitment.protocol;
-  report.state = store.state();
-  report.simulated = commitment.simulated;
-  report.pilot = commitment.pilot;
-  const Prescription prescription = prescription_from_json(commitment.configuration);
-  std::set<int> erased;
-  for (const store::SessionRow& session : store.sessions()) {
-    count_session(session, commitment, report.sessions);
-    if (session.erased) erased.insert(session.session);
-    const bool is_last = session.visit == prescription.visits;
-    if (session_counts(session, commitment) && is_last) ++report.participants;
-  }
-  report.trials = report.participants * commitment.scored_trials;
-  for (const store::TrialRow& trial : store.trials()) {
-    if (erased.contains(trial.session)) continue;
-    count_answer(trial, report.quality);
-    count_trace(trial, report.quality);
-  }
-  report.collection = load_collection(store);
-  for (const SessionRecord& session : report.collection.sessions) {
-    report.quality.interrupted += session.interruptions;
-  }
-  report.servo = servo_quality(report.collection);
-  report.visual = report.collection.visual;
-  report.notes = chain_notes(store);
-  if (!prescription.draft.empty()) report.notes.push_back(prescription.draft);
-  return report;
-}
-
-namespace {
-
 void put_real_time(nlohmann::ordered_json& object, const ServoQuality& servo) {
   object["trials_in_real_time"] = servo.trials;
   object["lowest_rate_had_hz"] = servo.lowest_rate_hz;
@@ -156,49 +114,6 @@ nlohmann::ordered_json hands_json(const Collection& collection) {
   }
   return hands;
 }
-
-}  // namespace
-
-nlohmann::ordered_json quality_object(const QualityReport& report) {
-  const SessionCounts& sessions = report.sessions;
-  const TrialQuality& quality = report.quality;
-  nlohmann::ordered_json object{{"study", report.study}, {"protocol", report.protocol}};
-  put_stamp(object, report.simulated, simulated_devices(report.collection));
-  object["unverified_device"] = !report.simulated && any_ran_unverified(report.collection.sessions);
-  put_state(object, report.state, report.pilot);
-  object["blinded"] = !report.state.unblinded;
-  object["participants"] = report.participants;
-  object["trials"] = report.trials;
-  object["sessions"] = {{"completed", sessions.completed}, {"open", sessions.open},
-                        {"stopped", sessions.stopped},     {"excluded", sessions.excluded},
-                        {"replaced", sessions.replaced},   {"erased", sessions.erased},
-                        {"withdrawn", sessions.withdrawn}, {"pilot", sessions.pilot}};
-  object["responses"] = {{"presented", quality.presented},
-                         {"answered", quality.answered},
-                         {"no_response", quality.no_response},
-                         {"paused", quality.paused},
-                         {"interrupted", quality.interrupted},
-                         {"not_repeated", quality.not_repeated}};
-  object["validity"] = {
-      {"trials", quality.with_trace},
-      {"valid", quality.valid},
-      {"share", figure_json(Proportion{quality.with_trace, quality.valid}.share())}};
-  object["servo"] = {{"overruns", quality.overruns},
-                     {"trials_with_overruns", quality.with_overruns},
-                     {"lowest_rate_hz", figure_json(quality.lowest_rate_hz)}};
-  if (report.servo) put_real_time(object["servo"], *report.servo);
-  object["outside"] = hands_json(report.collection);
-  if (report.visual) object["visual"] = true;
-  object["collection"] = collection_object(report.collection);
-  if (!report.notes.empty()) object["notes"] = report.notes;
-  return object;
-}
-
-std::string quality_json(const QualityReport& report) {
-  return json_text(quality_object(report));
-}
-
-namespace {
 
 std::string sessions_text(const QualityReport& report) {
   TextTable table(
@@ -279,6 +194,83 @@ std::string servo_text(const QualityReport& report) {
 }
 
 }  // namespace
+
+std::string name_of(const store::StudyState& state) {
+  if (state.unblinded) return "unblinded";
+  return state.closed ? "closed" : "collecting";
+}
+
+QualityReport make_quality(const store::StudyStore& store) {
+  const store::StudyCommitment& commitment = store.commitment();
+  QualityReport report;
+  report.study = commitment.study;
+  report.protocol = commitment.protocol;
+  report.state = store.state();
+  report.simulated = commitment.simulated;
+  report.pilot = commitment.pilot;
+  const Prescription prescription = prescription_from_json(commitment.configuration);
+  std::set<int> erased;
+  for (const store::SessionRow& session : store.sessions()) {
+    count_session(session, commitment, report.sessions);
+    if (session.erased) erased.insert(session.session);
+    const bool is_last = session.visit == prescription.visits;
+    if (session_counts(session, commitment) && is_last) ++report.participants;
+  }
+  report.trials = report.participants * commitment.scored_trials;
+  for (const store::TrialRow& trial : store.trials()) {
+    if (erased.contains(trial.session)) continue;
+    count_answer(trial, report.quality);
+    count_trace(trial, report.quality);
+  }
+  report.collection = load_collection(store);
+  for (const SessionRecord& session : report.collection.sessions) {
+    report.quality.interrupted += session.interruptions;
+  }
+  report.servo = servo_quality(report.collection);
+  report.visual = report.collection.visual;
+  report.notes = chain_notes(store);
+  if (!prescription.draft.empty()) report.notes.push_back(prescription.draft);
+  return report;
+}
+
+nlohmann::ordered_json quality_object(const QualityReport& report) {
+  const SessionCounts& sessions = report.sessions;
+  const TrialQuality& quality = report.quality;
+  nlohmann::ordered_json object{{"study", report.study}, {"protocol", report.protocol}};
+  put_stamp(object, report.simulated, simulated_devices(report.collection));
+  object["unverified_device"] = !report.simulated && any_ran_unverified(report.collection.sessions);
+  put_state(object, report.state, report.pilot);
+  object["blinded"] = !report.state.unblinded;
+  object["participants"] = report.participants;
+  object["trials"] = report.trials;
+  object["sessions"] = {{"completed", sessions.completed}, {"open", sessions.open},
+                        {"stopped", sessions.stopped},     {"excluded", sessions.excluded},
+                        {"replaced", sessions.replaced},   {"erased", sessions.erased},
+                        {"withdrawn", sessions.withdrawn}, {"pilot", sessions.pilot}};
+  object["responses"] = {{"presented", quality.presented},
+                         {"answered", quality.answered},
+                         {"no_response", quality.no_response},
+                         {"paused", quality.paused},
+                         {"interrupted", quality.interrupted},
+                         {"not_repeated", quality.not_repeated}};
+  object["validity"] = {
+      {"trials", quality.with_trace},
+      {"valid", quality.valid},
+      {"share", figure_json(Proportion{quality.with_trace, quality.valid}.share())}};
+  object["servo"] = {{"overruns", quality.overruns},
+                     {"trials_with_overruns", quality.with_overruns},
+                     {"lowest_rate_hz", figure_json(quality.lowest_rate_hz)}};
+  if (report.servo) put_real_time(object["servo"], *report.servo);
+  object["outside"] = hands_json(report.collection);
+  if (report.visual) object["visual"] = true;
+  object["collection"] = collection_object(report.collection);
+  if (!report.notes.empty()) object["notes"] = report.notes;
+  return object;
+}
+
+std::string quality_json(const QualityReport& report) {
+  return json_text(quality_object(report));
+}
 
 std::string quality_text(const QualityReport& report) {
   std::string text =

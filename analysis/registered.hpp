@@ -1,5 +1,5 @@
-/// \file The registered question, its answer, and every departure from what was registered. Docs:
-/// docs/statistics.md, "The registered question".
+/// \file The registered question and its answer. Docs: docs/statistics.md, "The registered
+/// question".
 #pragma once
 
 #include "analysis/outcomes.hpp"
@@ -8,7 +8,6 @@
 #include "analysis/statistics/proportion.hpp"
 #include "analysis/statistics/strata.hpp"
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -93,17 +92,5 @@ struct StudyCourse {
 /// effect worth having, does not lie below minus the margin, or has no width.
 /// \pre result has at least one choice
 void judge(PrimaryResult& result, const StudyCourse& course);
-
-/// The sessions that a registered rule leaves out, each with the first rule that does, in words.
-[[nodiscard]] std::map<int, std::string> rules_met(const Outcomes& outcomes);
-
-/// Every departure from the plan, one sentence or two each, the gravest first.
-///
-/// \param ended_at_look  PrimaryResult: then fewer participants than planned are no departure
-[[nodiscard]] std::vector<std::string> departures_of(const Outcomes& outcomes,
-                                                     bool ended_at_look = false);
-
-/// \return "p is not adjusted for 2 unregistered looks at outcomes."; empty without such looks
-[[nodiscard]] std::string unadjusted_words(const std::vector<Look>& looks);
 
 }  // namespace touchtrial::analysis

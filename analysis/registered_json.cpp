@@ -1,3 +1,4 @@
+#include "analysis/departures.hpp"
 #include "analysis/json_figures.hpp"
 #include "analysis/study_head.hpp"
 #include "core/utc.hpp"

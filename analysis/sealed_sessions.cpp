@@ -102,31 +102,6 @@ struct OpenedTrials {
   }
 };
 
-}  // namespace
-
-void require_key_of(const store::StudyStore& store, const design::StudyKey& key) {
-  const store::StudyCommitment& commitment = store.commitment();
-  if (key.study_id != commitment.study_id) {
-    throw VerificationError(fmt::format(
-        "the key is of study {} ({}) and the database of study {} ({}); give the key "
-        "that was made with this database's pack",
-        one_line(key.study.name), key.study_id, one_line(commitment.study), commitment.study_id));
-  }
-  if (key.seal != commitment.seal) {
-    throw VerificationError(
-        fmt::format("the key does not match the seal of study {} ({}): key or study changed after "
-                    "the first session; give the key as it was then",
-                    one_line(commitment.study), to_hex(commitment.seal).substr(0, 16)));
-  }
-  if (key.investigator_signature != commitment.investigator) {
-    throw VerificationError(
-        "the database names another investigator than the key's holder: it was not begun with this "
-        "study's files");
-  }
-}
-
-namespace {
-
 std::optional<SecretKey> unwrapped_key(const std::optional<Bytes>& wrapped,
                                        const BoxKeys& investigator,
                                        const store::SessionRow& session) {
@@ -161,6 +136,27 @@ store::PersonKeys unwrapped_keys(const store::WrappedKeys& wrapped, const BoxKey
 }
 
 }  // namespace
+
+void require_key_of(const store::StudyStore& store, const design::StudyKey& key) {
+  const store::StudyCommitment& commitment = store.commitment();
+  if (key.study_id != commitment.study_id) {
+    throw VerificationError(fmt::format(
+        "the key is of study {} ({}) and the database of study {} ({}); give the key "
+        "that was made with this database's pack",
+        one_line(key.study.name), key.study_id, one_line(commitment.study), commitment.study_id));
+  }
+  if (key.seal != commitment.seal) {
+    throw VerificationError(
+        fmt::format("the key does not match the seal of study {} ({}): key or study changed after "
+                    "the first session; give the key as it was then",
+                    one_line(commitment.study), to_hex(commitment.seal).substr(0, 16)));
+  }
+  if (key.investigator_signature != commitment.investigator) {
+    throw VerificationError(
+        "the database names another investigator than the key's holder: it was not begun with this "
+        "study's files");
+  }
+}
 
 std::optional<SecretKey> participant_key(const store::StudyStore& store,
                                          const design::StudyKey& key,

@@ -1,5 +1,6 @@
 #include "analysis/study_head.hpp"
 
+#include "analysis/departures.hpp"
 #include "analysis/json_figures.hpp"
 
 #include <algorithm>

@@ -217,6 +217,97 @@ void add_about_study(const StudyStatus& status, std::vector<std::string>& left) 
   }
 }
 
+/// Words and numbers of a cell; "-" for nothing.
+std::string shown_or_dash(const std::string& text) {
+  return text.empty() ? "-" : text;
+}
+
+std::string number_or_dash(int number) {
+  return number == 0 ? "-" : std::to_string(number);
+}
+
+/// "2026-01-31 14:05" of an ISO date.
+std::string minute_of(const std::string& iso) {
+  constexpr std::size_t kDay = 10;
+  constexpr std::size_t kMinute = 16;
+  return iso.size() < kMinute
+             ? "-"
+             : iso.substr(0, kDay) + " " + iso.substr(kDay + 1, kMinute - kDay - 1);
+}
+
+std::string orders_sentence(const OrderBlocks& blocks) {
+  std::string text =
+      fmt::format("orders of methods: {}, dealt in blocks of {} enrolment numbers; {} complete",
+                  blocks.orders, blocks.orders, counted(blocks.complete, "block"));
+  for (const int n : blocks.open) text += fmt::format(", one with {} of {}", n, blocks.orders);
+  return text;
+}
+
+std::vector<std::string> balance_of(const StudyStatus& status) {
+  std::vector<std::string> lines = status.balance;
+  if (status.orders) lines.insert(lines.begin(), orders_sentence(*status.orders));
+  return lines;
+}
+
+std::string people_text(const StudyStatus& status) {
+  if (status.people.empty()) return "no participant so far\n";
+  std::vector<std::string> header{"participant",  "session", "number",      "state", "trials",
+                                  "opened (UTC)", "consent", "certificate", "device"};
+  const bool has_visits = status.visits > 1;
+  const bool has_groups = std::ranges::any_of(
+      status.people, [](const PersonStatus& one) { return !one.group.empty(); });
+  constexpr std::ptrdiff_t kVisit = 3;
+  if (has_visits) header.insert(header.begin() + kVisit, "visit");
+  if (has_groups) header.emplace_back("group");
+  if (status.stations > 0) header.emplace_back("station");
+  const std::set<std::string> numbers{"session", "number", "trials", "station"};
+  std::set<std::size_t> left;
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    if (!numbers.contains(header[i])) left.insert(i);
+  }
+  TextTable table(header, left);
+  constexpr std::size_t kDigits = 12;
+  for (const PersonStatus& one : status.people) {
+    std::vector<std::string> cells{shown_or_dash(one.participant),
+                                   number_or_dash(one.session),
+                                   number_or_dash(one.enrolment),
+                                   one.state,
+                                   one.session == 0 ? "-" : std::to_string(one.answered),
+                                   minute_of(one.opened_utc),
+                                   shown_or_dash(one.consent),
+                                   shown_or_dash(one.certificate == design::kUnverifiedDevice
+                                                     ? one.certificate
+                                                     : one.certificate.substr(0, kDigits)),
+                                   shown_or_dash(one.device)};
+    if (has_visits) {
+      cells.insert(cells.begin() + kVisit, fmt::format("{} of {}", one.visit, status.visits));
+    }
+    if (has_groups) cells.push_back(shown_or_dash(one.group));
+    if (status.stations > 0) cells.push_back(number_or_dash(one.station));
+    table.add(std::move(cells));
+  }
+  return table.text();
+}
+
+nlohmann::ordered_json person_json(const PersonStatus& one) {
+  return {{"participant", one.participant},
+          {"session", one.session},
+          {"enrolment", one.enrolment},
+          {"visit", one.visit},
+          {"group", one.group},
+          {"station", one.station},
+          {"state", one.state},
+          {"counts", one.counts},
+          {"may_go_on", one.may_go_on},
+          {"answered", one.answered},
+          {"opened_utc", one.opened_utc},
+          {"ended_utc", one.ended_utc},
+          {"consent", one.consent},
+          {"device", one.device},
+          {"certificate", one.certificate},
+          {"in_place_of", one.in_place_of}};
+}
+
 }  // namespace
 
 std::vector<VisitToCome> visits_to_come(const store::StudyStore& store) {
@@ -310,101 +401,6 @@ StudyStatus status_of(const store::StudyStore& store, const StatusSources& sourc
   add_about_study(status, status.left);
   return status;
 }
-
-namespace {
-
-/// Words and numbers of a cell; "-" for nothing.
-std::string shown_or_dash(const std::string& text) {
-  return text.empty() ? "-" : text;
-}
-
-std::string number_or_dash(int number) {
-  return number == 0 ? "-" : std::to_string(number);
-}
-
-/// "2026-01-31 14:05" of an ISO date.
-std::string minute_of(const std::string& iso) {
-  constexpr std::size_t kDay = 10;
-  constexpr std::size_t kMinute = 16;
-  return iso.size() < kMinute
-             ? "-"
-             : iso.substr(0, kDay) + " " + iso.substr(kDay + 1, kMinute - kDay - 1);
-}
-
-std::string orders_sentence(const OrderBlocks& blocks) {
-  std::string text =
-      fmt::format("orders of methods: {}, dealt in blocks of {} enrolment numbers; {} complete",
-                  blocks.orders, blocks.orders, counted(blocks.complete, "block"));
-  for (const int n : blocks.open) text += fmt::format(", one with {} of {}", n, blocks.orders);
-  return text;
-}
-
-std::vector<std::string> balance_of(const StudyStatus& status) {
-  std::vector<std::string> lines = status.balance;
-  if (status.orders) lines.insert(lines.begin(), orders_sentence(*status.orders));
-  return lines;
-}
-
-std::string people_text(const StudyStatus& status) {
-  if (status.people.empty()) return "no participant so far\n";
-  std::vector<std::string> header{"participant",  "session", "number",      "state", "trials",
-                                  "opened (UTC)", "consent", "certificate", "device"};
-  const bool has_visits = status.visits > 1;
-  const bool has_groups = std::ranges::any_of(
-      status.people, [](const PersonStatus& one) { return !one.group.empty(); });
-  constexpr std::ptrdiff_t kVisit = 3;
-  if (has_visits) header.insert(header.begin() + kVisit, "visit");
-  if (has_groups) header.emplace_back("group");
-  if (status.stations > 0) header.emplace_back("station");
-  const std::set<std::string> numbers{"session", "number", "trials", "station"};
-  std::set<std::size_t> left;
-  for (std::size_t i = 0; i < header.size(); ++i) {
-    if (!numbers.contains(header[i])) left.insert(i);
-  }
-  TextTable table(header, left);
-  constexpr std::size_t kDigits = 12;
-  for (const PersonStatus& one : status.people) {
-    std::vector<std::string> cells{shown_or_dash(one.participant),
-                                   number_or_dash(one.session),
-                                   number_or_dash(one.enrolment),
-                                   one.state,
-                                   one.session == 0 ? "-" : std::to_string(one.answered),
-                                   minute_of(one.opened_utc),
-                                   shown_or_dash(one.consent),
-                                   shown_or_dash(one.certificate == design::kUnverifiedDevice
-                                                     ? one.certificate
-                                                     : one.certificate.substr(0, kDigits)),
-                                   shown_or_dash(one.device)};
-    if (has_visits) {
-      cells.insert(cells.begin() + kVisit, fmt::format("{} of {}", one.visit, status.visits));
-    }
-    if (has_groups) cells.push_back(shown_or_dash(one.group));
-    if (status.stations > 0) cells.push_back(number_or_dash(one.station));
-    table.add(std::move(cells));
-  }
-  return table.text();
-}
-
-nlohmann::ordered_json person_json(const PersonStatus& one) {
-  return {{"participant", one.participant},
-          {"session", one.session},
-          {"enrolment", one.enrolment},
-          {"visit", one.visit},
-          {"group", one.group},
-          {"station", one.station},
-          {"state", one.state},
-          {"counts", one.counts},
-          {"may_go_on", one.may_go_on},
-          {"answered", one.answered},
-          {"opened_utc", one.opened_utc},
-          {"ended_utc", one.ended_utc},
-          {"consent", one.consent},
-          {"device", one.device},
-          {"certificate", one.certificate},
-          {"in_place_of", one.in_place_of}};
-}
-
-}  // namespace
 
 std::string status_text(const StudyStatus& status, const std::vector<NextCommand>& next) {
   std::string text = simulated_line(status.simulated);

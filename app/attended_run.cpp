@@ -54,6 +54,28 @@ class SharedSink final : public device::SampleSink {
   device::SampleSink* other_;
 };
 
+/// Keeps the worst lateness.
+class WatchedClock final : public device::ServoClock {
+ public:
+  WatchedClock(device::ServoClock& clock, std::atomic<std::int64_t>& worst_ns) noexcept
+      : clock_(clock), worst_ns_(worst_ns) {}
+
+  [[nodiscard]] Time now() noexcept override { return clock_.now(); }
+  void wait_until(Time time) noexcept override {
+    clock_.wait_until(time);
+    const std::int64_t late_ns = (clock_.now() - time).count();
+    // The reader may take the worst value at any moment; this one then counts for the next picture.
+    std::int64_t worst_ns = worst_ns_.load(std::memory_order_relaxed);
+    while (late_ns > worst_ns &&
+           !worst_ns_.compare_exchange_weak(worst_ns, late_ns, std::memory_order_relaxed)) {
+    }
+  }
+
+ private:
+  device::ServoClock& clock_;
+  std::atomic<std::int64_t>& worst_ns_;
+};
+
 device::ServoOptions options_for(const device::SafetyLimits& limits, double rate_hz) {
   device::ServoOptions options;
   options.limits = limits;
@@ -169,7 +191,8 @@ std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
                                  .parameters = &parameters_};
   SharedSink samples(ring_, sink);
   device::RunningServo running(thread_, control_, [&] {
-    device::PacedClock clock(device::PacedClock::usual_spin(thread_.scheduling().policy));
+    device::PacedClock paced(device::PacedClock::usual_spin(thread_.scheduling().policy));
+    WatchedClock clock(paced, worst_late_ns_);
     report = device::run_servo(device_, force, samples, options_, clock, hooks);
   });
   while (running.runs()) {
@@ -274,7 +297,8 @@ LiveReadings AttendedRun::collect(const PhaseName& phase) {
     for (std::size_t i = 0; i < count; ++i) history_.add(samples[i]);
   }
   const device::ServoState& newest = state_.get();
-  history_.add_lateness(newest.lateness_us);
+  const std::int64_t late_ns = worst_late_ns_.exchange(0, std::memory_order_relaxed);
+  history_.add_lateness(1e-3 * static_cast<double>(late_ns));
   return {shown_info_, phase(newest.tick), newest, options_.rate_hz};
 }
 

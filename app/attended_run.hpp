@@ -145,7 +145,8 @@ class AttendedRun {
   device::FlightRecorder recorder_;
   device::SampleRing ring_;  ///< from the servo to the history
   ReadingsHistory history_;
-  device::DeviceInfo shown_info_;  ///< without a workspace where `device_` is placed
+  std::atomic<std::int64_t> worst_late_ns_{0};  ///< since the last picture
+  device::DeviceInfo shown_info_;               ///< without a workspace where `device_` is placed
   device::ServoThread thread_;
   device::Watchdog watchdog_;
   device::StopOnSignals signals_;

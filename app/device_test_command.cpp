@@ -221,9 +221,8 @@ fs::path record_path(const TestArguments& arguments) {
 }
 
 constexpr const char* kKeys =
-    "q ends, space releases the force, Ctrl-C halts at once; shown: time, position ({}), force, "
-    "ticks "
-    "per second, lateness\n";
+    "q ends, space releases the force, Ctrl-C halts at once\n"
+    "shown: time, position ({}), force, ticks per second, lateness\n";
 
 /// One run without force, in the device's own frame, ready or not.
 void watch(const TestArguments& arguments, device::HapticDevice& device, AttendedRun& run,

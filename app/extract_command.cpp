@@ -122,7 +122,7 @@ engine::Extraction<Real> extracted(const fs::path& path, const GreyImage& image,
 engine::WantedPlanes wanted_planes(const ExtractArguments& arguments) {
   engine::WantedPlanes wanted =
       arguments.dump.empty() ? engine::WantedPlanes{} : engine::WantedPlanes::all();
-  wanted.picture = arguments.mapping == engine::kMappingNames.front();
+  wanted.picture = arguments.mapping == engine::kMappingNames.front().name;
   wanted.force = arguments.neighbourhood == kForceNeighbourhood &&
                  (!arguments.dump.empty() || !arguments.arrows.empty());
   return wanted;
@@ -133,8 +133,7 @@ template <typename Real>
 void complete(const ExtractArguments& arguments, engine::Extraction<Real>& extraction) {
   if (extraction.picture.empty()) {
     extraction.picture = engine::texture_picture(
-        extraction.texture,
-        *engine::choice_named<engine::Mapping>(engine::kMappingNames, arguments.mapping));
+        extraction.texture, *value_in(engine::kMappingNames, arguments.mapping));
   }
   const bool needs_force = !arguments.dump.empty() || !arguments.arrows.empty();
   if (needs_force && extraction.force.x.empty()) {

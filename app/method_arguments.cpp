@@ -169,13 +169,10 @@ engine::ExtractionOptions extraction_options(const CLI::App& command,
   if (options.method == engine::Method::fixed && command.count("--order") == 0) {
     throw UsageError("extract: --method fixed needs --order V, 0 <= V < 1");
   }
-  options.norm = *engine::choice_named<engine::Norm>(engine::kNormNames, arguments.norm);
-  options.gradient =
-      *engine::choice_named<engine::Gradient>(engine::kGradientNames, arguments.gradient);
-  options.combine =
-      *engine::choice_named<engine::Combine>(engine::kCombineNames, arguments.combine);
-  options.control =
-      *engine::choice_named<engine::Control>(engine::kControlNames, arguments.control);
+  options.norm = *value_in(engine::kNormNames, arguments.norm);
+  options.gradient = *value_in(engine::kGradientNames, arguments.gradient);
+  options.combine = *value_in(engine::kCombineNames, arguments.combine);
+  options.control = *value_in(engine::kControlNames, arguments.control);
   refuse_unused_seed(command, options.control);
   if (command.count("--components") > 0) read_components(arguments.components, options.tv_gabor);
   check(options);

@@ -33,9 +33,10 @@ void add_method_options(CLI::App& command, MethodArguments& arguments);
 [[nodiscard]] engine::ExtractionOptions extraction_options(const CLI::App& command,
                                                            const MethodArguments& arguments);
 
-/// The names as a list for the parser.
-template <std::size_t size>
-[[nodiscard]] std::vector<std::string> words_of(const std::array<std::string_view, size>& names) {
+/// The words of a table as a list for the parser.
+template <typename Value, std::size_t size>
+[[nodiscard]] std::vector<std::string> words_of(const std::array<Named<Value>, size>& table) {
+  const auto names = names_in(table);
   return {names.begin(), names.end()};
 }
 

@@ -1,165 +1,145 @@
-// touchtrial-bench: run time against error, beside peers.
-#include "app/console.hpp"
-#include "bench/cases/cases.hpp"
-#include "bench/goals/goal.hpp"
-#include "bench/inputs/pictures.hpp"
-#include "bench/measure/simd_target.hpp"
-#include "bench/results.hpp"
-#include "core/bytes.hpp"
+// touchtrial-bench: the table's cases as benchmarks of Google Benchmark. scripts/bench runs it row
+// by row and compares.
+#include "bench/inputs.hpp"
+#include "bench/rows.hpp"
 #include "core/errors.hpp"
-#include "core/files.hpp"
 #include "tests/engine/simd/targets.hpp"
 
+#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <benchmark/benchmark.h>
 #include <opencv2/core/utility.hpp>
+#include <opencv2/core/version.hpp>
 #include <tbb/global_control.h>
 
 namespace touchtrial::bench {
 namespace {
 
-namespace fs = std::filesystem;
-
-const fs::path kDocs = fs::path(TOUCHTRIAL_SOURCE_DIR) / "docs" / "benchmarks";
+constexpr auto kThreads = tbb::global_control::max_allowed_parallelism;
+constexpr int kRepetitions = 21;
+constexpr int kSlowRepetitions = 5;
 
 struct Arguments {
-  fs::path json;
-  fs::path image;
+  std::string name;
+  std::filesystem::path image;
   std::string target;
-  std::string only;
-  int runs = 1;
-  bool docs = false;
+  int runs = 0;
   bool quick = false;
-  bool check = false;
 };
 
-Scope scope_for(const Arguments& arguments, const std::vector<std::string>& targets) {
-  Scope scope;
-  scope.targets = targets;
-  if (arguments.quick) {
-    scope.sizes_px = {kUsualSize_px};
-    scope.more_sizes_px = {64};
-    scope.radii = {kUsualRadius};
+/// A case whose job is made when it is first measured, and kept.
+class MadeCase {
+ public:
+  /// \param goal  of the case's row; none for peers and bounds
+  MadeCase(Case one, const Row& row, const Goal& goal)
+      : case_(std::move(one)),
+        goal_(goal),
+        goal_name_("goal: " + std::string(goal.limits)),
+        error_name_("error: " + row.error_unit),
+        count_name_("count: " + row.count_unit) {}
+
+  void measure(benchmark::State& state) {
+    const tbb::global_control threads(kThreads, static_cast<std::size_t>(case_.threads));
+    run(1);  // finds the caches as it leaves them itself
+    if (job_->error && !error_) error_ = job_->error();
+    if (error_.value_or(0.0) > case_.tolerance) {
+      return state.SkipWithError("its error is so large that it computes something else");
+    }
+    while (state.KeepRunningBatch(case_.operations)) {
+      if (job_->run) job_->run();
+    }
+    if (error_) state.counters[error_name_] = *error_;
+    if (job_->count) state.counters[count_name_] = job_->count();
+    if (!goal_.limits.empty()) state.counters[goal_name_] = goal_.target;
   }
-  return scope;
+
+  void run(int runs) {
+    force_simd_target(case_.simd_target);
+    if (!job_) job_ = case_.make();
+    for (int i = 0; job_->run && i < runs; ++i) job_->run();
+  }
+
+ private:
+  Case case_;
+  Goal goal_;
+  std::string goal_name_, error_name_, count_name_;
+  std::optional<Job> job_;
+  std::optional<double> error_;
+};
+
+void register_case(const std::string& name, Case one, const Row& row, const Goal& goal,
+                   const Arguments& arguments) {
+  if (one.simd_target.empty()) one.simd_target = arguments.target;
+  const auto made = std::make_shared<MadeCase>(one, row, goal);
+  if (arguments.runs > 0) return made->run(arguments.runs);
+  auto* const registered = benchmark::RegisterBenchmark(
+      name.c_str(), [=](benchmark::State& state) { made->measure(state); });
+  registered->Unit(benchmark::kMicrosecond);
+  if (one.clock == Clock::wall) registered->UseRealTime();
+  if (one.clock == Clock::processor) registered->MeasureProcessCPUTime();
+  if (one.clock == Clock::none) registered->Iterations(1);
+  const bool once = arguments.quick || one.clock == Clock::none;
+  registered->Repetitions(once ? 1 : one.is_slow ? kSlowRepetitions : kRepetitions);
 }
 
-/// Keeps the engine's work on one thread while this object lives, as its peers' is.
-using OneThread = tbb::global_control;
-constexpr auto kThreads = tbb::global_control::max_allowed_parallelism;
-
-std::vector<GoalResult> take_goals(const std::vector<std::string>& targets, const Effort& effort) {
-  std::vector<Goal> goals = kernel_goals(targets);
-  for (Goal& goal : error_goals(targets)) goals.push_back(std::move(goal));
-  const std::size_t on_one_thread = goals.size();
-  for (Goal& goal : program_goals()) goals.push_back(std::move(goal));
-  std::vector<GoalResult> results;
-  const auto progress = app::progress_bar("goals");
-  for (std::size_t i = 0; i < goals.size(); ++i) {
-    std::optional<OneThread> one_thread;
-    if (i < on_one_thread) one_thread.emplace(kThreads, 1);
-    for (GoalResult& result : goals[i](effort)) results.push_back(std::move(result));
-    progress(static_cast<int>(i + 1), static_cast<int>(goals.size()));
+/// \return whether a row or a case has the name
+bool register_rows(const Rows& rows, const Arguments& arguments) {
+  bool found = false;
+  for (const Row& row : rows) {
+    const auto add = [&](const std::string& who, const Case& one, const Goal& goal) {
+      const std::string name = row.what + " | " + who;
+      if (!arguments.name.empty() && arguments.name != row.what && arguments.name != name) return;
+      found = true;
+      register_case(name, one, row, goal, arguments);
+    };
+    add(row.ours.who, row.ours, row.goal);
+    for (const Case& peer : row.peers) add(peer.who, peer, {});
+    for (const Case& bound : row.bounds) add("bound: " + bound.who, bound, {});
   }
-  return results;
+  return found;
 }
 
-/// Runs one case without measuring it, for external profilers.
-void run_only(const Arguments& arguments, const Scope& scope) {
-  for (const Case& one : all_cases(scope)) {
-    if (name_of(one) != arguments.only) continue;
-    const ForcedTarget forced(one.target);
-    const Job job = one.make();
-    for (int i = 0; i < arguments.runs; ++i) job.run();
-    return;
-  }
-  throw UsageError("--only: there is no case \"" + arguments.only +
-                   "\"; give WORK/WHO/INPUT/SIZE/K=RADIUS, with the words of the rows of "
-                   "docs/benchmarks/results.json");
-}
-
-/// Names what has become slower than the committed results.
-/// \throws Error if there is such a goal
-void check(const std::vector<GoalResult>& goals) {
-  const std::string committed = text_of(ByteView(read_file(kDocs / "results.json")));
-  const std::vector<std::string> slower = slower_than_committed(goals, committed);
-  const std::string there = processor_of(committed);
-  const std::string here = this_machine().processor;
-  if (there != here) {
-    app::print("note: the committed results are of another processor (" + there + ", this is " +
-               here + "), on which ratios may differ by more than a tenth\n");
-  }
-  for (const std::string& line : slower) app::print("slower: " + line + "\n");
-  if (!slower.empty()) {
-    throw Error(
-        fmt::format("{} of the ratios are more than a tenth above those of "
-                    "docs/benchmarks/results.json",
-                    slower.size()));
-  }
-  app::print("no ratio is more than a tenth above those of docs/benchmarks/results.json\n");
-}
-
-void run(const Arguments& arguments) {
+void run(Arguments arguments) {
   cv::setNumThreads(1);
   if (!arguments.image.empty()) choose_timed_picture(arguments.image);
-  choose_usual_target(arguments.target);
-  const std::vector<std::string> targets =
-      arguments.target.empty() ? simd_targets() : std::vector{arguments.target};
-  const Scope scope = scope_for(arguments, targets);
-  if (!arguments.only.empty()) return run_only(arguments, scope);
-  const Effort effort = arguments.quick ? quick_effort() : Effort{};
-  Results results;
-  results.goals = take_goals(targets, effort);
-  app::print(goals_table(results.goals));
-  if (arguments.check) return check(results.goals);
-  if (arguments.json.empty() && !arguments.docs) return;
-  const OneThread one_thread(kThreads, 1);
-  results.rows = measure_rows(all_cases(scope), effort, app::progress_bar("rows"));
-  if (!arguments.json.empty()) replace_file(arguments.json, results_json(this_machine(), results));
-  if (arguments.docs) {
-    results.courses = solver_courses(square_of(timed_picture(), kUsualSize_px));
-    publish(this_machine(), results, kDocs);
+  const Scope scope{arguments.target.empty() ? simd_targets() : std::vector{arguments.target},
+                    arguments.quick};
+  arguments.target = scope.simd_targets.front();
+  benchmark::AddCustomContext("compiler", TOUCHTRIAL_COMPILER);
+  benchmark::AddCustomContext("opencv", CV_VERSION);
+  benchmark::AddCustomContext("instruction_set", instruction_set_of(scope.simd_targets.front()));
+  bool found = false;
+  for (const Rows& rows : {extraction_rows(scope), metric_rows(scope), servo_rows(),
+                           error_rows(scope), study_rows()}) {
+    found = register_rows(rows, arguments) || found;
   }
+  if (!found) {
+    throw UsageError(arguments.name +
+                     ": is no row and no case; --benchmark_list_tests=true lists them");
+  }
+  if (arguments.runs == 0) benchmark::RunSpecifiedBenchmarks();
 }
 
-void set_up(CLI::App& program, Arguments& arguments) {
-  program.add_option("--json", arguments.json,
-                     "Measure every kernel at every size and write the results into this file");
-  program.add_option("--image", arguments.image,
-                     "Picture on which times are taken (default: bark.png)");
+/// \return 0 done, 1 failed, 2 bad arguments
+int run_program(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  CLI::App program("The table's cases as benchmarks; takes Google Benchmark's options as well");
+  Arguments arguments;
+  program.add_option("NAME", arguments.name, "Only this row, or this case: \"ROW | CASE\"");
+  program.add_option("--image", arguments.image, "Take times on this picture instead of bark.png");
   program.add_option("--target", arguments.target, "Use only this SIMD target, for instance AVX2")
       ->check(CLI::IsMember(simd_targets()));
-  CLI::Option* const only =
-      program.add_option("--only", arguments.only, "Run only this case and measure nothing");
-  program.add_option("--runs", arguments.runs, "How often to run it")
-      ->check(CLI::Range(0, 1000000))
-      ->needs(only)
-      ->capture_default_str();
-  CLI::Option* const docs = program.add_flag(
-      "--docs", arguments.docs, "As --json, and update docs/benchmarks with its pictures");
-  program
-      .add_flag("--check", arguments.check,
-                "Compare the ratios to peers and bounds with the committed results, name what is "
-                "slower by more than a tenth, and fail if anything is")
-      ->excludes(docs);
-  program
-      .add_flag("--quick", arguments.quick,
-                "One size and few repetitions, to check that everything works")
-      ->excludes(docs);
-}
-
-/// \return 0 done (whether goals are met or not), 1 failed, 2 bad arguments
-int run_program(int argc, char** argv) {
-  CLI::App program("Run time against error: the engine's kernels beside their peers");
-  Arguments arguments;
-  set_up(program, arguments);
+  program.add_option("--runs", arguments.runs, "Run the case this often and measure nothing");
+  program.add_flag("--quick", arguments.quick, "One repetition, and few pictures");
   try {
     program.parse(argc, argv);
     run(arguments);

@@ -2,7 +2,6 @@
 /// `std::to_array<Named<Value>>({{"word", value}, ..})`.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -21,16 +20,20 @@ struct Named {
 template <typename Value, std::size_t size>
 [[nodiscard]] constexpr std::string_view name_in(const std::array<Named<Value>, size>& table,
                                                  Value value) noexcept {
-  const auto found = std::ranges::find(table, value, &Named<Value>::value);
-  return found == table.end() ? std::string_view("unknown") : found->name;
+  for (const Named<Value>& entry : table) {
+    if (entry.value == value) return entry.name;
+  }
+  return "unknown";
 }
 
 /// \return the value that a word stands for; nothing for a word that is not in the table
 template <typename Value, std::size_t size>
 [[nodiscard]] constexpr std::optional<Value> value_in(const std::array<Named<Value>, size>& table,
                                                       std::string_view name) noexcept {
-  const auto found = std::ranges::find(table, name, &Named<Value>::name);
-  return found == table.end() ? std::nullopt : std::optional(found->value);
+  for (const Named<Value>& entry : table) {
+    if (entry.name == name) return entry.value;
+  }
+  return std::nullopt;
 }
 
 /// \return all words, in the order of the table
@@ -38,7 +41,7 @@ template <typename Value, std::size_t size>
 [[nodiscard]] constexpr std::array<std::string_view, size> names_in(
     const std::array<Named<Value>, size>& table) noexcept {
   std::array<std::string_view, size> names;
-  std::ranges::transform(table, names.begin(), &Named<Value>::name);
+  for (std::size_t i = 0; i < size; ++i) names[i] = table[i].name;
   return names;
 }
 

@@ -2,6 +2,8 @@
 /// Source: docs/method.md, "Options", "TV-Gabor", "Other extractors" and "Controls".
 #pragma once
 
+#include "core/named.hpp"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -76,29 +78,16 @@ enum class Control {
   phase_scrambled  ///< the same spectrum with random phases: no structure
 };
 
-/// The words for the values, in the order of the enumerations.
-inline constexpr std::array<std::string_view, 3> kNormNames = {"additive", "sum", "none"};
-inline constexpr std::array<std::string_view, 3> kMappingNames = {"offset", "abs", "stretch"};
-inline constexpr std::array<std::string_view, 3> kGradientNames = {"sobel", "prewitt", "central"};
-inline constexpr std::array<std::string_view, 3> kCombineNames = {"sum", "l2", "max"};
-inline constexpr std::array<std::string_view, 2> kControlNames = {"none", "phase-scrambled"};
-
-/// The value that a word of one of these tables stands for; nothing for any other word.
-template <typename Choice, std::size_t size>
-[[nodiscard]] constexpr std::optional<Choice> choice_named(
-    const std::array<std::string_view, size>& names, std::string_view name) {
-  for (std::size_t i = 0; i < size; ++i) {
-    if (names[i] == name) return static_cast<Choice>(i);
-  }
-  return std::nullopt;
-}
-
-/// The word for a value.
-template <typename Choice, std::size_t size>
-[[nodiscard]] constexpr std::string_view name_among(const std::array<std::string_view, size>& names,
-                                                    Choice choice) {
-  return names.at(static_cast<std::size_t>(choice));
-}
+inline constexpr auto kNormNames = std::to_array<Named<Norm>>(
+    {{"additive", Norm::additive}, {"sum", Norm::sum}, {"none", Norm::none}});
+inline constexpr auto kMappingNames = std::to_array<Named<Mapping>>(
+    {{"offset", Mapping::offset}, {"abs", Mapping::abs}, {"stretch", Mapping::stretch}});
+inline constexpr auto kGradientNames = std::to_array<Named<Gradient>>(
+    {{"sobel", Gradient::sobel}, {"prewitt", Gradient::prewitt}, {"central", Gradient::central}});
+inline constexpr auto kCombineNames = std::to_array<Named<Combine>>(
+    {{"sum", Combine::sum}, {"l2", Combine::l2}, {"max", Combine::max}});
+inline constexpr auto kControlNames = std::to_array<Named<Control>>(
+    {{"none", Control::none}, {"phase-scrambled", Control::phase_scrambled}});
 
 /// One oscillation of the Gabor kernel.
 struct GaborComponent {

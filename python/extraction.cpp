@@ -68,10 +68,11 @@ struct PictureAndForce {
 };
 
 PictureAndForce picture_and_force(const std::string& mapping, int neighbourhood) {
-  const auto chosen = engine::choice_named<engine::Mapping>(engine::kMappingNames, mapping);
+  const auto chosen = value_in(engine::kMappingNames, mapping);
   if (!chosen) {
-    throw py::value_error("mapping: there is no " + mapping + "; choose among " +
-                          listed(engine::kMappingNames, ", ", [](auto name) { return name; }));
+    throw py::value_error(
+        "mapping: there is no " + mapping + "; choose among " +
+        listed(engine::kMappingNames, ", ", [](const auto& one) { return one.name; }));
   }
   if (neighbourhood < 3 || neighbourhood > kLargestForceNeighbourhood || neighbourhood % 2 == 0) {
     throw py::value_error("neighbourhood: is " + std::to_string(neighbourhood) +

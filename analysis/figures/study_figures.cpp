@@ -101,44 +101,6 @@ std::string side_box(const Sheet& sheet, double top_cm, const std::vector<std::s
   return script;
 }
 
-}  // namespace
-
-std::optional<Figure> flow_figure(const StudyHead& report) {
-  const ParticipantFlow& flow = report.collection.flow;
-  if (flow.enrolled == 0) return {};
-  std::vector<std::string> lines = left_out(flow);
-  const int missing = flow.enrolled - flow.analysed;
-  if (!lines.empty()) lines.insert(lines.begin(), fmt::format("not analysed (n = {})", missing));
-  const double side_cm = lines.empty() ? 0.0 : 0.3 + kLine_cm * static_cast<double>(lines.size());
-  const double between_cm = std::max(1.0, side_cm + 0.5);
-  const double top_cm = 0.6;
-  const Sheet sheet{kWidth_cm, top_cm + 1.2 + between_cm + 1.2 + 0.3, report.simulated};
-  const double middle_cm = kBoxLeft_cm + 0.5 * kBoxWidth_cm;
-  const double turn_cm = top_cm + 1.2 + 0.5 * between_cm;
-
-  Figure figure = figure_on(sheet, "participant-flow");
-  figure.caption = stamped(report.simulated, "participants from enrolment to analysis.");
-  figure.alt = fmt::format("{} participants enrolled, {} analysed with {} trials.", flow.enrolled,
-                           flow.analysed, report.trials);
-  for (const std::string& line : lines)
-    figure.alt += " " + line.substr(line.find_first_not_of(' ')) + ";";
-  figure.script =
-      sheet_head(sheet) + panel_at(sheet, {0.0, 0.0, 0.0, 0.0}) +
-      "unset border\nunset tics\nunset grid\nset xrange [0:1]\nset yrange [0:1]\n" +
-      main_box(sheet, top_cm, fmt::format("enrolled (n = {})", flow.enrolled), "") +
-      arrow_of(sheet, middle_cm, top_cm + 1.2, middle_cm, top_cm + 1.2 + between_cm) +
-      main_box(sheet, top_cm + 1.2 + between_cm, fmt::format("analysed (n = {})", flow.analysed),
-               fmt::format("{} trials", report.trials));
-  if (!lines.empty()) {
-    figure.script += arrow_of(sheet, middle_cm, turn_cm, kSideLeft_cm, turn_cm) +
-                     side_box(sheet, turn_cm - 0.5 * side_cm, lines);
-  }
-  figure.script += "plot NaN notitle\n";
-  return figure;
-}
-
-namespace {
-
 constexpr std::size_t kMostPoints = 300;
 /// A logarithmic axis has no zero.
 constexpr double kLeast_us = 0.1;
@@ -216,6 +178,40 @@ std::string period_line(std::span<const ServoTrial> trials) {
 }
 
 }  // namespace
+
+std::optional<Figure> flow_figure(const StudyHead& report) {
+  const ParticipantFlow& flow = report.collection.flow;
+  if (flow.enrolled == 0) return {};
+  std::vector<std::string> lines = left_out(flow);
+  const int missing = flow.enrolled - flow.analysed;
+  if (!lines.empty()) lines.insert(lines.begin(), fmt::format("not analysed (n = {})", missing));
+  const double side_cm = lines.empty() ? 0.0 : 0.3 + kLine_cm * static_cast<double>(lines.size());
+  const double between_cm = std::max(1.0, side_cm + 0.5);
+  const double top_cm = 0.6;
+  const Sheet sheet{kWidth_cm, top_cm + 1.2 + between_cm + 1.2 + 0.3, report.simulated};
+  const double middle_cm = kBoxLeft_cm + 0.5 * kBoxWidth_cm;
+  const double turn_cm = top_cm + 1.2 + 0.5 * between_cm;
+
+  Figure figure = figure_on(sheet, "participant-flow");
+  figure.caption = stamped(report.simulated, "participants from enrolment to analysis.");
+  figure.alt = fmt::format("{} participants enrolled, {} analysed with {} trials.", flow.enrolled,
+                           flow.analysed, report.trials);
+  for (const std::string& line : lines)
+    figure.alt += " " + line.substr(line.find_first_not_of(' ')) + ";";
+  figure.script =
+      sheet_head(sheet) + panel_at(sheet, {0.0, 0.0, 0.0, 0.0}) +
+      "unset border\nunset tics\nunset grid\nset xrange [0:1]\nset yrange [0:1]\n" +
+      main_box(sheet, top_cm, fmt::format("enrolled (n = {})", flow.enrolled), "") +
+      arrow_of(sheet, middle_cm, top_cm + 1.2, middle_cm, top_cm + 1.2 + between_cm) +
+      main_box(sheet, top_cm + 1.2 + between_cm, fmt::format("analysed (n = {})", flow.analysed),
+               fmt::format("{} trials", report.trials));
+  if (!lines.empty()) {
+    figure.script += arrow_of(sheet, middle_cm, turn_cm, kSideLeft_cm, turn_cm) +
+                     side_box(sheet, turn_cm - 0.5 * side_cm, lines);
+  }
+  figure.script += "plot NaN notitle\n";
+  return figure;
+}
 
 std::optional<Figure> servo_figure(const StudyHead& report) {
   const std::vector<ServoTrial>& trials = report.collection.servo_trials;

@@ -69,18 +69,6 @@ std::string sample_at(const Sheet& sheet, const LegendEntry& entry, double x_cm,
   return line_entry(sheet, entry, x_cm, y_cm);
 }
 
-}  // namespace
-
-std::string_view series_colour(std::size_t n) noexcept {
-  return kColours[n % kColours.size()];
-}
-
-int series_mark(std::size_t n) noexcept {
-  return kMarks[n % kMarks.size()];
-}
-
-namespace {
-
 double linear(int channel) noexcept {
   const double c = channel / 255.0;
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
@@ -94,6 +82,14 @@ constexpr Rgb kBlack{0, 0, 0};
 constexpr Rgb kWhite{255, 255, 255};
 
 }  // namespace
+
+std::string_view series_colour(std::size_t n) noexcept {
+  return kColours[n % kColours.size()];
+}
+
+int series_mark(std::size_t n) noexcept {
+  return kMarks[n % kMarks.size()];
+}
 
 Rgb shade_of(double share) noexcept {
   const auto between = [share](double from, double to) {

@@ -298,42 +298,6 @@ Cited bands_sentence(const Characteristic& of) {
   return {text + "."};
 }
 
-}  // namespace
-
-Section participants_section(const Collection& collection, const StudyHead* head) {
-  Section section{"participants", "Participants", {}};
-  if (head != nullptr) section.blocks.emplace_back(people_table(*head));
-  if (head != nullptr) {
-    for (const Characteristic& one : head->demographics) {
-      section.blocks.emplace_back(bands_sentence(one));
-    }
-  }
-  section.blocks.emplace_back(flow_of(collection.flow));
-  for (const std::string& note : people_notes(collection)) {
-    section.blocks.emplace_back(Cited{note, {}});
-  }
-  section.blocks.emplace_back(conditions_of(collection));
-  if (auto deviations = deviations_table(collection)) {
-    section.blocks.emplace_back(std::move(*deviations));
-  } else {
-    const bool has_departures = head != nullptr && !head->departures.empty();
-    section.blocks.emplace_back(Cited{
-        has_departures ? "No deviation was recorded during sessions; departures from the plan are "
-                         "listed above."
-                       : "No deviation from the protocol was recorded.",
-        {}});
-  }
-  if (head != nullptr && !head->looks.empty()) {
-    section.blocks.emplace_back(looks_table(head->looks, collection.is_public));
-  }
-  if (auto sessions = sessions_table(collection)) {
-    section.blocks.emplace_back(std::move(*sessions));
-  }
-  return section;
-}
-
-namespace {
-
 std::vector<Cell> exploration_row(const std::string& what, const Quartiles& of, int decimals,
                                   double unit = 1.0) {
   const auto cell = [&](std::optional<double> value) {
@@ -368,10 +332,6 @@ Table explorations_table(const StudyHead& head, std::size_t index) {
   return table;
 }
 
-}  // namespace
-
-namespace {
-
 /// "No (12), Sometimes (5)", or the quartiles of numbers.
 std::string said_in(const QuestionSummary& of) {
   if (of.kind == design::QuestionKind::number) {
@@ -393,6 +353,38 @@ std::string said_in(const QuestionSummary& of) {
 }
 
 }  // namespace
+
+Section participants_section(const Collection& collection, const StudyHead* head) {
+  Section section{"participants", "Participants", {}};
+  if (head != nullptr) section.blocks.emplace_back(people_table(*head));
+  if (head != nullptr) {
+    for (const Characteristic& one : head->demographics) {
+      section.blocks.emplace_back(bands_sentence(one));
+    }
+  }
+  section.blocks.emplace_back(flow_of(collection.flow));
+  for (const std::string& note : people_notes(collection)) {
+    section.blocks.emplace_back(Cited{note, {}});
+  }
+  section.blocks.emplace_back(conditions_of(collection));
+  if (auto deviations = deviations_table(collection)) {
+    section.blocks.emplace_back(std::move(*deviations));
+  } else {
+    const bool has_departures = head != nullptr && !head->departures.empty();
+    section.blocks.emplace_back(Cited{
+        has_departures ? "No deviation was recorded during sessions; departures from the plan are "
+                         "listed above."
+                       : "No deviation from the protocol was recorded.",
+        {}});
+  }
+  if (head != nullptr && !head->looks.empty()) {
+    section.blocks.emplace_back(looks_table(head->looks, collection.is_public));
+  }
+  if (auto sessions = sessions_table(collection)) {
+    section.blocks.emplace_back(std::move(*sessions));
+  }
+  return section;
+}
 
 Section said_section(const StudyHead& head) {
   Section section{"said", "What participants said", {}};

@@ -1,3 +1,4 @@
+#include "analysis/departures.hpp"
 #include "analysis/page/frame_sections.hpp"
 #include "analysis/page/wording.hpp"
 #include "analysis/text_figures.hpp"
@@ -204,6 +205,18 @@ Table choices_table(const StudyHead& head) {
   return table;
 }
 
+/// Whether a column's title announces p values: "p", "sign-flip p", "p, Holm", "McNemar mid-p",
+/// "p of the exchange".
+bool is_of_p(const Column& column) {
+  const std::string_view title = column.title;
+  return title == "p" || title.starts_with("p, ") || title.starts_with("p of ") ||
+         title.ends_with(" p") || title.ends_with("-p");
+}
+
+bool tells_p(const std::string& text) {
+  return text.find("p = ") != std::string::npos || text.find("p < ") != std::string::npos;
+}
+
 }  // namespace
 
 std::vector<Block> verdict_blocks(const StudyHead& head) {
@@ -224,22 +237,6 @@ std::vector<Block> verdict_blocks(const StudyHead& head) {
   if (head.primary) blocks.emplace_back(choices_table(head));
   return blocks;
 }
-
-namespace {
-
-/// Whether a column's title announces p values: "p", "sign-flip p", "p, Holm", "McNemar mid-p",
-/// "p of the exchange".
-bool is_of_p(const Column& column) {
-  const std::string_view title = column.title;
-  return title == "p" || title.starts_with("p, ") || title.starts_with("p of ") ||
-         title.ends_with(" p") || title.ends_with("-p");
-}
-
-bool tells_p(const std::string& text) {
-  return text.find("p = ") != std::string::npos || text.find("p < ") != std::string::npos;
-}
-
-}  // namespace
 
 void say_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sections) {
   const std::string words = unadjusted_words(looks);

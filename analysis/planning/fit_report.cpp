@@ -111,43 +111,6 @@ std::string device_lines(const FitOrigin& origin) {
          analysis::simulated_on_line(origin.felt_on);
 }
 
-}  // namespace
-
-std::string fit_text(const SubjectFit& fit, const FitOrigin& origin) {
-  std::string text = device_lines(origin) + analysis::simulated_line(origin.simulated);
-  text += fmt::format(
-      "{}: {}, {} with an answer{}{}{}\n", origin.study,
-      analysis::counted(fit.participants, "participant"), analysis::counted(fit.trials, "trial"),
-      fit.no_response > 0 ? fmt::format(", {} without left out", fit.no_response) : "",
-      origin.pilot ? ", PILOT" : "", origin.interim ? ", INTERIM LOOK" : "");
-  text += estimates_text(fit, origin) + people_text(fit) + swap_text(fit);
-  for (std::size_t m = 0; m < fit.methods.size(); ++m) text += confusion_text(fit, m, origin);
-  text += goodness_text(fit);
-  if (!fit.warnings.empty()) text += analysis::heading("to bear in mind", origin.simulated);
-  for (const std::string& warning : fit.warnings) text += analysis::wrapped("  - ", warning);
-  return text + analysis::simulated_line(origin.simulated);
-}
-
-std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin) {
-  std::string text = device_lines(origin) + origin.study + ": a subject for published accuracies\n";
-  analysis::TextTable table({"class", "published", "expected of the fit", "difference, points"});
-  for (std::size_t c = 0; c < fit.classes.size(); ++c) {
-    table.add({fit.classes[c], analysis::percent_of_share(fit.wanted[c]),
-               analysis::percent_of_share(fit.reached[c]),
-               fmt::format("{:+.2f}", 100.0 * (fit.reached[c] - fit.wanted[c]))});
-  }
-  text += table.text() + analysis::wrapped("  ", biases_text(fit.subject));
-  const bool others_fit = fit.warnings.empty();
-  text += analysis::wrapped(
-      "  ", fmt::format("{} parameters for {} numbers{}", fit.parameters, fit.classes.size(),
-                        others_fit ? ": other subjects fit as well, see docs/fitting.md" : ""));
-  if (!fit.warnings.empty()) text += analysis::heading("to bear in mind", origin.simulated);
-  for (const std::string& warning : fit.warnings) text += analysis::wrapped("  - ", warning);
-  return text;
-}
-
-namespace {
-
 using Json = nlohmann::ordered_json;
 
 Json number(std::optional<double> value) {
@@ -241,6 +204,39 @@ Json confusions_json(const SubjectFit& fit) {
 }
 
 }  // namespace
+
+std::string fit_text(const SubjectFit& fit, const FitOrigin& origin) {
+  std::string text = device_lines(origin) + analysis::simulated_line(origin.simulated);
+  text += fmt::format(
+      "{}: {}, {} with an answer{}{}{}\n", origin.study,
+      analysis::counted(fit.participants, "participant"), analysis::counted(fit.trials, "trial"),
+      fit.no_response > 0 ? fmt::format(", {} without left out", fit.no_response) : "",
+      origin.pilot ? ", PILOT" : "", origin.interim ? ", INTERIM LOOK" : "");
+  text += estimates_text(fit, origin) + people_text(fit) + swap_text(fit);
+  for (std::size_t m = 0; m < fit.methods.size(); ++m) text += confusion_text(fit, m, origin);
+  text += goodness_text(fit);
+  if (!fit.warnings.empty()) text += analysis::heading("to bear in mind", origin.simulated);
+  for (const std::string& warning : fit.warnings) text += analysis::wrapped("  - ", warning);
+  return text + analysis::simulated_line(origin.simulated);
+}
+
+std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin) {
+  std::string text = device_lines(origin) + origin.study + ": a subject for published accuracies\n";
+  analysis::TextTable table({"class", "published", "expected of the fit", "difference, points"});
+  for (std::size_t c = 0; c < fit.classes.size(); ++c) {
+    table.add({fit.classes[c], analysis::percent_of_share(fit.wanted[c]),
+               analysis::percent_of_share(fit.reached[c]),
+               fmt::format("{:+.2f}", 100.0 * (fit.reached[c] - fit.wanted[c]))});
+  }
+  text += table.text() + analysis::wrapped("  ", biases_text(fit.subject));
+  const bool others_fit = fit.warnings.empty();
+  text += analysis::wrapped(
+      "  ", fmt::format("{} parameters for {} numbers{}", fit.parameters, fit.classes.size(),
+                        others_fit ? ": other subjects fit as well, see docs/fitting.md" : ""));
+  if (!fit.warnings.empty()) text += analysis::heading("to bear in mind", origin.simulated);
+  for (const std::string& warning : fit.warnings) text += analysis::wrapped("  - ", warning);
+  return text;
+}
 
 std::string fit_json(const SubjectFit& fit, const FitOrigin& origin) {
   Json object = origin_json(origin);

@@ -48,27 +48,6 @@ std::optional<std::vector<double>> inverse_of(std::vector<double> matrix, std::s
   return inverse;
 }
 
-}  // namespace
-
-Fitted fitted_at(const FitProblem& problem, const FitCounts& counts, Optimum best) {
-  FitProblem::Tangent tangent = problem.tangent(best.at);
-  std::vector<double> information = information_of(counts, tangent);
-  const std::size_t n = best.at.size();
-  auto covariance = inverse_of(information, n);
-  // In a direction without information, the profile's search begins ten units away.
-  constexpr double kVague = 0.01;
-  for (std::size_t i = 0; i < n; ++i) information[i * n + i] += kVague;
-  auto vague = inverse_of(std::move(information), n);
-  return {problem,
-          counts,
-          std::move(best),
-          std::move(tangent),
-          covariance.has_value(),
-          covariance ? std::move(*covariance) : vague.value_or(std::vector<double>(n * n, 0.0))};
-}
-
-namespace {
-
 /// Square root of 3.84, the 95 % point of chi-square with one degree of freedom.
 constexpr double kRoot = 1.959964;
 constexpr double kCloseEnough = 0.02;
@@ -157,6 +136,23 @@ std::optional<double> end_of(const Fitted& fitted, std::size_t number, double bo
 }
 
 }  // namespace
+
+Fitted fitted_at(const FitProblem& problem, const FitCounts& counts, Optimum best) {
+  FitProblem::Tangent tangent = problem.tangent(best.at);
+  std::vector<double> information = information_of(counts, tangent);
+  const std::size_t n = best.at.size();
+  auto covariance = inverse_of(information, n);
+  // In a direction without information, the profile's search begins ten units away.
+  constexpr double kVague = 0.01;
+  for (std::size_t i = 0; i < n; ++i) information[i * n + i] += kVague;
+  auto vague = inverse_of(std::move(information), n);
+  return {problem,
+          counts,
+          std::move(best),
+          std::move(tangent),
+          covariance.has_value(),
+          covariance ? std::move(*covariance) : vague.value_or(std::vector<double>(n * n, 0.0))};
+}
 
 OpenInterval profile_interval(const Fitted& fitted, std::size_t number) {
   const auto end = [&](double bound, double sign) -> std::optional<double> {

@@ -32,6 +32,75 @@ double product(const double* a, const double* b, int count) noexcept {
   return sum;
 }
 
+/// Uses the middle of the bits' cell of width 2^-53, so that the uniform number is never 0 or 1.
+double normal_of(std::uint64_t bits) {
+  constexpr int kUnused = 11;
+  const double uniform = (static_cast<double>(bits >> kUnused) + 0.5) * 0x1.0p-53;
+  // The upper tail by symmetry: doubles are coarser near 1 than near 0.
+  const boost::math::normal standard;
+  return uniform < 0.5 ? boost::math::quantile(standard, uniform)
+                       : boost::math::quantile(boost::math::complement(standard, 1.0 - uniform));
+}
+
+constexpr int kCells = 2048;
+/// A length beyond sqrt(d) + kFarTail has a probability of about 1e-16.
+constexpr double kFarTail = 8.5;
+
+/// The largest support at t = -infinity: the one with the smallest slope.
+std::size_t first_winner(std::span<const double> at, std::span<const double> slope) noexcept {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < at.size(); ++k) {
+    const bool sooner = slope[k] < slope[best];
+    if (sooner || (slope[k] == slope[best] && at[k] > at[best])) best = k;
+  }
+  return best;
+}
+
+struct Crossing {
+  std::size_t winner = 0;
+  double t = std::numeric_limits<double>::infinity();
+};
+
+/// The next prototype that overtakes the winner, and where.
+Crossing next_winner(std::span<const double> at, std::span<const double> slope,
+                     std::size_t winner) noexcept {
+  Crossing next{winner};
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const double gain = slope[k] - slope[winner];
+    if (!(gain > 0.0)) continue;
+    const double t = (at[winner] - at[k]) / gain;
+    if (t < next.t || (t == next.t && slope[k] > slope[next.winner])) next = {k, t};
+  }
+  return next;
+}
+
+/// Shares a probability among the pictures of all prototypes that equal the winner everywhere.
+void share(std::span<const double> at, std::span<const double> slope, std::span<const int> picture,
+           std::size_t winner, double probability, std::span<double> answers) noexcept {
+  const auto stands_for_its_picture = [&](std::size_t k) {
+    if (at[k] != at[winner] || slope[k] != slope[winner]) return false;
+    for (std::size_t before = 0; before < k; ++before) {
+      const bool equal = at[before] == at[winner] && slope[before] == slope[winner];
+      if (equal && picture[before] == picture[k]) return false;
+    }
+    return true;
+  };
+  int equals = 0;
+  for (std::size_t k = 0; k < at.size(); ++k) equals += stands_for_its_picture(k) ? 1 : 0;
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    if (stands_for_its_picture(k)) answers[picture[k]] += probability / equals;
+  }
+}
+
+/// Whether another prototype equals the winner everywhere: stimuli that feel the same.
+bool has_equal(std::span<const double> at, std::span<const double> slope,
+               std::size_t winner) noexcept {
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    if (k != winner && slope[k] == slope[winner] && at[k] == at[winner]) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 int noise_dimensions(int prototypes) noexcept {
@@ -112,20 +181,6 @@ void LinearSupports::noise(std::span<const double> normals,
   }
 }
 
-namespace {
-
-/// Uses the middle of the bits' cell of width 2^-53, so that the uniform number is never 0 or 1.
-double normal_of(std::uint64_t bits) {
-  constexpr int kUnused = 11;
-  const double uniform = (static_cast<double>(bits >> kUnused) + 0.5) * 0x1.0p-53;
-  // The upper tail by symmetry: doubles are coarser near 1 than near 0.
-  const boost::math::normal standard;
-  return uniform < 0.5 ? boost::math::quantile(standard, uniform)
-                       : boost::math::quantile(boost::math::complement(standard, 1.0 - uniform));
-}
-
-}  // namespace
-
 NoisePoints::NoisePoints(int dimensions, std::size_t count, std::uint64_t seed, std::uint64_t index)
     : dimensions_(static_cast<std::size_t>(dimensions)) {
   RandomStream random(seed, "answer model: shift of the noise points", index);
@@ -157,14 +212,6 @@ std::vector<double> normal_groups(int groups) {
   return means;
 }
 
-namespace {
-
-constexpr int kCells = 2048;
-/// A length beyond sqrt(d) + kFarTail has a probability of about 1e-16.
-constexpr double kFarTail = 8.5;
-
-}  // namespace
-
 RadialDistribution::RadialDistribution(int dimensions) {
   if (dimensions < 1) throw std::invalid_argument("RadialDistribution: dimensions start at 1");
   reach_ = std::sqrt(static_cast<double>(dimensions)) + kFarTail;
@@ -195,65 +242,6 @@ RadialDistribution::Value RadialDistribution::at(double t) const noexcept {
   const double density = -(slope_from + x * (2.0 * c2 + 3.0 * x * c3)) / step_;
   return {t > 0.0 ? 1.0 - 0.5 * more : 0.5 * more, 0.5 * density};
 }
-
-namespace {
-
-/// The largest support at t = -infinity: the one with the smallest slope.
-std::size_t first_winner(std::span<const double> at, std::span<const double> slope) noexcept {
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < at.size(); ++k) {
-    const bool sooner = slope[k] < slope[best];
-    if (sooner || (slope[k] == slope[best] && at[k] > at[best])) best = k;
-  }
-  return best;
-}
-
-struct Crossing {
-  std::size_t winner = 0;
-  double t = std::numeric_limits<double>::infinity();
-};
-
-/// The next prototype that overtakes the winner, and where.
-Crossing next_winner(std::span<const double> at, std::span<const double> slope,
-                     std::size_t winner) noexcept {
-  Crossing next{winner};
-  for (std::size_t k = 0; k < at.size(); ++k) {
-    const double gain = slope[k] - slope[winner];
-    if (!(gain > 0.0)) continue;
-    const double t = (at[winner] - at[k]) / gain;
-    if (t < next.t || (t == next.t && slope[k] > slope[next.winner])) next = {k, t};
-  }
-  return next;
-}
-
-/// Shares a probability among the pictures of all prototypes that equal the winner everywhere.
-void share(std::span<const double> at, std::span<const double> slope, std::span<const int> picture,
-           std::size_t winner, double probability, std::span<double> answers) noexcept {
-  const auto stands_for_its_picture = [&](std::size_t k) {
-    if (at[k] != at[winner] || slope[k] != slope[winner]) return false;
-    for (std::size_t before = 0; before < k; ++before) {
-      const bool equal = at[before] == at[winner] && slope[before] == slope[winner];
-      if (equal && picture[before] == picture[k]) return false;
-    }
-    return true;
-  };
-  int equals = 0;
-  for (std::size_t k = 0; k < at.size(); ++k) equals += stands_for_its_picture(k) ? 1 : 0;
-  for (std::size_t k = 0; k < at.size(); ++k) {
-    if (stands_for_its_picture(k)) answers[picture[k]] += probability / equals;
-  }
-}
-
-/// Whether another prototype equals the winner everywhere: stimuli that feel the same.
-bool has_equal(std::span<const double> at, std::span<const double> slope,
-               std::size_t winner) noexcept {
-  for (std::size_t k = 0; k < at.size(); ++k) {
-    if (k != winner && slope[k] == slope[winner] && at[k] == at[winner]) return true;
-  }
-  return false;
-}
-
-}  // namespace
 
 void add_winners(std::span<const double> at, std::span<const double> slope,
                  std::span<const int> picture, const RadialDistribution& noise, double weight,

@@ -30,6 +30,102 @@ std::string digest_of(const simulation::SubjectModel& subject) {
   return to_hex(hasher.finish()).substr(0, kShown);
 }
 
+/// The number of runs between two calls of `keep`. Every look of a plan is a multiple of it, or the
+/// plan's end.
+constexpr int kBlock = 50;
+
+void make_block(const Rehearsal& study, const PrimaryTest& test, int jobs,
+                const PowerProgress& progress, PowerCell& cell) {
+  const std::size_t first = cell.runs.size();
+  const int own = progress.shard.own_runs(progress.plan.runs);
+  const int end = std::min(own, (static_cast<int>(first) / kBlock + 1) * kBlock);
+  std::vector<PowerRun> block(static_cast<std::size_t>(end) - first);
+  in_parallel(jobs, block.size(), [&](std::size_t i) {
+    const int run = progress.shard.run(static_cast<int>(first + i));
+    const std::uint64_t seed =
+        study_seed(progress.plan.seed, cell.participants, cell.hypothesis, run);
+    block[i] = judged(test, study.outcomes(cell.participants, cell.hypothesis, seed),
+                      cell.hypothesis == Hypothesis::null);
+  });
+  cell.runs.insert(cell.runs.end(), block.begin(), block.end());
+}
+
+/// Reports progress in participants, because they cost the time. A finished cell counts as whole.
+void tell(const PowerProgress& progress, const PowerWork& work) {
+  if (!work.progress) return;
+  const int own = progress.shard.own_runs(progress.plan.runs);
+  double done = 0.0;
+  double all = 0.0;
+  for (const PowerCell& cell : progress.cells) {
+    const bool is_done = runs_when_done(progress, cell).has_value();
+    const auto runs = is_done ? own : static_cast<int>(cell.runs.size());
+    done += static_cast<double>(runs) * cell.participants;
+    all += static_cast<double>(own) * cell.participants;
+  }
+  constexpr int kSteps = 1000;
+  work.progress(static_cast<int>(kSteps * done / std::max(all, 1.0)), kSteps);
+}
+
+using File = std::pair<std::filesystem::path, PowerProgress>;
+
+std::string shown(const Shard& shard) {
+  return fmt::format("{}/{}", shard.number, shard.count);
+}
+
+[[noreturn]] void refuse(const File& file, const std::string& what) {
+  throw VerificationError(one_line(file.first.string() + ": " + what));
+}
+
+void require_same_run(const File& first, const File& other) {
+  const Shard& shard = other.second.shard;
+  if (shard.count != first.second.shard.count) {
+    refuse(other, fmt::format("is shard {}, but {} is shard {}; give only the shards of one run",
+                              shown(shard), first.first.string(), shown(first.second.shard)));
+  }
+  const std::string difference = first_difference(first.second, other.second);
+  if (!difference.empty()) {
+    refuse(other, fmt::format("{} differs from that of {}; give only the shards of one run",
+                              difference, first.first.string()));
+  }
+}
+
+void require_complete(const File& file) {
+  if (is_complete(file.second)) return;
+  throw FileError(
+      one_line(fmt::format("{}: shard {} is not complete; run it again with --resume, then combine",
+                           file.first.string(), shown(file.second.shard))));
+}
+
+/// \return what to tell the user about two equal files of one shard
+std::string remark_on_equal(const File& known, const File& again) {
+  const std::string shard = shown(known.second.shard);
+  if (known.second.cells != again.second.cells) {
+    refuse(again, fmt::format("is shard {} as {} is, but its numbers differ; find out which is "
+                              "right and remove the other",
+                              shard, known.first.string()));
+  }
+  return one_line(
+      fmt::format("shard {} is in {} and, with the same content, in {}: it is used once", shard,
+                  known.first.string(), again.first.string()));
+}
+
+/// \param shards  by number; null: missing
+void require_all(const std::vector<const File*>& shards) {
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < shards.size(); ++i) {
+    if (shards[i] == nullptr) missing.push_back(i + 1);
+  }
+  if (missing.empty()) return;
+  constexpr std::size_t kMostNamed = 20;
+  const std::span named(missing.data(), std::min(missing.size(), kMostNamed));
+  std::string list = fmt::format("{}", fmt::join(named, ", "));
+  if (missing.size() > kMostNamed) list += fmt::format(" and {} more", missing.size() - kMostNamed);
+  const bool one = missing.size() == 1;
+  throw FileError(fmt::format("of {} shards {} missing: {}; run {} again, then combine",
+                              shards.size(), one ? "one is" : "some are", list,
+                              one ? "it" : "them"));
+}
+
 }  // namespace
 
 std::string words_of(const simulation::SubjectModel& subject) {
@@ -105,46 +201,6 @@ std::string first_difference(const PowerProgress& a, const PowerProgress& b) {
   return differs == std::end(equal) ? "" : differs->first;
 }
 
-namespace {
-
-/// The number of runs between two calls of `keep`. Every look of a plan is a multiple of it, or the
-/// plan's end.
-constexpr int kBlock = 50;
-
-void make_block(const Rehearsal& study, const PrimaryTest& test, int jobs,
-                const PowerProgress& progress, PowerCell& cell) {
-  const std::size_t first = cell.runs.size();
-  const int own = progress.shard.own_runs(progress.plan.runs);
-  const int end = std::min(own, (static_cast<int>(first) / kBlock + 1) * kBlock);
-  std::vector<PowerRun> block(static_cast<std::size_t>(end) - first);
-  in_parallel(jobs, block.size(), [&](std::size_t i) {
-    const int run = progress.shard.run(static_cast<int>(first + i));
-    const std::uint64_t seed =
-        study_seed(progress.plan.seed, cell.participants, cell.hypothesis, run);
-    block[i] = judged(test, study.outcomes(cell.participants, cell.hypothesis, seed),
-                      cell.hypothesis == Hypothesis::null);
-  });
-  cell.runs.insert(cell.runs.end(), block.begin(), block.end());
-}
-
-/// Reports progress in participants, because they cost the time. A finished cell counts as whole.
-void tell(const PowerProgress& progress, const PowerWork& work) {
-  if (!work.progress) return;
-  const int own = progress.shard.own_runs(progress.plan.runs);
-  double done = 0.0;
-  double all = 0.0;
-  for (const PowerCell& cell : progress.cells) {
-    const bool is_done = runs_when_done(progress, cell).has_value();
-    const auto runs = is_done ? own : static_cast<int>(cell.runs.size());
-    done += static_cast<double>(runs) * cell.participants;
-    all += static_cast<double>(own) * cell.participants;
-  }
-  constexpr int kSteps = 1000;
-  work.progress(static_cast<int>(kSteps * done / std::max(all, 1.0)), kSteps);
-}
-
-}  // namespace
-
 void make_runs(const Rehearsal& study, const PrimaryTest& test, const PowerWork& work,
                PowerProgress& progress) {
   for (PowerCell& cell : progress.cells) {
@@ -155,70 +211,6 @@ void make_runs(const Rehearsal& study, const PrimaryTest& test, const PowerWork&
     }
   }
 }
-
-namespace {
-
-using File = std::pair<std::filesystem::path, PowerProgress>;
-
-std::string shown(const Shard& shard) {
-  return fmt::format("{}/{}", shard.number, shard.count);
-}
-
-[[noreturn]] void refuse(const File& file, const std::string& what) {
-  throw VerificationError(one_line(file.first.string() + ": " + what));
-}
-
-void require_same_run(const File& first, const File& other) {
-  const Shard& shard = other.second.shard;
-  if (shard.count != first.second.shard.count) {
-    refuse(other, fmt::format("is shard {}, but {} is shard {}; give only the shards of one run",
-                              shown(shard), first.first.string(), shown(first.second.shard)));
-  }
-  const std::string difference = first_difference(first.second, other.second);
-  if (!difference.empty()) {
-    refuse(other, fmt::format("{} differs from that of {}; give only the shards of one run",
-                              difference, first.first.string()));
-  }
-}
-
-void require_complete(const File& file) {
-  if (is_complete(file.second)) return;
-  throw FileError(
-      one_line(fmt::format("{}: shard {} is not complete; run it again with --resume, then combine",
-                           file.first.string(), shown(file.second.shard))));
-}
-
-/// \return what to tell the user about two equal files of one shard
-std::string remark_on_equal(const File& known, const File& again) {
-  const std::string shard = shown(known.second.shard);
-  if (known.second.cells != again.second.cells) {
-    refuse(again, fmt::format("is shard {} as {} is, but its numbers differ; find out which is "
-                              "right and remove the other",
-                              shard, known.first.string()));
-  }
-  return one_line(
-      fmt::format("shard {} is in {} and, with the same content, in {}: it is used once", shard,
-                  known.first.string(), again.first.string()));
-}
-
-/// \param shards  by number; null: missing
-void require_all(const std::vector<const File*>& shards) {
-  std::vector<std::size_t> missing;
-  for (std::size_t i = 0; i < shards.size(); ++i) {
-    if (shards[i] == nullptr) missing.push_back(i + 1);
-  }
-  if (missing.empty()) return;
-  constexpr std::size_t kMostNamed = 20;
-  const std::span named(missing.data(), std::min(missing.size(), kMostNamed));
-  std::string list = fmt::format("{}", fmt::join(named, ", "));
-  if (missing.size() > kMostNamed) list += fmt::format(" and {} more", missing.size() - kMostNamed);
-  const bool one = missing.size() == 1;
-  throw FileError(fmt::format("of {} shards {} missing: {}; run {} again, then combine",
-                              shards.size(), one ? "one is" : "some are", list,
-                              one ? "it" : "them"));
-}
-
-}  // namespace
 
 CombinedPower combined(const std::vector<File>& files) {
   if (files.empty()) throw FileError("there is no shard to combine; give their folder or files");

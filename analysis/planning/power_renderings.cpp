@@ -177,35 +177,6 @@ std::string width_table(const PowerReport& report) {
   return table.text();
 }
 
-}  // namespace
-
-std::string power_stamp(const PowerSetting& setting) {
-  return "SIMULATED: power " + given_words(setting);
-}
-
-std::string power_text(const PowerReport& report) {
-  const std::string stamp = power_stamp(report.setting) + "\n";
-  std::string text = analysis::simulated_on_line(report.setting.device) + stamp;
-  text += analysis::wrapped("study    ", report.setting.study + ", " + report.setting.protocol);
-  text += analysis::wrapped("test     ", report.setting.test);
-  text += analysis::wrapped("assumed  ", report.setting.subject);
-  text +=
-      analysis::heading("Power and type-I error of the primary test", true) + power_table(report);
-  text += analysis::heading(
-              "Estimate, and width of its 95 % interval: mean, and quantiles over studies (points)",
-              true) +
-          width_table(report) + "\n";
-  for (const std::string& sentence : target_sentences(report))
-    text += analysis::wrapped("", sentence);
-  for (const std::string& warning : report.warnings) text += analysis::wrapped("! ", warning);
-  text += "\n";
-  for (const std::string& sentence : method_sentences(report))
-    text += analysis::wrapped("", sentence);
-  return text + stamp;
-}
-
-namespace {
-
 std::vector<analysis::DataCell> csv_row(const PowerRow& row) {
   return {std::int64_t{row.participants},
           std::int64_t{row.significant.n},
@@ -267,24 +238,6 @@ analysis::Table table_of(const PowerReport& report) {
   return table;
 }
 
-}  // namespace
-
-std::string power_csv(const PowerReport& report) {
-  analysis::DataTable table{
-      {"participants", "runs", "stopped_early", "power", "power_low", "power_high", "null_runs",
-       "type_one_error", "type_one_low", "type_one_high", "attainable", "estimate", "estimate_sd",
-       "width_mean", "width_mean_se", "width_q10", "width_median", "width_q90", "stamp"},
-      {}};
-  for (const PowerRow& row : report.rows) table.rows.push_back(csv_row(row));
-  return analysis::csv_text(table);
-}
-
-std::string power_markdown(const PowerReport& report) {
-  return analysis::table_markdown(table_of(report), "SIMULATED");
-}
-
-namespace {
-
 using nlohmann::ordered_json;
 
 ordered_json ends_of(const analysis::Interval& interval) {
@@ -344,6 +297,45 @@ ordered_json methods_object(const PowerReport& report) {
 }
 
 }  // namespace
+
+std::string power_stamp(const PowerSetting& setting) {
+  return "SIMULATED: power " + given_words(setting);
+}
+
+std::string power_text(const PowerReport& report) {
+  const std::string stamp = power_stamp(report.setting) + "\n";
+  std::string text = analysis::simulated_on_line(report.setting.device) + stamp;
+  text += analysis::wrapped("study    ", report.setting.study + ", " + report.setting.protocol);
+  text += analysis::wrapped("test     ", report.setting.test);
+  text += analysis::wrapped("assumed  ", report.setting.subject);
+  text +=
+      analysis::heading("Power and type-I error of the primary test", true) + power_table(report);
+  text += analysis::heading(
+              "Estimate, and width of its 95 % interval: mean, and quantiles over studies (points)",
+              true) +
+          width_table(report) + "\n";
+  for (const std::string& sentence : target_sentences(report))
+    text += analysis::wrapped("", sentence);
+  for (const std::string& warning : report.warnings) text += analysis::wrapped("! ", warning);
+  text += "\n";
+  for (const std::string& sentence : method_sentences(report))
+    text += analysis::wrapped("", sentence);
+  return text + stamp;
+}
+
+std::string power_csv(const PowerReport& report) {
+  analysis::DataTable table{
+      {"participants", "runs", "stopped_early", "power", "power_low", "power_high", "null_runs",
+       "type_one_error", "type_one_low", "type_one_high", "attainable", "estimate", "estimate_sd",
+       "width_mean", "width_mean_se", "width_q10", "width_median", "width_q90", "stamp"},
+      {}};
+  for (const PowerRow& row : report.rows) table.rows.push_back(csv_row(row));
+  return analysis::csv_text(table);
+}
+
+std::string power_markdown(const PowerReport& report) {
+  return analysis::table_markdown(table_of(report), "SIMULATED");
+}
 
 std::string power_json(const PowerReport& report) {
   const PowerSetting& setting = report.setting;

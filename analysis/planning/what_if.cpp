@@ -181,6 +181,33 @@ WhatIfRow row_from(const Assumption& assumption, const std::vector<PowerRun>& ba
   return row;
 }
 
+constexpr const char* kStamp = "SIMULATED: power given the assumed sensitivity, and others";
+
+std::string points(double share) {
+  return fmt::format("{:+.1f}", 100.0 * share);
+}
+
+std::vector<std::string> cells_of_row(const WhatIfRow& row, bool is_base) {
+  return {row.name,
+          row.to,
+          power_per_cent(row.estimate),
+          power_per_cent(row.significant.share().value_or(0.0)),
+          is_base ? "" : points(row.difference),
+          is_base ? "" : "[" + points(row.interval.low) + ", " + points(row.interval.high) + "]"};
+}
+
+Json row_json(const WhatIfRow& row) {
+  return {{"assumption", row.name},
+          {"from", row.from},
+          {"to", row.to},
+          {"estimate", row.estimate},
+          {"runs", row.significant.n},
+          {"significant", row.significant.correct},
+          {"power", row.significant.share().value_or(0.0)},
+          {"difference", row.difference},
+          {"interval", {row.interval.low, row.interval.high}}};
+}
+
 }  // namespace
 
 std::vector<Assumption> assumptions_about(const simulation::SubjectModel& base,
@@ -235,37 +262,6 @@ WhatIf what_if(const design::Study& study, const PrimaryTest& test,
                            [](const WhatIfRow& row) { return std::abs(row.difference); });
   return result;
 }
-
-namespace {
-
-constexpr const char* kStamp = "SIMULATED: power given the assumed sensitivity, and others";
-
-std::string points(double share) {
-  return fmt::format("{:+.1f}", 100.0 * share);
-}
-
-std::vector<std::string> cells_of_row(const WhatIfRow& row, bool is_base) {
-  return {row.name,
-          row.to,
-          power_per_cent(row.estimate),
-          power_per_cent(row.significant.share().value_or(0.0)),
-          is_base ? "" : points(row.difference),
-          is_base ? "" : "[" + points(row.interval.low) + ", " + points(row.interval.high) + "]"};
-}
-
-Json row_json(const WhatIfRow& row) {
-  return {{"assumption", row.name},
-          {"from", row.from},
-          {"to", row.to},
-          {"estimate", row.estimate},
-          {"runs", row.significant.n},
-          {"significant", row.significant.correct},
-          {"power", row.significant.share().value_or(0.0)},
-          {"difference", row.difference},
-          {"interval", {row.interval.low, row.interval.high}}};
-}
-
-}  // namespace
 
 std::string what_if_text(const WhatIf& result) {
   std::string text = analysis::simulated_on_line(result.setting.device) + kStamp + "\n";

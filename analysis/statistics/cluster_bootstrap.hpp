@@ -15,6 +15,8 @@
 namespace touchtrial::analysis {
 
 inline constexpr int kBootstrapDraws = 9999;
+/// With fewer, the ends of a bootstrap interval are the most extreme draws.
+inline constexpr std::size_t kFewestForBootstrap = 6;
 
 /// The ends of a bootstrap interval: expanded percentiles. Plain percentiles treat the spread
 /// between participants as known; expanded ones lie further out, at Phi(-t sqrt(n / (n - 1))) on

@@ -38,7 +38,7 @@ void draw_state(const std::string& phase, float density) {
   const float height = kStateHeight * density;
   ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + width, at.y + height}, kBlue);
   ImFont* font = ImGui::GetIO().Fonts->Fonts[kLargeFont];
-  const std::string text = phase + ". Space: let go.";
+  const std::string text = phase + ". Space: release the force.";
   ImGui::GetWindowDrawList()->AddText(
       font, font->FontSize, {at.x + 16.0F * density, at.y + (height - font->FontSize) / 2.0F},
       kWhite, text.c_str());
@@ -86,7 +86,7 @@ std::vector<Plot> plots_of(const ReadingsHistory& history, double rate_hz) {
   plots[2].lines = {{"over 0.1 s", kBlue, history.rates_hz()}};
   plots[2].scale = scale_for(plots[2].lines, {0.0, 1.2 * rate_hz}, kValueTicks);
   plots[3].title = "Lateness of ticks, µs";
-  plots[3].lines = {{"newest at each picture", kBlue, history.values(Channel::late)}};
+  plots[3].lines = {{"worst between two pictures", kBlue, history.values(Channel::late)}};
   plots[3].scale = decades_for(plots[3].lines, {0.1, 1000.0});
   plots[3].time_labels = true;
   return plots;

@@ -35,20 +35,9 @@ struct SampledWall {
 /// wall's work is summed sample by sample in the time domain.
 [[nodiscard]] double damping_by_energy(const SampledWall& wall);
 
-/// The least physical damping, N s/m, with which a modelled device on the wall comes to rest, by
-/// bisection. It is heavy (K (T/2 + t_d)^2 much smaller than its mass), so it moves little between
-/// samples, and the limit is K (T/2 + t_d) - B: this is not the worst case for a wall, and its
-/// damping B helps.
-[[nodiscard]] double damping_for_rest(const SampledWall& wall);
-
 /// K D / 2, N: with this much Coulomb friction, and the damping of `passivity_bound`, a wall that
 /// is read in steps is passive under every motion.
 [[nodiscard]] double friction_bound(const SampledWall& wall) noexcept;
-
-/// The maximum ratio of the energy that the wall supplies, less what the damping of
-/// `passivity_bound` dissipates, to the way, N, over small motions to and fro across the edge of a
-/// step.
-[[nodiscard]] double friction_by_energy(const SampledWall& wall);
 
 /// The least Coulomb friction, N, with which a modelled device comes to rest on the wall under any
 /// of a few pushes between two steps, by bisection.

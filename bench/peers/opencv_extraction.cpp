@@ -1,7 +1,9 @@
-#include "bench/peers/opencv_extraction.hpp"
+#include "bench/peers/opencv.hpp"
+#include "tests/engine/reference/gl_weights.hpp"
 
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include <opencv2/imgproc.hpp>
 
@@ -33,6 +35,23 @@ void take_even_columns(const cv::Mat& mat, cv::Mat& to) {
 }
 
 }  // namespace
+
+cv::Mat fixed_order_mask(double order, int radius, bool enhanced) {
+  const std::vector<double> weights = reference::gl_weights(order, radius);
+  cv::Mat mask = cv::Mat::zeros(2 * radius + 1, 2 * radius + 1, CV_32F);
+  double centre = enhanced ? 1.0 : 0.0;
+  for (int k = 1; k <= radius; ++k) {
+    const double share = std::abs(weights[static_cast<std::size_t>(k)]) / 8.0;
+    centre += 8.0 * share;
+    for (int dy = -k; dy <= k; dy += k) {
+      for (int dx = -k; dx <= k; dx += k) {
+        mask.at<float>(radius + dy, radius + dx) = static_cast<float>(-share);
+      }
+    }
+  }
+  mask.at<float>(radius, radius) = static_cast<float>(centre);
+  return mask;
+}
 
 void OpenCvDaub4::run(const cv::Mat& image) {
   if (way_ == Daub4Way::full_size) {
@@ -135,17 +154,10 @@ void OpenCvRingSums::make_texture(int radius) {
   cv::multiply(texture_, orders_, texture_, 1.0 / 8.0);
 }
 
-void OpenCvRingSums::make_picture() {
-  texture_.convertTo(picture_, CV_8U, 1.0, 128.0);
-}
-
-void OpenCvRingSums::find_highest() {
-  cv::minMaxLoc(texture_, nullptr, &highest_);
-}
-
-void OpenCvRingSums::make_force() {
-  cv::Sobel(texture_, force_x_, CV_32F, 1, 0, 3, -0.5, 0, cv::BORDER_REFLECT);
-  cv::Sobel(texture_, force_y_, CV_32F, 0, 1, 3, -0.5, 0, cv::BORDER_REFLECT);
+double OpenCvRingSums::highest() const {
+  double highest = 0.0;
+  cv::minMaxLoc(texture_, nullptr, &highest);
+  return highest;
 }
 
 }  // namespace touchtrial::bench

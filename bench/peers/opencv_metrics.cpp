@@ -1,4 +1,4 @@
-#include "bench/peers/opencv_metrics.hpp"
+#include "bench/peers/opencv.hpp"
 
 #include <algorithm>
 #include <cmath>

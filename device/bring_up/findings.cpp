@@ -208,10 +208,10 @@ std::string stand_in_of(const DeviceInfo& device, const DeviceSettings& settings
   if (device.simulated) return "the driver simulates a device";
   if (device.visual) return "the driver has no motors";
   for (const std::string& text : {device.model, device.firmware, device.library, device.serial}) {
-    if (names_a_stand_in(text)) return "the device or its library calls itself no hardware";
+    if (names_a_stand_in(text)) return "the device or its library calls itself a stand-in";
   }
   if (names_a_stand_in(library_of(device.name, settings).filename().string())) {
-    return "the library's file is named as no maker's";
+    return "the library's file has a stand-in's name";
   }
   return usb_is_emulated() ? "a USB bus of the machine is emulated" : "";
 }

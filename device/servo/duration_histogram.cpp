@@ -16,7 +16,7 @@ std::size_t bin_of(std::int64_t ns) noexcept {
   const int octave =
       static_cast<int>(std::bit_width(static_cast<std::uint64_t>(ns))) - 1 - kStepBits;
   const auto step = static_cast<std::size_t>(ns >> octave);  // in [kSteps, 2 kSteps)
-  return std::min(static_cast<std::size_t>(octave * kSteps) + step, DurationHistogram::kBins - 1);
+  return static_cast<std::size_t>(octave * kSteps) + step;
 }
 
 std::int64_t least_of(std::size_t index) noexcept {
@@ -30,7 +30,7 @@ std::int64_t least_of(std::size_t index) noexcept {
 
 void DurationHistogram::add(Duration duration) noexcept {
   const std::int64_t ns = std::max<std::int64_t>(duration.count(), 0);
-  ++counts_[bin_of(ns)];
+  ++counts_[std::min(bin_of(ns), kBins - 1)];
   ++count_;
   worst_ns_ = std::max(worst_ns_, ns);
 }
@@ -47,16 +47,11 @@ double DurationHistogram::percentile_us(double share) const noexcept {
   for (std::size_t i = 0; i < kBins; ++i) {
     below += counts_[i];
     if (static_cast<double>(below) < rank) continue;
-    // The bin holds whole nanoseconds, the last of them one before its end.
-    return static_cast<double>(std::min(bin(i).end_ns - 1, worst_ns_)) * 1e-3;
+    // A bin holds whole nanoseconds, the last of them one before the next; the last bin has no end.
+    const std::int64_t last_ns = i + 1 == kBins ? worst_ns_ : least_of(i + 1) - 1;
+    return static_cast<double>(std::min(last_ns, worst_ns_)) * 1e-3;
   }
   return static_cast<double>(worst_ns_) * 1e-3;
-}
-
-DurationHistogram::Bin DurationHistogram::bin(std::size_t index) const noexcept {
-  const bool last = index + 1 == kBins;
-  const std::int64_t end_ns = last ? std::max(least_of(kBins), worst_ns_ + 1) : least_of(index + 1);
-  return {least_of(index), end_ns, counts_[index]};
 }
 
 }  // namespace touchtrial::device

@@ -15,13 +15,6 @@ class DurationHistogram {
  public:
   using Duration = std::chrono::nanoseconds;
 
-  /// The bin [least_ns, end_ns).
-  struct Bin {
-    std::int64_t least_ns;
-    std::int64_t end_ns;
-    std::uint64_t count;
-  };
-
   /// \param duration  a negative one counts as 0
   void add(Duration duration) noexcept;
   void add(const DurationHistogram& other) noexcept;
@@ -34,11 +27,8 @@ class DurationHistogram {
   ///   longest duration; zero if there is none
   [[nodiscard]] double percentile_us(double share) const noexcept;
 
-  static constexpr std::size_t kBins = 32 * 32;
-  /// \param index  < kBins, from the shortest
-  [[nodiscard]] Bin bin(std::size_t index) const noexcept;
-
  private:
+  static constexpr std::size_t kBins = 32 * 32;
   std::array<std::uint64_t, kBins> counts_{};
   std::uint64_t count_ = 0;
   std::int64_t worst_ns_ = 0;

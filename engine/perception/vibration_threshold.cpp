@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <span>
 
 namespace touchtrial::engine {
@@ -47,11 +46,6 @@ std::string_view name_of(ThresholdCurve curve) noexcept {
 double threshold_displacement_m(ThresholdCurve curve, double frequency_hz) noexcept {
   constexpr double kReferenceM = 1e-6;
   return kReferenceM * std::pow(10.0, level_db(points_of(curve), frequency_hz) / 20.0);
-}
-
-double threshold_acceleration_m_s2(ThresholdCurve curve, double frequency_hz) noexcept {
-  const double angular = 2.0 * std::numbers::pi * frequency_hz;
-  return angular * angular * threshold_displacement_m(curve, frequency_hz);
 }
 
 }  // namespace touchtrial::engine

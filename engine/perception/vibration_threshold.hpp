@@ -22,9 +22,4 @@ inline constexpr std::array kThresholdCurves{ThresholdCurve::israr_2006, Thresho
 /// \return m, peak of a sine
 [[nodiscard]] double threshold_displacement_m(ThresholdCurve curve, double frequency_hz) noexcept;
 
-/// The same as acceleration.
-/// \return m/s^2, peak of a sine
-[[nodiscard]] double threshold_acceleration_m_s2(ThresholdCurve curve,
-                                                 double frequency_hz) noexcept;
-
 }  // namespace touchtrial::engine

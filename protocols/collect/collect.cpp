@@ -130,7 +130,7 @@ class Collecting {
     }
   }
 
-  void finish() && { static_cast<void>(std::move(draft_).finished()); }
+  void finish() && { std::move(draft_).finish(); }
 
  private:
   StationFile& file(int station) { return *stations_[static_cast<std::size_t>(station) - 1].file; }

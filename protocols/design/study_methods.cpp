@@ -87,10 +87,8 @@ void read_components(const JsonValue& place, engine::TvGaborOptions& options) {
 
 template <typename Choice, std::size_t size>
 void read_choice(const JsonObject& object, std::string_view key,
-                 const std::array<std::string_view, size>& names, Choice& choice) {
-  if (const auto member = object.find(key)) {
-    choice = static_cast<Choice>(member->choice(std::span<const std::string_view>(names)));
-  }
+                 const std::array<Named<Choice>, size>& names, Choice& choice) {
+  if (const auto member = object.find(key)) choice = member->choice(names);
 }
 
 void read_method_number(const JsonObject& object, std::string_view key, const NumberRange& range,
@@ -157,7 +155,7 @@ nlohmann::json components_json(const engine::TvGaborOptions& options) {
 std::string default_label(const engine::ExtractionOptions& method) {
   std::string label(name_of(method.method));
   if (method.control != engine::Control::none)
-    label += "-" + std::string(engine::name_among(engine::kControlNames, method.control));
+    label += "-" + std::string(name_in(engine::kControlNames, method.control));
   return label;
 }
 
@@ -182,26 +180,25 @@ engine::ExtractionOptions parse_method(std::string_view text, const std::string&
 }
 
 nlohmann::json to_json(const engine::ExtractionOptions& method) {
-  const nlohmann::json all = {
-      {"radius", method.radius},
-      {"order", method.order},
-      {"norm", engine::name_among(engine::kNormNames, method.norm)},
-      {"gradient", engine::name_among(engine::kGradientNames, method.gradient)},
-      {"combine", engine::name_among(engine::kCombineNames, method.combine)},
-      {"levels", method.levels},
-      {"sigma_px", method.sigma_px},
-      {"threshold", method.threshold_grey},
-      {"divisor", method.divisor},
-      {"lambda", method.tv_gabor.lambda},
-      {"components", components_json(method.tv_gabor)},
-      {"gap", method.tv_gabor.gap},
-      {"max_steps", method.tv_gabor.max_steps}};
+  const nlohmann::json all = {{"radius", method.radius},
+                              {"order", method.order},
+                              {"norm", name_in(engine::kNormNames, method.norm)},
+                              {"gradient", name_in(engine::kGradientNames, method.gradient)},
+                              {"combine", name_in(engine::kCombineNames, method.combine)},
+                              {"levels", method.levels},
+                              {"sigma_px", method.sigma_px},
+                              {"threshold", method.threshold_grey},
+                              {"divisor", method.divisor},
+                              {"lambda", method.tv_gabor.lambda},
+                              {"components", components_json(method.tv_gabor)},
+                              {"gap", method.tv_gabor.gap},
+                              {"max_steps", method.tv_gabor.max_steps}};
   nlohmann::json object = {{"name", name_of(method.method)}};
   for (const MethodKey& entry : method_keys()) {
     if (belongs_to(method.method, entry)) object[std::string(entry.key)] = all.at(entry.key);
   }
   if (method.control != engine::Control::none)
-    object["control"] = engine::name_among(engine::kControlNames, method.control);
+    object["control"] = name_in(engine::kControlNames, method.control);
   return object;
 }
 

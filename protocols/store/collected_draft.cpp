@@ -44,7 +44,6 @@ class DraftFile {
 }  // namespace
 
 struct CollectedDraft::Impl {
-  /// \param file  nullptr: temporary
   Impl(std::unique_ptr<DraftFile> draft, Database made, std::filesystem::path name)
       : file(std::move(draft)), database(std::move(made)), target(std::move(name)) {
     make_tables(database);
@@ -112,10 +111,6 @@ CollectedDraft CollectedDraft::in_file(const std::filesystem::path& target) {
   return CollectedDraft(std::make_unique<Impl>(std::move(draft), std::move(database), target));
 }
 
-CollectedDraft CollectedDraft::temporary(const std::string& name) {
-  return CollectedDraft(std::make_unique<Impl>(nullptr, Database::temporary(name), name));
-}
-
 const CollectedChain& CollectedDraft::begin(std::span<const StationChain> stations) {
   impl_->chain = collected_chain(stations);
   for (const Event& event : impl_->chain.events) impl_->on_file.add(event);
@@ -178,14 +173,12 @@ void CollectedDraft::end_traces() const {
   });
 }
 
-StudyStore CollectedDraft::finished(TraceFetch fetch) && {
-  if (!impl_->file) return store_of(std::move(impl_->database), std::move(fetch));
+void CollectedDraft::finish() && {
   impl_->database.run([&] { impl_->database.write_safely(); });
   const std::filesystem::path target = impl_->target;
   const auto file = std::move(impl_->file);
   impl_.reset();  // closes it, so that nothing lies beside it
   if (!move_to_free_name(file->path(), target)) refuse_taken_place(target);
-  return StudyStore::open(target, StudyStore::Access::read_only);
 }
 
 }  // namespace touchtrial::store

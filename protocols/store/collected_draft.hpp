@@ -6,7 +6,7 @@
 #include "core/bytes.hpp"
 #include "protocols/store/collected_chain.hpp"
 #include "protocols/store/event.hpp"
-#include "protocols/store/study_store.hpp"
+#include "protocols/store/sealing.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -16,17 +16,12 @@
 
 namespace touchtrial::store {
 
-class Database;
-
 /// Not to be shared between threads. A draft that is not finished leaves nothing behind.
 class CollectedDraft {
  public:
   /// A file beside `target`, which gets that name when it is finished.
   /// \throws StoreError if the target exists or nothing can be made there
   [[nodiscard]] static CollectedDraft in_file(const std::filesystem::path& target);
-  /// A private temporary database of SQLite, which no other program can open.
-  /// \param name  for messages
-  [[nodiscard]] static CollectedDraft temporary(const std::string& name);
 
   ~CollectedDraft();
   CollectedDraft(CollectedDraft&&) noexcept;
@@ -47,19 +42,17 @@ class CollectedDraft {
   /// A trace of the session that was added last; traces may come in any order.
   /// \throws the same
   void add_trace(int trial, const Bytes& box);
-  /// After a session's traces: checks that none is missing. Not called where traces are fetched.
+  /// After a session's traces: checks that none is missing.
   /// \throws the same
   void end_traces() const;
 
-  /// After all sessions: gives a file its name.
-  /// \param fetch  fetches traces that were not added; empty: there are none
+  /// After all sessions: gives the file its name.
   /// \throws StoreError if it cannot be written, or another file has taken the name meanwhile
-  [[nodiscard]] StudyStore finished(TraceFetch fetch = {}) &&;
+  void finish() &&;
 
  private:
   struct Impl;
   explicit CollectedDraft(std::unique_ptr<Impl> impl);
-  [[nodiscard]] static StudyStore store_of(Database database, TraceFetch fetch);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,7 +1,6 @@
 #include "protocols/store/study_store.hpp"
 
 #include "core/files.hpp"
-#include "protocols/store/collected_draft.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/rows.hpp"
 #include "protocols/store/schema.hpp"
@@ -64,7 +63,6 @@ struct StudyStore::Impl {
   [[nodiscard]] const Database& database() const { return study.database(); }
 
   StoredStudy study;
-  TraceFetch fetch_trace;  ///< of what was collected without its traces
 };
 
 StudyStore::StudyStore(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -115,12 +113,6 @@ StudyStore StudyStore::open(const std::filesystem::path& path, Access access) {
       impl->study.refuse(*differs + "; nothing is recorded in it, run `touchtrial verify`");
     }
   });
-  return StudyStore(std::move(impl));
-}
-
-StudyStore CollectedDraft::store_of(Database database, TraceFetch fetch) {
-  auto impl = std::make_unique<StudyStore::Impl>(std::move(database));
-  impl->fetch_trace = std::move(fetch);
   return StudyStore(std::move(impl));
 }
 
@@ -239,13 +231,10 @@ std::optional<SealedTrace> StudyStore::sealed_trace(int session, int trial) cons
   return impl_->run([&]() -> std::optional<SealedTrace> {
     Query query = impl_->database().query("SELECT box FROM traces WHERE session = ? AND trial = ?");
     query.bind(session).bind(trial);
-    if (query.step()) {
-      return SealedTrace{.session = impl_->study.session(session).own_session,
-                         .trial = trial,
-                         .box = query.blob(0)};
-    }
-    if (!impl_->fetch_trace) return std::nullopt;
-    return impl_->fetch_trace(session, trial);
+    if (!query.step()) return std::nullopt;
+    return SealedTrace{.session = impl_->study.session(session).own_session,
+                       .trial = trial,
+                       .box = query.blob(0)};
   });
 }
 

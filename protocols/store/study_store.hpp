@@ -40,9 +40,6 @@ struct ChainFault {
   std::string what;
 };
 
-/// Fetches the sealed trace of a session, by its number here, and trial. It may throw StoreError.
-using TraceFetch = std::function<std::optional<SealedTrace>(int, int)>;
-
 /// UTC since 1970, for the events of the file's chain.
 using UtcClock = std::function<std::chrono::nanoseconds()>;
 
@@ -215,7 +212,6 @@ class StudyStore {
   [[nodiscard]] std::optional<Bytes> wrapped_key(int session) const;
   /// The station's copy of an open session's key; empty if there is none, or the session has ended.
   [[nodiscard]] std::optional<Bytes> kept_key(int session) const;
-  /// \throws StoreError if the trace must be fetched from elsewhere and cannot be
   [[nodiscard]] std::optional<SealedTrace> sealed_trace(int session, int trial) const;
 
   /// How many stations' files were collected into this one; 0: it is a station's own. A collected
@@ -238,7 +234,6 @@ class StudyStore {
   struct Impl;
   static void fill_new(const std::filesystem::path& draft, const StudyCommitment& commitment,
                        std::chrono::nanoseconds at, const Signer& signer);
-  friend class CollectedDraft;
   explicit StudyStore(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

@@ -52,9 +52,7 @@ struct OddStudy : StudyFolder {
     replace_file(path() / "cloths.json", odd.dump());
     replace_file(path() / "quick.json",
                  R"({"feature_noise": 0.1, "explore_s": 0.5, "training_passes": 1})");
-    const ProgramResult prepared = StudyFolder::run({"prepare", in("cloths.json")});
-    INFO(prepared.errors);
-    REQUIRE(prepared.exit_code == 0);
+    done("prepare @cloths.json");
   }
   [[nodiscard]] std::vector<std::string> session(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {
@@ -122,9 +120,7 @@ void look_while_it_runs(const OddStudy& study) {
       done
       exit 9)";
   const std::string there = "cd '" + study.path().string() + "' || exit 9; ";
-  const ProgramResult looked = run_program("/bin/sh", study.path(), {"-c", there + script});
-  INFO(looked.errors);
-  REQUIRE(looked.exit_code == 0);
+  succeeded(run_program("/bin/sh", study.path(), {"-c", there + script}));
 }
 
 /// The fields of the pack that a list of a program's open files names.
@@ -188,9 +184,7 @@ TEST_CASE("nothing that a session prints, stores or shows of itself names a stim
   CHECK((mapped == 0 || mapped == kOddLabels.size()));
   CHECK(found_in(OddStudy::files(study.path(), "db"), secrets) == "");
 
-  const ProgramResult resumed = study.run(study.session({"--on-existing", "resume"}));
-  INFO(resumed.errors);
-  REQUIRE(resumed.exit_code == 0);
+  const ProgramResult resumed = succeeded(study.run(study.session({"--on-existing", "resume"})));
   CHECK(found_in(resumed.output + resumed.errors, secrets) == "");
   CHECK(found_in(OddStudy::files(study.path(), "db"), secrets) == "");
 }
@@ -198,9 +192,7 @@ TEST_CASE("nothing that a session prints, stores or shows of itself names a stim
 TEST_CASE("without the key, presentations look alike, whether a texture was felt or nothing") {
   const int catch_trials = 3;
   const OddStudy study(catch_trials);
-  const ProgramResult ran = study.run(study.session());
-  INFO(ran.errors);
-  REQUIRE(ran.exit_code == 0);
+  succeeded(study.run(study.session()));
   const VisibleTrials trials = visible_trials(study);
   CHECK(trials.size() == kOddLabels.size() * kRepeats + catch_trials);
   // The simulated hand explores every plane for the same time.

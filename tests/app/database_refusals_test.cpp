@@ -14,17 +14,6 @@ using namespace touchtrial;
 
 namespace {
 
-void check_refused(const ProgramResult& result, const std::vector<std::string>& words,
-                   int exit_code = 1) {
-  INFO(result.output << result.errors);
-  CHECK(result.exit_code == exit_code);
-  CHECK(line_count(result.errors) == 1);
-  for (const std::string& word : words) {
-    INFO(word);
-    CHECK(result.errors.find(word) != std::string::npos);
-  }
-}
-
 ProgramResult note(const StudyFolder& study, const std::string& database) {
   return study.run({"note", database, "--participant", "P001", "came late"});
 }
@@ -49,32 +38,32 @@ ProgramResult run_as_ordinary_user(const StudyFolder& study,
 
 TEST_CASE("a database that another program writes is refused, and is not changed") {
   const StudyFolder study;
-  REQUIRE(study.simulate("study.db", {"--keep-blind"}).exit_code == 0);
+  succeeded(study.simulate("study.db", {"--keep-blind"}));
   {
     SQLite::Database other(study.in("study.db"), SQLite::OPEN_READWRITE);
     other.exec("BEGIN IMMEDIATE");
-    check_refused(note(study, study.in("study.db")),
+    check_refused(note(study, study.in("study.db")), 1,
                   {"study.db: ", "is in use by another program", "try again"});
-    CHECK(study.run({"report", study.in("study.db")}).exit_code == 0);  // reading still works
+    study.done("report @study.db");  // reading still works
     other.exec("ROLLBACK");
   }
-  CHECK(note(study, study.in("study.db")).exit_code == 0);
+  succeeded(note(study, study.in("study.db")));
 }
 
 TEST_CASE("every command names a database with a corrupted page as damaged") {
   const StudyFolder study;
-  REQUIRE(study.simulate("study.db", {"--keep-blind"}).exit_code == 0);
+  succeeded(study.simulate("study.db", {"--keep-blind"}));
   Bytes bytes = read_file(study.path() / "study.db");
   constexpr std::size_t kPage = 8192;
   REQUIRE(bytes.size() > 3 * kPage);
   // The first page contains the schema, the second the root of the events.
   for (std::size_t i = kPage; i < 2 * kPage; ++i) bytes[i] = 0xa5;
   replace_file(study.path() / "study.db", ByteView(bytes));
-  check_refused(note(study, study.in("study.db")),
-                {"study.db: ", "is damaged", "restore it from a backup"}, 3);
-  check_refused(study.run({"report", study.in("study.db")}),
-                {"study.db: ", "is damaged", "restore it from a backup"}, 3);
-  const ProgramResult verified = study.run({"verify", study.in("study.db")});
+  check_refused(note(study, study.in("study.db")), 3,
+                {"study.db: ", "is damaged", "restore it from a backup"});
+  check_refused(study.type("report @study.db"), 3,
+                {"study.db: ", "is damaged", "restore it from a backup"});
+  const ProgramResult verified = study.type("verify @study.db");
   INFO(verified.output << verified.errors);
   CHECK(verified.exit_code == 3);
   CHECK(verified.output.find("damaged") != std::string::npos);
@@ -82,18 +71,17 @@ TEST_CASE("every command names a database with a corrupted page as damaged") {
 
 TEST_CASE("a session is not put into another study's database") {
   const StudyFolder study;
-  REQUIRE(study.simulate("study.db", {"--keep-blind"}).exit_code == 0);
+  succeeded(study.simulate("study.db", {"--keep-blind"}));
   json other = study_of("classification");
   other["study"] = "others";
   other["seed"] = 12;
   replace_file(study.path() / "others.json", other.dump());
-  REQUIRE(study.run({"prepare", study.in("others.json")}).exit_code == 0);
+  study.done("prepare @others.json");
   const std::string before = content(study.path() / "study.db");
-  const ProgramResult refused =
-      study.run({"run", study.in("others.json"), "--participant", "P009", "--db",
-                 study.in("study.db"), "--station-file", study.in("others.station"), "--pack",
-                 study.in("others.pack"), "--subject", study.in("quick.json"), "--headless"});
-  check_refused(refused, {"study.db: ", "is the database of another study", "another --db"});
+  const ProgramResult refused = study.type(
+      "run @others.json --participant P009 --db @study.db --station-file @others.station --pack "
+      "@others.pack --subject @quick.json --headless");
+  check_refused(refused, 1, {"study.db: ", "is the database of another study", "another --db"});
   CHECK(content(study.path() / "study.db") == before);
 }
 
@@ -105,10 +93,10 @@ TEST_CASE("a file that is not a study's database is refused, and is not changed"
         .exec("CREATE TABLE birds(name)");
   }
   fs::create_directory(study.path() / "folder.db");
-  check_refused(note(study, study.in("letter.db")), {"letter.db", "is no Touchtrial database"});
-  check_refused(note(study, study.in("others.db")), {"others.db", "none of Touchtrial"});
-  check_refused(note(study, study.in("folder.db")), {"folder.db", "is a folder"});
-  check_refused(run_session(study, "cloths.json", "letter.db"), {"letter.db"});
+  check_refused(note(study, study.in("letter.db")), 1, {"letter.db", "is no Touchtrial database"});
+  check_refused(note(study, study.in("others.db")), 1, {"others.db", "none of Touchtrial"});
+  check_refused(note(study, study.in("folder.db")), 1, {"folder.db", "is a folder"});
+  check_refused(run_session(study, "cloths.json", "letter.db"), 1, {"letter.db"});
   CHECK(content(study.path() / "letter.db") == std::string(300, 'x'));
 }
 
@@ -119,7 +107,7 @@ TEST_CASE("in a read-only folder, reading works and writing says what is wrong")
     WARN("not tested: root may write everywhere, and the program cannot be run as somebody else");
     return;
   }
-  REQUIRE(study.simulate("study.db", {"--keep-blind"}).exit_code == 0);
+  succeeded(study.simulate("study.db", {"--keep-blind"}));
   REQUIRE(::chmod(study.in("study.db").c_str(), 0644) == 0);
   REQUIRE(::chmod(study.path().c_str(), 0555) == 0);
   const auto as_user = [&](const std::vector<std::string>& arguments) {
@@ -139,9 +127,9 @@ TEST_CASE("in a read-only folder, reading works and writing says what is wrong")
   INFO(reported.errors);
   CHECK(reported.exit_code == 0);
   CHECK(json::parse(reported.output).at("participants") == 4);
-  check_refused(noted, {"study.db: ", "cannot be written", "check its permissions"});
-  check_refused(file_only, {"study.db: ", "cannot be written", "its folder"});
-  check_refused(simulated, {study.path().string()});
+  check_refused(noted, 1, {"study.db: ", "cannot be written", "check its permissions"});
+  check_refused(file_only, 1, {"study.db: ", "cannot be written", "its folder"});
+  check_refused(simulated, 1, {study.path().string()});
 }
 
 TEST_CASE("a refusal prints file names in any script, and bytes that are not text as numbers") {

@@ -46,9 +46,7 @@ class FitFolder {
 }  // namespace
 
 TEST_CASE("device fit places the part that all pictures cover, without a device") {
-  const ProgramResult result = FitFolder(200, 230).fit({"--device", "falcon", "--json"});
-  INFO(result.errors);
-  REQUIRE(result.exit_code == 0);
+  const ProgramResult result = succeeded(FitFolder(200, 230).fit({"--device", "falcon", "--json"}));
   const json fit = json::parse(result.output);
   CHECK(fit.at("fits") == true);
   CHECK(fit.at("plane").at("width_px") == 200);
@@ -62,9 +60,8 @@ TEST_CASE("device fit places the part that all pictures cover, without a device"
 }
 
 TEST_CASE("device fit places a plane vertically on request") {
-  const ProgramResult result =
-      FitFolder(200, 200).fit({"--device", "falcon", "--orientation", "vertical", "--json"});
-  REQUIRE(result.exit_code == 0);
+  const ProgramResult result = succeeded(
+      FitFolder(200, 200).fit({"--device", "falcon", "--orientation", "vertical", "--json"}));
   CHECK(json::parse(result.output).at("origin_mm") == json::array({-20.0, 20.0, 0.0}));
 }
 
@@ -78,8 +75,7 @@ TEST_CASE("device fit refuses a plane that is too large with a crop in pixels") 
 }
 
 TEST_CASE("device fit accepts any plane for a device without a frame of its own") {
-  const ProgramResult result = FitFolder(600, 600).fit({"--device", "simulated"});
-  CHECK(result.exit_code == 0);
+  const ProgramResult result = succeeded(FitFolder(600, 600).fit({"--device", "simulated"}));
   CHECK_THAT(result.output, holds_text("120.0 x 120.0 mm") && holds_text("fits"));
 }
 
@@ -92,32 +88,24 @@ TEST_CASE("device fit compares a study's stiffness with what the device says tha
                    wall + "}")
         .fit(more);
   };
-  const ProgramResult below = fit("0.3", {"--json"});
-  INFO(below.errors);
-  REQUIRE(below.exit_code == 0);
+  const ProgramResult below = succeeded(fit("0.3", {"--json"}));
   CHECK(below.errors.empty());
   const json stiffness = json::parse(below.output).at("stiffness");
   CHECK(stiffness.at("wall_n_per_mm") == 0.3);
   CHECK(stiffness.at("limit_n_per_mm").get<double>() == Approx(0.4));
   CHECK(stiffness.at("damping_limit_n_s_per_mm").get<double>() == Approx(0.004));
 
-  const ProgramResult at = fit("0.4", {});
-  CHECK(at.exit_code == 0);
+  const ProgramResult at = succeeded(fit("0.4", {}));
   CHECK_THAT(at.output, holds_text("0.4 N/mm of the wall") && holds_text("at most 0.4 N/mm"));
   CHECK_THAT(at.errors, holds_text("at the device's own limit"));
 
-  const ProgramResult beyond = fit("0.5", {});
-  CHECK(beyond.exit_code == 1);
-  CHECK(line_count(beyond.errors) == 1);
-  CHECK_THAT(beyond.errors, holds_text("rendering.stiffness_n_per_mm of 0.5 N/mm is beyond"));
+  check_refused(fit("0.5", {}), 1, {"rendering.stiffness_n_per_mm of 0.5 N/mm is beyond"});
 }
 
 TEST_CASE("device fit takes a product's model where no device of it can be opened") {
   const FitFolder folder(200, 200);
   replace_file(folder.path() / "devices.json", R"({"dhd": {"library": "gone.so"}})");
-  const ProgramResult product = folder.fit({"--device", "omega", "--json"});
-  INFO(product.errors);
-  REQUIRE(product.exit_code == 0);
+  const ProgramResult product = succeeded(folder.fit({"--device", "omega", "--json"}));
   const json fit = json::parse(product.output);
   CHECK(fit.at("driver") == "dhd");
   CHECK(fit.at("model") == "omega_3");
@@ -130,14 +118,10 @@ TEST_CASE("device fit takes a product's model where no device of it can be opene
 
 TEST_CASE("device fit takes the study's device, and of that its model") {
   const FitFolder named(200, 200, R"(, "rendering": {"device": "omega"})");
-  const ProgramResult result = named.fit({"--json"});
-  INFO(result.errors);
-  REQUIRE(result.exit_code == 0);
+  const ProgramResult result = succeeded(named.fit({"--json"}));
   CHECK(json::parse(result.output).at("model") == "omega_3");
   CHECK(json::parse(result.output).at("device") == "omega");
-  const ProgramResult nameless = FitFolder(200, 200).fit({});
-  CHECK(nameless.exit_code == 2);
-  CHECK_THAT(nameless.errors, holds_text("/rendering/device"));
+  check_refused(FitFolder(200, 200).fit({}), 2, {"/rendering/device"});
 }
 
 TEST_CASE("device fit refuses a certificate that no session takes") {
@@ -172,15 +156,12 @@ TEST_CASE("device fit refuses a device or an orientation that does not exist") {
 TEST_CASE("device fit says how strong the stimuli are once the study is prepared") {
   const FitFolder folder(200, 200);
   const auto levels = [&] {
-    const ProgramResult result = folder.fit({"--device", "falcon", "--json"});
-    INFO(result.errors);
-    REQUIRE(result.exit_code == 0);
+    const ProgramResult result = succeeded(folder.fit({"--device", "falcon", "--json"}));
     return json::parse(result.output).at("levels");
   };
   CHECK(levels().is_null());
-  const ProgramResult prepared =
-      run_touchtrial(folder.path(), {"prepare", (folder.path() / "study.json").string(), "--json"});
-  REQUIRE(prepared.exit_code == 0);
+  const ProgramResult prepared = succeeded(run_touchtrial(
+      folder.path(), {"prepare", (folder.path() / "study.json").string(), "--json"}));
   const json there = json::parse(prepared.output);
   CHECK(levels().at("blank") == there.at("blank").at("levels"));
   const json fit = json::parse(folder.fit({"--device", "falcon", "--json"}).output);

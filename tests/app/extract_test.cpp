@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
+#include <vector>
 
 using namespace touchtrial;
 using namespace touchtrial::engine;
@@ -255,19 +257,29 @@ TEST_CASE("extract says which file it cannot write") {
   CHECK(result.errors.find("/no/such/folder/out.png") != std::string::npos);
 }
 
-TEST_CASE("every command has help that exits with 0") {
+TEST_CASE("every command has help of 80 columns, in two ways") {
   const TempFolder folder;
-  CHECK(run_touchtrial(folder.path(), {"--help"}).exit_code == 0);
   const ProgramResult version = run_touchtrial(folder.path(), {"--version"});
   CHECK(version.exit_code == 0);
   CHECK(version.output.starts_with("touchtrial " + std::string(program_version())));
-  for (const std::string command :
-       {"extract", "evaluate", "stimuli", "prepare", "simulate", "close", "unblind", "verify",
-        "report", "export", "status", "consent"}) {
-    const ProgramResult result = run_touchtrial(folder.path(), {command, "--help"});
+  std::vector<std::string> commands = {""};
+  std::istringstream table(run_touchtrial(folder.path(), {"reference", "--table"}).output);
+  for (std::string row; std::getline(table, row);) {
+    const std::string words = row.substr(0, row.find("|-|"));
+    const std::size_t bar = words.find('|');
+    if (words == row || words[bar + 1] == '-') continue;
+    commands.push_back(words.substr(0, bar) + (bar == 0 ? "" : " ") + words.substr(bar + 1));
+  }
+  CHECK(commands.size() > 40);
+  for (const std::string& command : commands) {
     INFO(command);
-    CHECK(result.exit_code == 0);
-    CHECK(result.output.find("Usage") != std::string::npos);
+    const ProgramResult help = run_touchtrial(
+        folder.path(), typed_words(command + (command.empty() ? "" : " ") + "--help", {}));
+    CHECK(help.exit_code == 0);
+    CHECK_THAT(help.output, holds_text("Usage: touchtrial " + command));
+    CHECK(run_touchtrial(folder.path(), typed_words("help " + command, {})).output == help.output);
+    std::istringstream lines(help.output);
+    for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
   }
 }
 

@@ -8,28 +8,15 @@ namespace {
 
 /// Few explorations: these tests check the command, not the estimates.
 ProgramResult fit(const StudyFolder& study, const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = {
-      "fit", study.in("s.db"), "--subject", study.in("quick.json"), "--explorations",
-      "16",  "--bootstraps",   "9"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return study.run(arguments);
-}
-
-void require_refused(const ProgramResult& ran, int exit_code, const std::string& words) {
-  INFO(ran.errors);
-  CHECK(ran.exit_code == exit_code);
-  CHECK(line_count(ran.errors) == 1);
-  CHECK_THAT(ran.errors, holds_text(words));
+  return study.type("fit @s.db --subject @quick.json --explorations 16 --bootstraps 9", more);
 }
 
 }  // namespace
 
 TEST_CASE("fit prints tables, writes a subject file that simulate reads, and stamps both") {
   const StudyFolder study;
-  REQUIRE(study.simulate("s.db").exit_code == 0);
-  const ProgramResult ran = fit(study, {"-o", study.in("fitted.json")});
-  INFO(ran.errors);
-  REQUIRE(ran.exit_code == 0);
+  succeeded(study.simulate("s.db"));
+  const ProgramResult ran = succeeded(fit(study, {"-o", study.in("fitted.json")}));
   CHECK_THAT(ran.output, holds_text("SIMULATED"));
   CHECK_THAT(ran.output, Catch::Matchers::StartsWith(
                              "simulated on: ideal device (no such device is sold)\n"
@@ -39,12 +26,8 @@ TEST_CASE("fit prints tables, writes a subject file that simulate reads, and sta
   const json fitted = json::parse(content(study.path() / "fitted.json"));
   CHECK(fitted.at("explore_s") == 1.5);
   CHECK(fitted.at("feature_noise").get<double>() > 0.0);
-  CHECK(study
-            .run({"simulate", study.in("cloths.json"), "--participants", "1", "--db",
-                  study.in("again.db"), "--subject", study.in("fitted.json")})
-            .exit_code == 0);
-  const ProgramResult as_json = fit(study, {"--json", "--fix", "lapse,classes,swaps"});
-  REQUIRE(as_json.exit_code == 0);
+  study.done("simulate @cloths.json --participants 1 --db @again.db --subject @fitted.json");
+  const ProgramResult as_json = succeeded(fit(study, {"--json", "--fix", "lapse,classes,swaps"}));
   const json object = json::parse(as_json.output);
   CHECK(object.at("stamp") == "SIMULATED");
   CHECK(object.at("simulated_on") == "ideal device (no such device is sold)");
@@ -62,46 +45,38 @@ TEST_CASE("fit prints tables, writes a subject file that simulate reads, and sta
 
 TEST_CASE("fit takes two methods, and the sessions that the report takes") {
   const StudyFolder study("comparison");
-  REQUIRE(study.simulate("s.db").exit_code == 0);
-  REQUIRE(study
-              .run({"exclude", study.in("s.db"), "--participant", "P002", "--reason", "ill",
-                    "--after-outcomes"})
-              .exit_code == 0);
-  const ProgramResult ran = fit(study, {"--json"});
-  INFO(ran.errors);
-  REQUIRE(ran.exit_code == 0);
+  succeeded(study.simulate("s.db"));
+  study.done("exclude @s.db --participant P002 --reason ill --after-outcomes");
+  const ProgramResult ran = succeeded(fit(study, {"--json"}));
   const json object = json::parse(ran.output);
   CHECK(object.at("participants") == 3);
   CHECK(object.at("confusions").size() == 2);
   for (const char* id : {"P001", "P003", "P004"}) {
-    REQUIRE(study
-                .run({"exclude", study.in("s.db"), "--participant", id, "--reason", "ill",
-                      "--after-outcomes"})
-                .exit_code == 0);
+    succeeded(study.run(
+        {"exclude", study.in("s.db"), "--participant", id, "--reason", "ill", "--after-outcomes"}));
   }
-  require_refused(fit(study, {}), 2, "nothing to fit");
-  require_refused(fit(study, {}), 2, study.in("s.db"));
+  check_refused(fit(study, {}), 2, {"nothing to fit"});
+  check_refused(fit(study, {}), 2, {study.in("s.db")});
 }
 
 TEST_CASE("fit refuses blind studies, strange labels, and absurd numbers, in one line each") {
   const StudyFolder study;
-  REQUIRE(study.simulate("s.db", {"--keep-blind"}).exit_code == 0);
-  require_refused(fit(study, {}), 2, "not unblinded");
-  REQUIRE(study.run({"close", study.in("s.db"), "--yes"}).exit_code == 0);
-  REQUIRE(study.run({"unblind", study.in("s.db"), "--reason", "test", "--yes"}).exit_code == 0);
+  succeeded(study.simulate("s.db", {"--keep-blind"}));
+  check_refused(fit(study, {}), 2, {"not unblinded"});
+  study.done("close @s.db --yes");
+  study.done("unblind @s.db --reason test --yes");
   replace_file(study.path() / "strange.json",
                std::string(R"({"label_swap": [["linen", "velvet"]]})"));
-  require_refused(study.run({"fit", study.in("s.db"), "--subject", study.in("strange.json")}), 2,
-                  "velvet");
-  require_refused(fit(study, {"--fix", "everything"}), 2, "everything");
+  check_refused(study.type("fit @s.db --subject @strange.json"), 2, {"velvet"});
+  check_refused(fit(study, {"--fix", "everything"}), 2, {"everything"});
   for (const char* number : {"0", "-5", "1e9", "99999999999999999999"}) {
-    require_refused(study.run({"fit", study.in("s.db"), "--explorations", number}), 2,
-                    "--explorations");
+    check_refused(study.run({"fit", study.in("s.db"), "--explorations", number}), 2,
+                  {"--explorations"});
   }
-  require_refused(study.run({"fit", study.in("nowhere.db")}), 1, "nowhere.db");
+  check_refused(study.type("fit @nowhere.db"), 1, {"nowhere.db"});
   fs::rename(study.path() / "s.db.key", study.path() / "moved.key");
-  require_refused(fit(study, {}), 1, "key");
-  CHECK(fit(study, {"--key", study.in("moved.key")}).exit_code == 0);
+  check_refused(fit(study, {}), 1, {"key"});
+  succeeded(fit(study, {"--key", study.in("moved.key")}));
 }
 
 TEST_CASE("fit --accuracies makes a subject for published accuracies, and refuses others") {
@@ -111,28 +86,26 @@ TEST_CASE("fit --accuracies makes a subject for published accuracies, and refuse
                       study.in("quick.json"), "--explorations", "40", "--participants", "4",
                       "--fix", "lapse,position", "--json"});
   };
-  const ProgramResult ran = published("granite=0.9,linen=0.7,corduroy=0.8");
-  INFO(ran.errors);
-  REQUIRE(ran.exit_code == 0);
+  const ProgramResult ran = succeeded(published("granite=0.9,linen=0.7,corduroy=0.8"));
   const json object = json::parse(ran.output);
   CHECK(object.at("parameters") == 3);
   for (const json& one : object.at("accuracies")) {
     CHECK(one.at("reached").get<double>() == Approx(one.at("wanted").get<double>()).margin(0.03));
   }
-  require_refused(published("granite=0.9,linen=0.7"), 2, "corduroy");
-  require_refused(published("granite=0.9,linen=0.7,corduroy=1.8"), 2, "corduroy=1.8");
-  require_refused(published("granite=0.9,linen=0.7,corduroy=0.8,velvet=0.5"), 2, "velvet");
-  require_refused(published("granite=0.9,granite=0.8,linen=0.7,corduroy=0.8"), 2, "twice");
-  require_refused(published("granite"), 2, "granite");
+  check_refused(published("granite=0.9,linen=0.7"), 2, {"corduroy"});
+  check_refused(published("granite=0.9,linen=0.7,corduroy=1.8"), 2, {"corduroy=1.8"});
+  check_refused(published("granite=0.9,linen=0.7,corduroy=0.8,velvet=0.5"), 2, {"velvet"});
+  check_refused(published("granite=0.9,granite=0.8,linen=0.7,corduroy=0.8"), 2, {"twice"});
+  check_refused(published("granite"), 2, {"granite"});
 }
 
 TEST_CASE("fit replaces subject files only, and nothing that it reads") {
   const StudyFolder study;
-  REQUIRE(study.simulate("s.db").exit_code == 0);
+  succeeded(study.simulate("s.db"));
   const auto unharmed = [&](const std::string& name, const std::vector<std::string>& arguments,
                             const std::string& words) {
     const std::string before = content(study.path() / name);
-    require_refused(study.run(arguments), 2, words);
+    check_refused(study.run(arguments), 2, {words});
     CHECK(content(study.path() / name) == before);
   };
   for (const char* name : {"s.db", "s.db.key"}) {
@@ -141,7 +114,7 @@ TEST_CASE("fit replaces subject files only, and nothing that it reads") {
   for (const char* ending : {"-wal", "-shm"}) {
     const std::string name = study.in("s.db") + ending;
     const bool was_there = fs::exists(name);
-    require_refused(fit(study, {"-o", name}), 2, "is one of the inputs");
+    check_refused(fit(study, {"-o", name}), 2, {"is one of the inputs"});
     CHECK(fs::exists(name) == was_there);
   }
   fs::create_hard_link(study.path() / "s.db", study.path() / "linked.db");
@@ -156,6 +129,6 @@ TEST_CASE("fit replaces subject files only, and nothing that it reads") {
       "is one of the inputs");
   unharmed("s.db", {"fit", study.in("s.db"), "--accuracies", accuracies}, "study file");
   fs::copy_file(study.path() / "quick.json", study.path() / "old.json");
-  CHECK(fit(study, {"-o", study.in("old.json")}).exit_code == 0);
+  succeeded(fit(study, {"-o", study.in("old.json")}));
   CHECK(content(study.path() / "old.json") != content(study.path() / "quick.json"));
 }

@@ -20,11 +20,7 @@ struct KeyedStudy : StudyFolder {
   explicit KeyedStudy(const std::vector<std::string>& options = {}) {
     replace_file(path() / "one.txt", kSecret + "\nnot this line\n", FileMode::owner_only);
     replace_file(path() / "two.txt", "quite another passphrase\n", FileMode::owner_only);
-    std::vector<std::string> arguments = {"prepare", in("cloths.json")};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const ProgramResult prepared = run(arguments);
-    INFO(prepared.errors);
-    REQUIRE(prepared.exit_code == 0);
+    done("prepare @cloths.json", options);
   }
   /// `touchtrial key COMMAND ...`
   [[nodiscard]] ProgramResult key(std::vector<std::string> words,
@@ -34,43 +30,28 @@ struct KeyedStudy : StudyFolder {
   }
   /// One rehearsed session in study.db, under the prepared study's secrets.
   void rehearse() const {
-    const ProgramResult done = run({"run", in("cloths.json"), "--participant", "P01", "--db",
-                                    in("study.db"), "--subject", in("quick.json"), "--headless"});
-    INFO(done.errors);
-    REQUIRE(done.exit_code == 0);
+    done("run @cloths.json --participant P01 --db @study.db --subject @quick.json --headless");
   }
 };
-
-void check_key_refused(const ProgramResult& result, int exit_code,
-                       const std::vector<std::string>& words) {
-  INFO(result.output << result.errors);
-  CHECK(result.exit_code == exit_code);
-  CHECK(line_count(result.errors) == 1);
-  for (const std::string& word : words) CHECK_THAT(result.errors, holds_text(word));
-}
 
 }  // namespace
 
 TEST_CASE("key check proves a prepared study, and says where the key lies") {
   const KeyedStudy study;
-  const ProgramResult beside = study.key({"check", study.in("cloths.json")});
-  INFO(beside.output << beside.errors);
-  CHECK(beside.exit_code == 0);
+  const ProgramResult beside = study.done("key check @cloths.json");
   CHECK_THAT(beside.output, holds_text("cloths.key (not protected by a passphrase)"));
   CHECK_THAT(beside.output, holds_text("station main: " + study.in("cloths.station") +
                                        ": a test record opens with the key"));
   CHECK_THAT(beside.errors, holds_text("lies beside the study"));
-  CHECK(study.key({"check", study.in("cloths.key")}).exit_code == 0);
+  study.done("key check @cloths.key");
 
   fs::create_directory(study.path() / "stick");
   fs::rename(study.path() / "cloths.key", study.path() / "stick" / "cloths.key");
-  const ProgramResult away =
-      study.key({"check", study.in("cloths.json"), "--key", study.in("stick/cloths.key")});
-  CHECK(away.exit_code == 0);
+  const ProgramResult away = study.done("key check @cloths.json --key @stick/cloths.key");
   CHECK(away.errors.empty());
-  check_key_refused(study.key({"check", study.in("cloths.json")}), 1, {"there is no key", "--key"});
-  check_key_refused(study.key({"check", study.in("stick/cloths.key")}), 2,
-                    {"no station's file", "name the study file"});
+  check_refused(study.type("key check @cloths.json"), 1, {"there is no key", "--key"});
+  check_refused(study.type("key check @stick/cloths.key"), 2,
+                {"no station's file", "name the study file"});
 }
 
 TEST_CASE(
@@ -80,50 +61,39 @@ TEST_CASE(
   const fs::path memory = study.path() / ".config/touchtrial/keys.json";
   fs::create_directory(study.path() / "stick");
   fs::rename(study.path() / "cloths.key", study.path() / "stick/cloths.key");
-  check_key_refused(study.key({"check", study.in("study.db")}), 1, {"there is no key beside"});
+  check_refused(study.type("key check @study.db"), 1, {"there is no key beside"});
   CHECK_FALSE(fs::exists(memory));
-  REQUIRE(
-      study.key({"check", study.in("study.db"), "--key", study.in("stick/cloths.key")}).exit_code ==
-      0);
+  study.done("key check @study.db --key @stick/cloths.key");
   const json kept = json::parse(content(memory));
   CHECK(kept == json{{fs::canonical(study.path() / "study.db").string(),
                       fs::canonical(study.path() / "stick/cloths.key").string()}});
   CHECK(fs::status(memory).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
-  CHECK(study.key({"check", study.in("study.db")}).exit_code == 0);
-  const ProgramResult unblinded =
-      study.run({"unblind", study.in("study.db"), "--interim", "--reason", "look", "--yes"});
-  INFO(unblinded.errors);
-  CHECK(unblinded.exit_code == 0);
-  CHECK(study.run({"report", study.in("study.db")}).exit_code == 0);
+  study.done("key check @study.db");
+  study.done("unblind @study.db --interim --reason look --yes");
+  study.done("report @study.db");
   fs::rename(study.path() / "stick/cloths.key", study.path() / "elsewhere.key");
-  check_key_refused(
-      study.key({"check", study.in("study.db")}), 1,
-      {"there is no key beside", "none at", "stick/cloths.key as last time", "--key"});
+  check_refused(study.type("key check @study.db"), 1,
+                {"there is no key beside", "none at", "stick/cloths.key as last time", "--key"});
   replace_file(memory, std::string("[damaged"));
-  check_key_refused(study.key({"check", study.in("study.db")}), 1, {"there is no key beside"});
+  check_refused(study.type("key check @study.db"), 1, {"there is no key beside"});
 }
 
 TEST_CASE("key check names the station whose file does not hold") {
   const KeyedStudy study;
-  REQUIRE(study.run({"plan", study.in("cloths.json"), "--participants", "4", "--stations", "2"})
-              .exit_code == 0);
+  study.done("plan @cloths.json --participants 4 --stations 2");
   fs::copy_file(study.path() / "cloths.1.station", study.path() / "older.station");
-  REQUIRE(
-      study.run({"plan", study.in("cloths.json"), "--participants", "9", "--extend"}).exit_code ==
-      0);
-  const ProgramResult both = study.key({"check", study.in("cloths.json"), "--json"});
-  CHECK(both.exit_code == 0);
+  study.done("plan @cloths.json --participants 9 --extend");
+  const ProgramResult both = study.done("key check @cloths.json --json");
   CHECK(json::parse(both.output).at("stations").size() == 2);
   fs::copy_file(study.path() / "older.station", study.path() / "cloths.1.station",
                 fs::copy_options::overwrite_existing);
-  const ProgramResult stale = study.key({"check", study.in("cloths.json")});
+  const ProgramResult stale = study.type("key check @cloths.json");
   CHECK(stale.exit_code == 3);
   CHECK_THAT(stale.output, holds_text("cloths.1.station: DOES NOT HOLD: has other enrolment"));
   CHECK_THAT(stale.output, holds_text("cloths.2.station: a test record opens"));
-  CHECK(study.key({"check", study.in("cloths.json"), "--station", "2"}).exit_code == 0);
-  CHECK(study.key({"check", study.in("cloths.json"), "--station", "1"}).exit_code == 3);
-  const ProgramResult other =
-      study.key({"check", study.in("cloths.json"), "--station-file", study.in("older.station")});
+  study.done("key check @cloths.json --station 2");
+  CHECK(study.type("key check @cloths.json --station 1").exit_code == 3);
+  const ProgramResult other = study.type("key check @cloths.json --station-file @older.station");
   CHECK(other.exit_code == 3);
 }
 
@@ -132,24 +102,18 @@ TEST_CASE("a key that was lost is made again from its printed sheet") {
   study.rehearse();
   const std::string key = content(study.path() / "cloths.key");
   const std::string station = content(study.path() / "cloths.station");
-  const ProgramResult printed =
-      study.key({"sheet", study.in("cloths.key"), "--out", study.in("sheet.txt")});
-  INFO(printed.errors);
-  REQUIRE(printed.exit_code == 0);
+  study.done("key sheet @cloths.key --out @sheet.txt");
   CHECK((fs::status(study.path() / "sheet.txt").permissions() & fs::perms(0777)) ==
         fs::perms(0600));
-  REQUIRE(study.key({"sheet", study.in("cloths.key"), "--out", study.in("sheet.html")}).exit_code ==
-          0);
+  study.done("key sheet @cloths.key --out @sheet.html");
   const std::string sheet = content(study.path() / "sheet.txt");
   const std::string master = json::parse(key).at("master");
   for (std::size_t i = 0; i < master.size(); i += 4) {
     CHECK_THAT(sheet, holds_text(master.substr(i, 4)));
     CHECK_THAT(content(study.path() / "sheet.html"), holds_text(master.substr(i, 4)));
   }
-  check_key_refused(study.key({"sheet", study.in("cloths.key"), "--out", study.in("sheet.txt")}), 2,
-                    {"exists already"});
-  check_key_refused(study.key({"sheet", study.in("cloths.key"), "--out", study.in("sheet.doc")}), 2,
-                    {".html or .txt"});
+  check_refused(study.type("key sheet @cloths.key --out @sheet.txt"), 2, {"exists already"});
+  check_refused(study.type("key sheet @cloths.key --out @sheet.doc"), 2, {".html or .txt"});
 
   fs::remove(study.path() / "cloths.key");
   fs::remove(study.path() / "cloths.station");
@@ -158,42 +122,35 @@ TEST_CASE("a key that was lost is made again from its printed sheet") {
   std::string mistyped = sheet;
   const std::size_t place = mistyped.find("3: ") + 4;
   mistyped[place] = mistyped[place] == '7' ? '8' : '7';
-  check_key_refused(study.key(restore, mistyped), 2, {"line 3 is not what the sheet says"});
-  check_key_refused(study.key(restore, "1: 12\n"), 2, {"line 1 is not what the sheet says"});
-  check_key_refused(study.key(restore, "nothing\n"), 2, {"line 1 of the sheet is missing"});
-  check_key_refused(study.key(restore), 2, {"standard input, which is empty"});
+  check_refused(study.key(restore, mistyped), 2, {"line 3 is not what the sheet says"});
+  check_refused(study.key(restore, "1: 12\n"), 2, {"line 1 is not what the sheet says"});
+  check_refused(study.key(restore, "nothing\n"), 2, {"line 1 of the sheet is missing"});
+  check_refused(study.key(restore), 2, {"standard input, which is empty"});
   CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
 
-  const ProgramResult restored = study.key(restore, sheet);
-  INFO(restored.errors);
-  REQUIRE(restored.exit_code == 0);
+  const ProgramResult restored = succeeded(study.key(restore, sheet));
   CHECK(restored.errors.empty());
   CHECK(content(study.path() / "cloths.key") == key);
-  check_key_refused(study.key(restore, sheet), 2, {"exists already"});
-  const ProgramResult opened =
-      study.key({"check", study.in("study.db"), "--key", study.in("cloths.key")});
-  CHECK(opened.exit_code == 0);
+  check_refused(study.key(restore, sheet), 2, {"exists already"});
+  const ProgramResult opened = study.done("key check @study.db --key @cloths.key");
   CHECK_THAT(opened.output, holds_text("opens 1 session ("));
-  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  study.done("prepare @cloths.json");
   CHECK(content(study.path() / "cloths.station") == station);
 }
 
 TEST_CASE("a simulated study's key needs no sheet") {
   const StudyFolder study;
-  REQUIRE(study.simulate("a.db").exit_code == 0);
-  check_key_refused(
-      study.run({"key", "sheet", study.in("a.db.key"), "--out", study.in("sheet.txt")}), 2,
-      {"is simulated"});
+  succeeded(study.simulate("a.db"));
+  check_refused(study.type("key sheet @a.db.key --out @sheet.txt"), 2, {"is simulated"});
 }
 
 TEST_CASE("a protected key opens with its passphrase alone, and stays protected") {
   const StudyFolder unprepared;
   replace_file(unprepared.path() / "open.txt", kSecret + "\n");
-  check_key_refused(unprepared.run({"prepare", unprepared.in("cloths.json"), "--passphrase",
-                                    "--passphrase-file", unprepared.in("open.txt")}),
-                    1, {"open.txt", "others may read"});
-  check_key_refused(unprepared.run({"prepare", unprepared.in("cloths.json"), "--passphrase"}), 2,
-                    {"asked for at a terminal"});
+  check_refused(unprepared.type("prepare @cloths.json --passphrase --passphrase-file @open.txt"), 1,
+                {"open.txt", "others may read"});
+  check_refused(unprepared.type("prepare @cloths.json --passphrase"), 2,
+                {"asked for at a terminal"});
   CHECK_FALSE(fs::exists(unprepared.path() / "cloths.key"));
 
   TempFolder secrets;
@@ -203,19 +160,18 @@ TEST_CASE("a protected key opens with its passphrase alone, and stays protected"
   CHECK(design::is_protected(study.path() / "cloths.key"));
   CHECK_FALSE(design::is_protected(study.path() / "cloths.station"));
   const std::vector<std::string> check = {"check", study.in("cloths.json")};
-  check_key_refused(study.key(check), 1, {"protected by a passphrase", "--passphrase-file"});
-  check_key_refused(
-      study.key({"check", study.in("cloths.json"), "--passphrase-file", study.in("two.txt")}), 1,
-      {"cloths.key: the passphrase is wrong"});
-  const ProgramResult checked = study.key({"check", study.in("cloths.json"), "--passphrase-file",
-                                           study.in("two.txt"), "--passphrase-file", one});
-  CHECK(checked.exit_code == 0);
+  check_refused(study.key(check), 1, {"protected by a passphrase", "--passphrase-file"});
+  check_refused(study.type("key check @cloths.json --passphrase-file @two.txt"), 1,
+                {"cloths.key: the passphrase is wrong"});
+  const ProgramResult checked =
+      succeeded(study.key({"check", study.in("cloths.json"), "--passphrase-file",
+                           study.in("two.txt"), "--passphrase-file", one}));
   CHECK_THAT(checked.output, holds_text("(protected by a passphrase)"));
 
   json changed = study_of("classification");
   changed["trials"]["repeats"] = 3;
   replace_file(study.path() / "cloths.json", changed.dump());
-  REQUIRE(study.run({"prepare", study.in("cloths.json"), "--passphrase-file", one}).exit_code == 0);
+  succeeded(study.run({"prepare", study.in("cloths.json"), "--passphrase-file", one}));
   int keys = 0;
   for (const auto& file : fs::directory_iterator(study.path())) {
     if (file.path().filename().string().find(".key") == std::string::npos) continue;
@@ -229,68 +185,57 @@ TEST_CASE("a copy has a passphrase of its own, and opens the same") {
   const KeyedStudy study;
   const std::string key = study.in("cloths.key");
   const std::string copy = study.in("colleague.key");
-  REQUIRE(study.key({"protect", key, "--new-passphrase-file", study.in("one.txt")}).exit_code == 0);
+  succeeded(study.key({"protect", key, "--new-passphrase-file", study.in("one.txt")}));
   const std::vector<std::string> plain_copy = {
       "copy", key, "--out", copy, "--passphrase-file", study.in("one.txt")};
-  check_key_refused(study.key(plain_copy), 2, {"the copy would not be", "--passphrase"});
+  check_refused(study.key(plain_copy), 2, {"the copy would not be", "--passphrase"});
   std::vector<std::string> own_copy = plain_copy;
   own_copy.insert(own_copy.end(), {"--new-passphrase-file", study.in("two.txt")});
-  const ProgramResult copied = study.key(own_copy);
-  INFO(copied.errors);
-  REQUIRE(copied.exit_code == 0);
-  check_key_refused(study.key(own_copy), 2, {"exists already"});
-  check_key_refused(study.key({"check", copy, "--passphrase-file", study.in("one.txt")}), 1,
-                    {"colleague.key: the passphrase is wrong"});
-  REQUIRE(study.key({"protect", copy, "--remove", "--passphrase-file", study.in("two.txt")})
-              .exit_code == 0);
-  REQUIRE(
-      study.key({"protect", key, "--remove", "--passphrase-file", study.in("one.txt")}).exit_code ==
-      0);
+  succeeded(study.key(own_copy));
+  check_refused(study.key(own_copy), 2, {"exists already"});
+  check_refused(study.key({"check", copy, "--passphrase-file", study.in("one.txt")}), 1,
+                {"colleague.key: the passphrase is wrong"});
+  succeeded(study.key({"protect", copy, "--remove", "--passphrase-file", study.in("two.txt")}));
+  succeeded(study.key({"protect", key, "--remove", "--passphrase-file", study.in("one.txt")}));
   CHECK(content(copy) == content(key));
 }
 
 TEST_CASE("run and prepare open a station's file with its passphrase") {
   const KeyedStudy study;
   const std::string station = study.in("cloths.station");
-  REQUIRE(study.key({"protect", station, "--new-passphrase-file", study.in("two.txt")}).exit_code ==
-          0);
+  succeeded(study.key({"protect", station, "--new-passphrase-file", study.in("two.txt")}));
   const std::vector<std::string> session = {
       "run",       study.in("cloths.json"), "--participant", "P01", "--db", study.in("study.db"),
       "--subject", study.in("quick.json"),  "--headless"};
-  check_key_refused(study.run(session), 1, {"cloths.station", "--passphrase-file"});
+  check_refused(study.run(session), 1, {"cloths.station", "--passphrase-file"});
   std::vector<std::string> opened = session;
   opened.insert(opened.end(), {"--passphrase-file", study.in("two.txt")});
-  const ProgramResult done = study.run(opened);
-  INFO(done.errors);
-  CHECK(done.exit_code == 0);
-  check_key_refused(study.run({"prepare", study.in("cloths.json")}), 1, {"cloths.station"});
-  CHECK(study.run({"prepare", study.in("cloths.json"), "--passphrase-file", study.in("two.txt")})
-            .exit_code == 0);
+  const ProgramResult done = succeeded(study.run(opened));
+  check_refused(study.type("prepare @cloths.json"), 1, {"cloths.station"});
+  study.done("prepare @cloths.json --passphrase-file @two.txt");
   CHECK(design::is_protected(station));
 }
 
 TEST_CASE("a protected file of another station is refused before its passphrase is asked for") {
   const KeyedStudy study;
-  REQUIRE(study.run({"plan", study.in("cloths.json"), "--participants", "4", "--stations", "2"})
-              .exit_code == 0);
+  study.done("plan @cloths.json --participants 4 --stations 2");
   const std::string other = study.in("cloths.2.station");
   const auto session = [&](const std::string& participant, const std::string& station) {
     return study.run({"run", study.in("cloths.json"), "--participant", participant, "--db",
                       study.in("study.db"), "--subject", study.in("quick.json"), "--headless",
                       "--station", station});
   };
-  REQUIRE(session("P01", "1").exit_code == 0);
-  REQUIRE(study.key({"protect", other, "--new-passphrase-file", study.in("two.txt")}).exit_code ==
-          0);
-  check_key_refused(session("P02", "2"), 1,
-                    {"cloths.2.station: is not the file of station 1", "study.db"});
+  succeeded(session("P01", "1"));
+  succeeded(study.key({"protect", other, "--new-passphrase-file", study.in("two.txt")}));
+  check_refused(session("P02", "2"), 1,
+                {"cloths.2.station: is not the file of station 1", "study.db"});
   const std::vector<std::string> note = {
       "note", study.in("study.db"), "--participant", "P01", "came late", "--station-file", other};
-  check_key_refused(study.run(note), 1, {"cloths.2.station: is not the file of station 1"});
+  check_refused(study.run(note), 1, {"cloths.2.station: is not the file of station 1"});
   // Without a name, the file of the database's own station is found, whatever lies beside it.
-  REQUIRE(study.run({"note", study.in("study.db"), "--participant", "P01", "late"}).exit_code == 0);
+  study.done("note @study.db --participant P01 late");
   fs::copy_file(other, study.path() / "cloths.1.station", fs::copy_options::overwrite_existing);
-  const ProgramResult checked = study.key({"check", study.in("cloths.json"), "--station", "1"});
+  const ProgramResult checked = study.type("key check @cloths.json --station 1");
   CHECK(checked.exit_code == 3);
   CHECK_THAT(checked.output,
              holds_text("cloths.1.station: DOES NOT HOLD: is the file of station 2"));
@@ -331,8 +276,7 @@ TEST_CASE("a terminal asks for passphrases and shows nothing of them") {
 
 TEST_CASE("a terminal asks for the lines of a sheet, and again for one that is mistyped") {
   const KeyedStudy study;
-  REQUIRE(study.key({"sheet", study.in("cloths.key"), "--out", study.in("sheet.txt")}).exit_code ==
-          0);
+  study.done("key sheet @cloths.key --out @sheet.txt");
   const std::string key = content(study.path() / "cloths.key");
   fs::remove(study.path() / "cloths.key");
   const std::string sheet = content(study.path() / "sheet.txt");

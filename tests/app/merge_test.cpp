@@ -13,13 +13,11 @@ namespace {
 /// Four participants simulated as two stations with two each, and as one.
 struct SimulatedStations : StudyFolder {
   SimulatedStations() {
-    REQUIRE(simulate("one.db").exit_code == 0);
+    succeeded(simulate("one.db"));
     for (const std::string first : {"1", "3"}) {
-      const ProgramResult ran = StudyFolder::run(
-          {"simulate", in("cloths.json"), "--participants", "2", "--first-participant", first,
-           "--seed", "3", "--db", in("s" + first + ".db"), "--subject", in("quick.json")});
-      INFO(ran.errors);
-      REQUIRE(ran.exit_code == 0);
+      succeeded(StudyFolder::run({"simulate", in("cloths.json"), "--participants", "2",
+                                  "--first-participant", first, "--seed", "3", "--db",
+                                  in("s" + first + ".db"), "--subject", in("quick.json")}));
     }
   }
   [[nodiscard]] ProgramResult merge(const std::vector<std::string>& names,
@@ -83,11 +81,9 @@ std::map<std::string, std::string> files_of(const fs::path& folder) {
 
 TEST_CASE("merged stations report and export what one station with all participants does") {
   const SimulatedStations study;
-  REQUIRE(study.merge({"s3.db", "s1.db"}, {"-o", study.in("C.db")}).exit_code == 0);
-  const ProgramResult one = study.run({"report", study.in("one.db"), "--json"});
-  const ProgramResult merged = study.run({"report", study.in("C.db"), "--json"});
-  INFO(merged.errors);
-  REQUIRE(merged.exit_code == 0);
+  succeeded(study.merge({"s3.db", "s1.db"}, {"-o", study.in("C.db")}));
+  const ProgramResult one = study.type("report @one.db --json");
+  const ProgramResult merged = study.done("report @C.db --json");
   CHECK(json::parse(merged.output).at("participants") == 4);
   CHECK(json::parse(merged.output).at("/primary/stations/stations"_json_pointer) == 2);
   CHECK(without_strata(merged.output) == without_strata(one.output));
@@ -104,27 +100,19 @@ TEST_CASE("merged stations report and export what one station with all participa
 
 TEST_CASE("a merged study verifies with its key, its pack and its traces, and exports those") {
   const SimulatedStations study;
-  REQUIRE(study.merge({"s1.db", "s3.db"}, {"-o", study.in("C.db")}).exit_code == 0);
-  const ProgramResult verified = study.run({"verify", study.in("C.db"), "--json"});
-  INFO(verified.output << verified.errors);
-  CHECK(verified.exit_code == 0);
-  const json report = json::parse(verified.output);
+  succeeded(study.merge({"s1.db", "s3.db"}, {"-o", study.in("C.db")}));
+  const json report = study.printed("verify @C.db --json");
   for (const json& check : report.at("checks")) {
     CHECK(check.at("state") == "passed");
   }
-  const ProgramResult bids = study.run({"export", study.in("C.db"), "--format", "bids", "--traces",
-                                        "--with-database", "-o", study.in("bids")});
-  INFO(bids.errors);
-  CHECK(bids.exit_code == 0);
+  const ProgramResult bids =
+      study.done("export @C.db --format bids --traces --with-database -o @bids");
   int recordings = 0;
   int copies = 0;
   for (const auto& [name, text] : files_of(study.in("bids"))) {
     if (name.find("sub-") == 0 && name.ends_with("_motion.tsv")) ++recordings;
     if (!name.ends_with(".db")) continue;
-    const ProgramResult copy =
-        study.run({"verify", study.in("bids/" + name), "--key", study.in("C.db.key")});
-    INFO(copy.output);
-    CHECK(copy.exit_code == 0);
+    succeeded(study.run({"verify", study.in("bids/" + name), "--key", study.in("C.db.key")}));
     ++copies;
   }
   CHECK(copies == 1);
@@ -134,8 +122,7 @@ TEST_CASE("a merged study verifies with its key, its pack and its traces, and ex
 TEST_CASE("the summary of a merge says what was collected, and where the key is") {
   const SimulatedStations study;
   const ProgramResult ran =
-      study.merge({"s1.db", "s3.db", "s1.db"}, {"-o", study.in("C.db"), "--json"});
-  REQUIRE(ran.exit_code == 0);
+      succeeded(study.merge({"s1.db", "s3.db", "s1.db"}, {"-o", study.in("C.db"), "--json"}));
   const json summary = json::parse(ran.output);
   CHECK(summary.at("stations") == 2);
   CHECK(summary.at("sessions") == 4);
@@ -143,8 +130,7 @@ TEST_CASE("the summary of a merge says what was collected, and where the key is"
   CHECK(summary.at("superfluous") == json::array({study.in("s1.db")}));
   CHECK(summary.at("key") == study.in("C.db.key"));
   CHECK(content(study.in("C.db.key")) == content(study.in("s1.db.key")));
-  CHECK(ran.errors.find("s1.db: has no finished session that the others do not have") !=
-        std::string::npos);
+  CHECK_THAT(ran.errors, holds_text("s1.db: has no finished session that the others do not have"));
 }
 
 TEST_CASE("a merged study has the consents beside its stations, and nothing else of the people") {
@@ -161,19 +147,15 @@ TEST_CASE("a merged study has the consents beside its stations, and nothing else
   REQUIRE(consent("s1.db", "P001", "4") == 0);
   REQUIRE(consent("s3.db", "P003", "4") == 0);
   const ProgramResult ran =
-      study.merge({"s1.db", "s3.db", "s1.db"}, {"-o", study.in("C.db"), "--json"});
-  REQUIRE(ran.exit_code == 0);
+      succeeded(study.merge({"s1.db", "s3.db", "s1.db"}, {"-o", study.in("C.db"), "--json"}));
   CHECK(json::parse(ran.output).at("consents") == 3);
-  REQUIRE(
-      study.run({"export", study.in("C.db"), "--format", "csv", "-o", study.in("out")}).exit_code ==
-      0);
+  study.done("export @C.db --format csv -o @out");
   CHECK(content(study.in("out/consents.csv")) ==
         "participant,consent,consent_version,simulated\nP001,1,3,1\nP001,2,4,1\nP003,1,4,1\n");
   const std::string kept = content(study.in("C.db.personal"));
   CHECK(kept.find("P003") != std::string::npos);
   CHECK(kept.find("ann@") == std::string::npos);
-  const json shown = json::parse(
-      study.run({"consent", study.in("C.db"), "--participant", "P003", "--show", "--json"}).output);
+  const json shown = study.printed("consent @C.db --participant P003 --show --json");
   CHECK(shown["consents"][0]["age"].is_null());
 }
 
@@ -181,67 +163,44 @@ TEST_CASE("a database that lacks what the head file beside it knows is not merge
   const StudyFolder study;
   const auto simulate = [&](const std::string& name, const std::string& participants,
                             const std::string& first) {
-    const ProgramResult ran = study.run(
-        {"simulate", study.in("cloths.json"), "--participants", participants, "--first-participant",
-         first, "--seed", "3", "--db", study.in(name), "--subject", study.in("quick.json")});
-    INFO(ran.errors);
-    REQUIRE(ran.exit_code == 0);
+    succeeded(study.run({"simulate", study.in("cloths.json"), "--participants", participants,
+                         "--first-participant", first, "--seed", "3", "--db", study.in(name),
+                         "--subject", study.in("quick.json")}));
   };
   simulate("s1.db", "2", "1");
   simulate("s3.db", "2", "3");
   fs::copy_file(study.in("s1.db"), study.in("older.db"));
-  REQUIRE(study.run({"note", study.in("s1.db"), "--participant", "P001", "late"}).exit_code == 0);
+  study.done("note @s1.db --participant P001 late");
   fs::copy_file(study.in("older.db"), study.in("s1.db"), fs::copy_options::overwrite_existing);
-  const auto merge = [&] {
-    return study.run({"merge", study.in("s1.db"), study.in("s3.db"), "-o", study.in("C.db")});
-  };
-  const ProgramResult refused = merge();
-  INFO(refused.errors);
-  CHECK(refused.exit_code == 3);
-  CHECK(line_count(refused.errors) == 1);
-  CHECK(refused.errors.find("s1.db: is not as it was left: ") != std::string::npos);
-  CHECK(refused.errors.find("the head file knows") != std::string::npos);
+  const auto merge = [&] { return study.type("merge @s1.db @s3.db -o @C.db"); };
+  check_refused(merge(), 3, {"s1.db: is not as it was left: ", "the head file knows"});
   CHECK_FALSE(fs::exists(study.in("C.db")));
-  REQUIRE(study
-              .run({"note", study.in("s1.db"), "--participant", "P001", "late", "--accept-loss",
-                    "an older copy"})
-              .exit_code == 0);
-  CHECK(merge().exit_code == 0);
+  study.done("note @s1.db --participant P001 late --accept-loss 'an older copy'");
+  succeeded(merge());
   fs::remove(study.in("C.db"));
   fs::copy_file(study.in("older.db"), study.in("s1.db"), fs::copy_options::overwrite_existing);
   fs::remove(study.in("s1.db.head"));
-  CHECK(merge().exit_code == 0);
+  succeeded(merge());
 }
 
 TEST_CASE("the key of a study with people is not copied") {
   const StudyFolder study;
-  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  study.done("prepare @cloths.json");
   int number = 0;
   for (const std::string participant : {"P01", "P02"}) {
-    const ProgramResult ran =
+    succeeded(
         study.run({"run", study.in("cloths.json"), "--participant", participant, "--enrolment",
                    std::to_string(++number), "--db", study.in(participant + ".db"), "--subject",
-                   study.in("quick.json"), "--headless", "--yes"});
-    INFO(ran.errors);
-    REQUIRE(ran.exit_code == 0);
+                   study.in("quick.json"), "--headless", "--yes"}));
     fs::copy_file(study.in("cloths.key"), study.in(participant + ".db.key"));
   }
-  const ProgramResult ran =
-      study.run({"merge", study.in("P01.db"), study.in("P02.db"), "-o", study.in("C.db")});
-  INFO(ran.errors);
-  REQUIRE(ran.exit_code == 0);
+  const ProgramResult ran = study.done("merge @P01.db @P02.db -o @C.db");
   CHECK(ran.output.find("name it with --key") != std::string::npos);
   CHECK_FALSE(fs::exists(study.in("C.db.key")));
-  const ProgramResult verified =
-      study.run({"verify", study.in("C.db"), "--key", study.in("cloths.key")});
-  INFO(verified.output);
-  CHECK(verified.exit_code == 0);
-  const ProgramResult more =
-      study.run({"run", study.in("cloths.json"), "--participant", "P03", "--db", study.in("C.db"),
-                 "--subject", study.in("quick.json"), "--headless"});
-  CHECK(more.exit_code == 1);
-  CHECK(more.errors.find("takes no sessions of its own; run them in this station's database") !=
-        std::string::npos);
+  study.done("verify @C.db --key @cloths.key");
+  check_refused(
+      study.type("run @cloths.json --participant P03 --db @C.db --subject @quick.json --headless"),
+      1, {"takes no sessions of its own; run them in this station's database"});
 }
 
 TEST_CASE("a merge of an altered station file ends like its verification") {
@@ -250,10 +209,9 @@ TEST_CASE("a merge of an altered station file ends like its verification") {
     SQLite::Database raw(study.in("s3.db"), SQLite::OPEN_READWRITE);
     raw.exec("UPDATE participant_keys SET wrapped = x'00' WHERE session = 1");
   }
-  const ProgramResult ran = study.merge({"s1.db", "s3.db"}, {"-o", study.in("C.db")});
-  CHECK(ran.exit_code == 3);
-  CHECK(ran.errors.find("the participant's key was altered") != std::string::npos);
-  CHECK(study.run({"verify", study.in("s3.db")}).exit_code == 3);
+  check_refused(study.merge({"s1.db", "s3.db"}, {"-o", study.in("C.db")}), 3,
+                {"the participant's key was altered"});
+  CHECK(study.type("verify @s3.db").exit_code == 3);
   CHECK_FALSE(fs::exists(study.in("C.db")));
 }
 
@@ -262,25 +220,17 @@ TEST_CASE("a refused merge names the file, and makes none") {
   json other = study_of("classification");
   other["seed"] = 12;
   replace_file(study.in("other.json"), other.dump());
-  REQUIRE(study
-              .run({"simulate", study.in("other.json"), "--participants", "1", "--subject",
-                    study.in("quick.json"), "--db", study.in("other.db")})
-              .exit_code == 0);
-  const ProgramResult mixed = study.merge({"s1.db", "other.db"}, {"-o", study.in("C.db")});
-  CHECK(mixed.exit_code == 1);
-  CHECK(mixed.errors.find("they are of different studies") != std::string::npos);
-  const ProgramResult twice = study.merge({"s1.db", "one.db"}, {"-o", study.in("C.db")});
-  CHECK(twice.exit_code == 1);
-  CHECK(line_count(twice.errors) == 1);
-  CHECK(twice.errors.find("copies of one station's file") != std::string::npos);
+  study.done("simulate @other.json --participants 1 --subject @quick.json --db @other.db");
+  check_refused(study.merge({"s1.db", "other.db"}, {"-o", study.in("C.db")}), 1,
+                {"they are of different studies"});
+  check_refused(study.merge({"s1.db", "one.db"}, {"-o", study.in("C.db")}), 1,
+                {"copies of one station's file"});
   CHECK_FALSE(fs::exists(study.in("C.db")));
-  const ProgramResult taken = study.merge({"s1.db", "s3.db"}, {"-o", study.in("one.db")});
-  CHECK(taken.exit_code == 1);
-  CHECK(taken.errors.find("one.db: exists already") != std::string::npos);
+  check_refused(study.merge({"s1.db", "s3.db"}, {"-o", study.in("one.db")}), 1,
+                {"one.db: exists already"});
   replace_file(study.in("D.db.key"), content(study.in("other.db.key")), FileMode::owner_only);
-  const ProgramResult keyed = study.merge({"s1.db", "s3.db"}, {"-o", study.in("D.db")});
-  CHECK(keyed.exit_code == 1);
-  CHECK(keyed.errors.find("D.db.key: is the key of another study") != std::string::npos);
+  check_refused(study.merge({"s1.db", "s3.db"}, {"-o", study.in("D.db")}), 1,
+                {"D.db.key: is the key of another study"});
   CHECK_FALSE(fs::exists(study.in("D.db")));
   CHECK(study.merge({"s1.db"}).exit_code == 2);
   CHECK(study.merge({}, {"-o", study.in("C.db")}).exit_code == 2);

@@ -27,15 +27,6 @@ ProgramResult run_power(const StudyFolder& study, const Words& more) {
   return study.run(power_of(study, more));
 }
 
-/// Checks that a command is refused in one line, with this exit code and these words.
-void check_refused(const ProgramResult& result, int code, const Words& says) {
-  INFO(result.errors);
-  CHECK(result.exit_code == code);
-  CHECK(result.output.empty());
-  CHECK(line_count(result.errors) == 1);
-  for (const std::string& word : says) CHECK_THAT(result.errors, holds_text(word));
-}
-
 const Words kSizes = {"--participants", "3,5"};
 
 Words with_sizes(const Words& more) {
@@ -48,9 +39,7 @@ Words with_sizes(const Words& more) {
 
 TEST_CASE("power prints and writes the same numbers with any number of threads") {
   const StudyFolder study;
-  const ProgramResult one = run_power(study, with_sizes({"--jobs", "1", "--json"}));
-  INFO(one.errors);
-  REQUIRE(one.exit_code == 0);
+  const ProgramResult one = succeeded(run_power(study, with_sizes({"--jobs", "1", "--json"})));
   const ProgramResult two =
       run_power(study, with_sizes({"--jobs", "3", "--json", "--out", study.in("power")}));
   INFO(two.errors);
@@ -72,18 +61,12 @@ TEST_CASE("power prints and writes the same numbers with any number of threads")
 
 TEST_CASE("combined shards of a power run print the same as one run") {
   const StudyFolder study;
-  const ProgramResult whole = run_power(study, with_sizes({"--json"}));
-  REQUIRE(whole.exit_code == 0);
+  const ProgramResult whole = succeeded(run_power(study, with_sizes({"--json"})));
   for (const char* shard : {"1/3", "3/3"}) {
-    const ProgramResult made =
-        run_power(study, with_sizes({"--shard", shard, "--out", study.in("shards")}));
-    INFO(made.errors);
-    REQUIRE(made.exit_code == 0);
+    succeeded(run_power(study, with_sizes({"--shard", shard, "--out", study.in("shards")})));
   }
-  check_refused(study.run({"power", "--combine", study.in("shards")}), 1, {"missing: 2"});
-  REQUIRE(
-      run_power(study, with_sizes({"--shard", "2/3", "--out", study.in("elsewhere")})).exit_code ==
-      0);
+  check_refused(study.type("power --combine @shards"), 1, {"missing: 2"});
+  succeeded(run_power(study, with_sizes({"--shard", "2/3", "--out", study.in("elsewhere")})));
   const Words combine = {"power", "--combine", study.in("shards"), study.in("elsewhere"), "--json"};
   CHECK(study.run(combine).output == whole.output);
 
@@ -93,11 +76,9 @@ TEST_CASE("combined shards of a power run print the same as one run") {
   CHECK(twice.output == whole.output);
   CHECK_THAT(twice.errors, holds_text("2/3") && holds_text("used once"));
 
-  REQUIRE(run_power(study, {"--participants", "3,5", "--shard", "2/3", "--out", study.in("other"),
-                            "--servo", "--no-early-stop"})
-              .exit_code == 0);
-  check_refused(study.run({"power", "--combine", study.in("shards"), study.in("other")}), 3,
-                {"other", "--no-early-stop"});
+  succeeded(run_power(study, {"--participants", "3,5", "--shard", "2/3", "--out", study.in("other"),
+                              "--servo", "--no-early-stop"}));
+  check_refused(study.type("power --combine @shards @other"), 3, {"other", "--no-early-stop"});
 }
 
 TEST_CASE("a single shard, and more shards than runs, are combined like others") {
@@ -107,14 +88,13 @@ TEST_CASE("a single shard, and more shards than runs, are combined like others")
     words[5] = "3";
     return study.run(words);
   };
-  const ProgramResult whole = few({"--json"});
-  REQUIRE(whole.exit_code == 0);
-  REQUIRE(few({"--shard", "1/1", "--out", study.in("one")}).exit_code == 0);
-  CHECK(study.run({"power", "--combine", study.in("one"), "--json"}).output == whole.output);
+  const ProgramResult whole = succeeded(few({"--json"}));
+  succeeded(few({"--shard", "1/1", "--out", study.in("one")}));
+  CHECK(study.type("power --combine @one --json").output == whole.output);
   for (const char* shard : {"1/4", "2/4", "3/4", "4/4"}) {
-    REQUIRE(few({"--shard", shard, "--out", study.in("four")}).exit_code == 0);
+    succeeded(few({"--shard", shard, "--out", study.in("four")}));
   }
-  CHECK(study.run({"power", "--combine", study.in("four"), "--json"}).output == whole.output);
+  CHECK(study.type("power --combine @four --json").output == whole.output);
 }
 
 TEST_CASE("the option --combine accepts no option of the plan, which the shards contain") {
@@ -131,8 +111,7 @@ TEST_CASE("the option --combine accepts no option of the plan, which the shards 
 TEST_CASE("a power run is resumed only with its own arguments") {
   const StudyFolder study;
   const Words out = {"--out", study.in("power")};
-  const ProgramResult first = run_power(study, with_sizes({"--json", out[0], out[1]}));
-  REQUIRE(first.exit_code == 0);
+  const ProgramResult first = succeeded(run_power(study, with_sizes({"--json", out[0], out[1]})));
   check_refused(run_power(study, with_sizes(out)), 1, {"power-progress.json", "--resume"});
   CHECK(run_power(study, with_sizes({"--json", "--resume", out[0], out[1]})).output ==
         first.output);
@@ -168,9 +147,9 @@ TEST_CASE("power refuses invalid arguments in one line") {
     check_refused(run_power(study, {"--shard", shard, "--out", study.in("x")}), 2, {"--shard"});
   }
   check_refused(run_power(study, {"--methods", "adaptive,edge"}), 2, {"--methods"});
-  check_refused(study.run({"power"}), 2, {"STUDY"});
-  check_refused(study.run({"power", study.in("none.json")}), 2, {"none.json"});
-  check_refused(study.run({"power", "--combine", study.in("nowhere")}), 1, {"nowhere"});
-  check_refused(study.run({"power", "--combine", study.in("cloths.json")}), 1, {"cloths.json"});
-  check_refused(study.run({"power", study.in("cloths.json"), "--resume"}), 2, {"--out"});
+  check_refused(study.type("power"), 2, {"STUDY"});
+  check_refused(study.type("power @none.json"), 2, {"none.json"});
+  check_refused(study.type("power --combine @nowhere"), 1, {"nowhere"});
+  check_refused(study.type("power --combine @cloths.json"), 1, {"cloths.json"});
+  check_refused(study.type("power @cloths.json --resume"), 2, {"--out"});
 }

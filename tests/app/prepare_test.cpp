@@ -14,10 +14,8 @@ using namespace touchtrial::engine;
 
 TEST_CASE("prepare builds once, reuses afterwards, and rebuilds what changed") {
   const StudyFolder study;
-  const auto prepared = [&] { return study.run({"prepare", study.in("cloths.json")}); };
-  const ProgramResult first = prepared();
-  INFO(first.errors);
-  REQUIRE(first.exit_code == 0);
+  const auto prepared = [&] { return study.type("prepare @cloths.json"); };
+  const ProgramResult first = succeeded(prepared());
   CHECK(first.output.find("built 3, reused 0") != std::string::npos);
   CHECK(fs::exists(study.path() / "cloths.key"));
   const std::string manifest = content(study.path() / "cloths.pack" / "pack.json");
@@ -32,8 +30,7 @@ TEST_CASE("prepare says which method the protocol does not present, and does not
   json two = study_of("classification");
   two["methods"].push_back({{"name", "tv-gabor"}});
   replace_file(study.path() / "cloths.json", two.dump());
-  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
-  REQUIRE(result.exit_code == 0);
+  const ProgramResult result = study.done("prepare @cloths.json");
   CHECK(result.output.find("built 3") != std::string::npos);
   CHECK(result.output.find("skipped") != std::string::npos);
   CHECK(result.output.find("tv-gabor") != std::string::npos);
@@ -41,13 +38,12 @@ TEST_CASE("prepare says which method the protocol does not present, and does not
 
 TEST_CASE("prepare keeps the key of a study that changed, and refuses that of another study") {
   const StudyFolder study;
-  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  study.done("prepare @cloths.json");
   const std::string key = content(study.path() / "cloths.key");
   json changed = study_of("classification");
   changed["trials"]["repeats"] = 3;
   replace_file(study.path() / "cloths.json", changed.dump());
-  const ProgramResult again = study.run({"prepare", study.in("cloths.json")});
-  CHECK(again.exit_code == 0);
+  study.done("prepare @cloths.json");
   bool kept = false;
   for (const auto& entry : fs::directory_iterator(study.path())) {
     kept = kept ||
@@ -60,8 +56,7 @@ TEST_CASE("prepare keeps the key of a study that changed, and refuses that of an
   changed["study"] = "other";
   replace_file(study.path() / "other.json", changed.dump());
   const std::string present = content(study.path() / "cloths.key");
-  const ProgramResult other =
-      study.run({"prepare", study.in("other.json"), "--pack", study.in("cloths.pack")});
+  const ProgramResult other = study.type("prepare @other.json --pack @cloths.pack");
   CHECK(other.exit_code == 2);
   CHECK(content(study.path() / "cloths.key") == present);
 }
@@ -69,11 +64,7 @@ TEST_CASE("prepare keeps the key of a study that changed, and refuses that of an
 TEST_CASE("prepare touches nothing when a picture of the study is missing") {
   const StudyFolder study;
   fs::remove(study.path() / "linen-photo.png");
-  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
-  CHECK(result.exit_code == 2);
-  CHECK(line_count(result.errors) == 1);
-  CHECK(result.errors.find("/classes/1/images/0") != std::string::npos);
-  CHECK(result.errors.find("cloths.json") != std::string::npos);
+  check_refused(study.type("prepare @cloths.json"), 2, {"/classes/1/images/0", "cloths.json"});
   CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
 }
 
@@ -109,11 +100,8 @@ TEST_CASE("prepare refuses a practice picture that is smaller than the plane") {
   replace_file(study.path() / "cloths.json", document.dump());
   write_png(study.path() / "silk.png", GreyImage(120, 120, 90));
   write_png(study.path() / "felt.png", GreyImage(119, 120, 90));
-  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
-  INFO(result.errors);
-  CHECK(result.exit_code == 2);
-  CHECK_THAT(result.errors, holds_text("/practice/classes/0/images/0"));
-  CHECK_THAT(result.errors, holds_text("fewer pixels than the study's plane, 120 x 120"));
+  check_refused(study.type("prepare @cloths.json"), 2,
+                {"/practice/classes/0/images/0", "fewer pixels than the study's plane, 120 x 120"});
   CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
 }
 
@@ -142,8 +130,7 @@ TEST_CASE("prepare prints the gain of the study's model, even if it is zero") {
   json document = study_of("classification");
   document["rendering"] = {{"model", "surface"}, {"gains", {{"height_mm", 0}}}};
   replace_file(study.path() / "cloths.json", document.dump());
-  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
-  CHECK(result.exit_code == 0);
+  const ProgramResult result = study.done("prepare @cloths.json");
   CHECK(result.output.find("gain: height 0 mm per grey level") != std::string::npos);
 }
 
@@ -153,9 +140,7 @@ TEST_CASE("gains follow from the level that a study states, and say where it is 
   const auto prepared = [&](const json& rendering) {
     wanted["rendering"] = rendering;
     replace_file(study.path() / "cloths.json", wanted.dump());
-    const ProgramResult result = study.run({"prepare", study.in("cloths.json"), "--json"});
-    INFO(result.errors);
-    REQUIRE(result.exit_code == 0);
+    const ProgramResult result = study.done("prepare @cloths.json --json");
     return json::parse(result.output);
   };
   const json budget = prepared({{"device", "ideal"}, {"pitch_mm", 0.5}});
@@ -193,19 +178,14 @@ TEST_CASE("thresholds of pilots take the curve's place, and a file that is none 
                          {"trials", 40},
                          {"levels", {{"from", -40}, {"to", 0}, {"step", 2}}}};
   replace_file(study.path() / "pilots.json", pilots.dump());
-  const ProgramResult simulated = study.run({"simulate", study.in("pilots.json"), "--on", "ideal",
-                                             "--participants", "4", "--db", study.in("pilots.db")});
-  INFO(simulated.errors);
-  REQUIRE(simulated.exit_code == 0);
+  study.done("simulate @pilots.json --on ideal --participants 4 --db @pilots.db");
   json wanted = study_of("classification");
   const auto prepare = [&](const std::string& curve) {
     wanted["rendering"] = {{"device", "ideal"}, {"gains", {{"level_db", 3}, {"curve", curve}}}};
     replace_file(study.path() / "cloths.json", wanted.dump());
-    return study.run({"prepare", study.in("cloths.json"), "--json"});
+    return study.type("prepare @cloths.json --json");
   };
-  const ProgramResult by_pilots = prepare("pilots.db");
-  INFO(by_pilots.errors);
-  REQUIRE(by_pilots.exit_code == 0);
+  const ProgramResult by_pilots = succeeded(prepare("pilots.db"));
   const json prepared = json::parse(by_pilots.output);
   CHECK(prepared["provisional"] == false);
   CHECK(prepared["stimuli"][0]["levels"][0]["db"] == prepared["stimuli"][0]["levels"][1]["db"]);

@@ -28,10 +28,8 @@ json registered_study() {
 TEST_CASE("prereg writes the registration, the design and the hashes, and no secret") {
   const StudyFolder study;
   replace_file(study.path() / "cloths.json", registered_study().dump());
-  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
-  const ProgramResult result = study.run({"prereg", study.in("cloths.json")});
-  INFO(result.errors);
-  REQUIRE(result.exit_code == 0);
+  study.done("prepare @cloths.json");
+  const ProgramResult result = study.done("prereg @cloths.json");
   CHECK(result.errors.empty());
   for (const char* part :
        {"# Preregistration of the study cloths", "Hands tell cloths apart.", "12 participants.",
@@ -53,23 +51,20 @@ TEST_CASE("prereg writes the registration, the design and the hashes, and no sec
         std::string(".png")}) {
     CHECK(result.output.find(secret) == std::string::npos);
   }
-  CHECK(study.run({"prereg", study.in("cloths.json")}).output == result.output);
-  REQUIRE(study.run({"prereg", study.in("cloths.json"), "-o", study.in("page.md")}).exit_code == 0);
+  CHECK(study.type("prereg @cloths.json").output == result.output);
+  study.done("prereg @cloths.json -o @page.md");
   CHECK(content(study.path() / "page.md") == result.output);
-  const ProgramResult again =
-      study.run({"prereg", study.in("cloths.json"), "-o", study.in("page.md")});
-  CHECK(again.exit_code == 2);
-  CHECK_THAT(again.errors, holds_text("exists already"));
+  check_refused(study.type("prereg @cloths.json -o @page.md"), 2, {"exists already"});
 }
 
 TEST_CASE("prereg refuses a study that is not prepared, or has changed since") {
   const StudyFolder study;
-  const auto page = [&] { return study.run({"prereg", study.in("cloths.json")}); };
+  const auto page = [&] { return study.type("prereg @cloths.json"); };
   CHECK(page().exit_code == 2);
   CHECK_THAT(page().errors, holds_text("is not prepared"));
-  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  study.done("prepare @cloths.json");
   CHECK_THAT(page().errors, holds_text("/registration/hypothesis is not stated"));
-  CHECK(page().exit_code == 0);
+  succeeded(page());
   replace_file(study.path() / "cloths.json", registered_study().dump());
   CHECK(page().exit_code == 2);
   CHECK_THAT(page().errors, holds_text("has changed since it was prepared: registration differ"));
@@ -77,11 +72,11 @@ TEST_CASE("prereg refuses a study that is not prepared, or has changed since") {
 
 TEST_CASE("a key of another study is named as such, and nobody is told to prepare") {
   const StudyFolder study;
-  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  study.done("prepare @cloths.json");
   json other = study_of("classification");
   other["study"] = "carpets";
   replace_file(study.path() / "carpets.json", other.dump());
-  REQUIRE(study.run({"prepare", study.in("carpets.json")}).exit_code == 0);
+  study.done("prepare @carpets.json");
   const std::vector<std::vector<std::string>> commands = {
       {"prereg", study.in("cloths.json"), "--key", study.in("carpets.key")},
       {"key", "check", study.in("cloths.json"), "--key", study.in("carpets.key")},
@@ -107,18 +102,15 @@ TEST_CASE("a draft of the program's texts is said to be one wherever results can
   document["session"]["language"] = "fr";
   replace_file(study.path() / "cloths.json", document.dump());
   const std::string draft = "the program's texts in French are a draft, not validated";
-  CHECK_THAT(study.run({"prepare", study.in("cloths.json")}).errors, holds_text(draft));
-  CHECK_THAT(study.run({"prereg", study.in("cloths.json")}).output,
-             holds_text("- language: French: " + draft));
-  const ProgramResult simulated =
-      study.run({"simulate", study.in("cloths.json"), "--participants", "2", "--seed", "1", "--db",
-                 study.in("study.db"), "--subject", study.in("quick.json"), "--keep-blind"});
-  INFO(simulated.errors);
-  REQUIRE(simulated.exit_code == 0);
-  CHECK_THAT(study.run({"report", study.in("study.db")}).output, holds_text(draft));
+  CHECK_THAT(study.type("prepare @cloths.json").errors, holds_text(draft));
+  CHECK_THAT(study.type("prereg @cloths.json").output, holds_text("- language: French: " + draft));
+  study.done(
+      "simulate @cloths.json --participants 2 --seed 1 --db @study.db --subject @quick.json "
+      "--keep-blind");
+  CHECK_THAT(study.type("report @study.db").output, holds_text(draft));
   replace_file(study.path() / "cloths.json", registered_study().dump());
-  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
-  const ProgramResult english = study.run({"prereg", study.in("cloths.json")});
+  study.done("prepare @cloths.json");
+  const ProgramResult english = study.type("prereg @cloths.json");
   CHECK_THAT(english.output, holds_text("- language: English\n"));
   CHECK(english.output.find("draft") == std::string::npos);
 }

@@ -28,14 +28,10 @@ struct ThresholdFolder : StudyFolder {
   }
 
   [[nodiscard]] ProgramResult procedure(const Words& more) const {
-    Words words = {"procedure", in("detection.json")};
-    words.insert(words.end(), more.begin(), more.end());
-    return run(words);
+    return type("procedure @detection.json", more);
   }
   [[nodiscard]] ProgramResult power(const Words& more) const {
-    Words words = {"power", in("detection.json"), "--subject", in("quick.json"), "--runs", "50"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run(words);
+    return type("power @detection.json --subject @quick.json --runs 50", more);
   }
 };
 
@@ -51,12 +47,9 @@ void check_line(const ProgramResult& result, const Words& says) {
 
 TEST_CASE("procedure shows the levels for a list of answers") {
   const ThresholdFolder study;
-  const ProgramResult first = study.procedure({"--answers", ""});
-  INFO(first.errors);
-  REQUIRE(first.exit_code == 0);
+  const ProgramResult first = succeeded(study.procedure({"--answers", ""}));
   CHECK(json::parse(first.output).at("levels").size() == 1);
-  const ProgramResult more = study.procedure({"--answers", "1,0,1", "--json"});
-  REQUIRE(more.exit_code == 0);
+  const ProgramResult more = succeeded(study.procedure({"--answers", "1,0,1", "--json"}));
   const json walk = json::parse(more.output);
   CHECK(walk.at("track") == "granite");
   CHECK(walk.at("answers") == json::array({1, 0, 1}));
@@ -72,7 +65,7 @@ TEST_CASE("procedure refuses what is no answer, too many of them, and other stud
   check_line(study.procedure({"--answers", "1,1,1,1,1,1,1"}), {"7 answers", "6 trials"});
   check_line(study.procedure({"--answers", "1", "--track", "2"}), {"--track", "has 1 track"});
   check_line(study.procedure({}), {"--answers"});
-  check_line(study.run({"procedure", study.in("cloths.json"), "--answers", "1"}),
+  check_line(study.type("procedure @cloths.json --answers 1"),
              {"cloths.json", "classification", "protocol threshold"});
 }
 
@@ -84,9 +77,7 @@ TEST_CASE("power plans the thresholds of a study, the same with any number of th
   two.insert(two.end(), {"--jobs", "2"});
   Words one = plan;
   one.insert(one.end(), {"--jobs", "1"});
-  const ProgramResult result = study.power(two);
-  INFO(result.errors);
-  REQUIRE(result.exit_code == 0);
+  const ProgramResult result = succeeded(study.power(two));
   CHECK(study.power(one).output == result.output);
   const json report = json::parse(result.output);
   CHECK(report.at("simulated") == true);
@@ -113,6 +104,6 @@ TEST_CASE("power refuses options of other protocols, and impossible ones of thre
   check_line(study.power({"--trials", "6,6"}), {"--trials"});
   check_line(study.power({"--trials", "6,x"}), {"--trials", "'x'"});
   check_line(study.power({"--width", "0"}), {"--width"});
-  check_line(study.run({"power", study.in("cloths.json"), "--width", "1"}),
+  check_line(study.type("power @cloths.json --width 1"),
              {"--width", "is for studies of the protocol threshold"});
 }

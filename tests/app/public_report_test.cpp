@@ -24,21 +24,11 @@ std::string folder_text(const fs::path& folder) {
 
 TEST_CASE("report --public writes neither ids nor reasons, in text, page, JSON and figures") {
   const StudyFolder study;
-  REQUIRE(study.simulate("s.db").exit_code == 0);
-  const ProgramResult excluded = study.run({"exclude", study.in("s.db"), "--participant", "P003",
-                                            "--reason", "qqreason", "--after-outcomes"});
-  INFO(excluded.errors);
-  REQUIRE(excluded.exit_code == 0);
-  const ProgramResult noted = study.run({"note", study.in("s.db"), "--participant", "P001",
-                                         "--deviation", "qqcode", "--own-code", "qqnote"});
-  INFO(noted.errors);
-  REQUIRE(noted.exit_code == 0);
+  succeeded(study.simulate("s.db"));
+  study.done("exclude @s.db --participant P003 --reason qqreason --after-outcomes");
+  study.done("note @s.db --participant P001 --deviation qqcode --own-code qqnote");
   const auto report = [&](std::vector<std::string> more) {
-    std::vector<std::string> words = {"report", study.in("s.db")};
-    words.insert(words.end(), more.begin(), more.end());
-    const ProgramResult ran = study.run(words);
-    INFO(ran.errors);
-    REQUIRE(ran.exit_code == 0);
+    const ProgramResult ran = succeeded(study.type("report @s.db", more));
     return ran.output;
   };
   report({"--out", study.in("whole")});
@@ -59,12 +49,7 @@ TEST_CASE("report --public writes neither ids nor reasons, in text, page, JSON a
 
 TEST_CASE("report --public is refused before unblinding, and with a trial's exploration") {
   const StudyFolder study;
-  REQUIRE(study.simulate("s.db", {"--keep-blind"}).exit_code == 0);
-  const ProgramResult blind = study.run({"report", study.in("s.db"), "--public"});
-  CHECK(blind.exit_code == 2);
-  CHECK_THAT(blind.errors, holds_text("omit --public"));
-  CHECK(study
-            .run({"report", study.in("s.db"), "--public", "--out", study.in("o"), "--trial",
-                  "P001:1"})
-            .exit_code == 2);
+  succeeded(study.simulate("s.db", {"--keep-blind"}));
+  check_refused(study.type("report @s.db --public"), 2, {"omit --public"});
+  CHECK(study.type("report @s.db --public --out @o --trial P001:1").exit_code == 2);
 }

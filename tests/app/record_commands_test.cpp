@@ -28,11 +28,7 @@ namespace {
 
 /// A blind study of four simulated participants, P001 to P004, in `study.db`.
 struct PeopleStudy : StudyFolder {
-  PeopleStudy() {
-    const ProgramResult simulated = simulate("study.db", {"--keep-blind"});
-    INFO(simulated.errors);
-    REQUIRE(simulated.exit_code == 0);
-  }
+  PeopleStudy() { succeeded(simulate("study.db", {"--keep-blind"})); }
 
   [[nodiscard]] fs::path database() const { return path() / "study.db"; }
 
@@ -53,36 +49,19 @@ struct PeopleStudy : StudyFolder {
     return StudyStore::open(database(), StudyStore::Access::read_only);
   }
   [[nodiscard]] json quality() const {
-    const ProgramResult reported = StudyFolder::run({"report", in("study.db"), "--json"});
-    REQUIRE(reported.exit_code == 0);
+    const ProgramResult reported = done("report @study.db --json");
     return json::parse(reported.output);
   }
   [[nodiscard]] json outcomes() const {
-    REQUIRE(StudyFolder::run({"close", in("study.db"), "--yes"}).exit_code == 0);
-    REQUIRE(StudyFolder::run({"unblind", in("study.db"), "--reason", "test", "--yes"}).exit_code ==
-            0);
+    done("close @study.db --yes");
+    done("unblind @study.db --reason test --yes");
     return quality();
   }
 };
 
-/// Checks for one line on standard error, which contains every word, and no output.
-void check_refused(const ProgramResult& result, int exit_code,
-                   const std::vector<std::string>& words) {
-  INFO(result.output << result.errors);
-  CHECK(result.exit_code == exit_code);
-  CHECK(result.output.empty());
-  CHECK(line_count(result.errors) == 1);
-  for (const std::string& word : words) {
-    INFO(word);
-    CHECK(result.errors.find(word) != std::string::npos);
-  }
-}
-
 /// Checks that there are as many answers as trials, and that all checks of `verify` pass.
 void check_verified(const PeopleStudy& study) {
-  const ProgramResult verified = study.run({"verify", study.in("study.db"), "--json"});
-  INFO(verified.output << verified.errors);
-  CHECK(verified.exit_code == 0);
+  const ProgramResult verified = study.done("verify @study.db --json");
   CHECK(json::parse(verified.output).at("complete") == true);
 }
 
@@ -133,12 +112,10 @@ Opened opened_by(const StudyStore& store, int session, const SecretKey& key) {
 TEST_CASE("consent is recorded in a file of its own that only its owner may read") {
   const TempFolder folder;
   const fs::path database = folder.path() / "study.db";
-  const ProgramResult done = run_touchtrial(folder.path(),
-                                            {"consent", database.string(), "--participant", "P07",
-                                             "--version", "2026-03", "--details", "-"},
-                                            "age: 34\n\ngender:  woman \n");
-  INFO(done.errors);
-  REQUIRE(done.exit_code == 0);
+  succeeded(run_touchtrial(folder.path(),
+                           {"consent", database.string(), "--participant", "P07", "--version",
+                            "2026-03", "--details", "-"},
+                           "age: 34\n\ngender:  woman \n"));
   const fs::path file = personal_data_path(database);
   CHECK((fs::status(file).permissions() & fs::perms(0777)) == fs::perms(0600));
   const auto record = PersonalData(file).find("P07");
@@ -162,11 +139,8 @@ TEST_CASE("every consent is kept and shown, and an id that may be mistyped is as
     return consent({"--participant", id, "--version", version});
   };
   const std::string details = "age: 34\ncontact: ann@example.org\n";
-  REQUIRE(
-      consent({"--participant", "P07", "--version", "1", "--details", "-"}, details).exit_code ==
-      0);
-  const ProgramResult again = signed_by("P07", "2");
-  REQUIRE(again.exit_code == 0);
+  succeeded(consent({"--participant", "P07", "--version", "1", "--details", "-"}, details));
+  const ProgramResult again = succeeded(signed_by("P07", "2"));
   CHECK(again.output.find("the consent to version 1 of 20") != std::string::npos);
   CHECK(again.output.find("are kept") != std::string::npos);
   const auto record = PersonalData(personal_data_path(database)).find("P07");
@@ -185,12 +159,12 @@ TEST_CASE("every consent is kept and shown, and an id that may be mistyped is as
   check_refused(consent({"--participant", "P08", "--show"}), 1, {"no consent of participant P08"});
 
   // The next in the row is nobody's slip; other capitals, zeros and swapped digits may be one.
-  CHECK(signed_by("P08", "2").exit_code == 0);
+  succeeded(signed_by("P08", "2"));
   for (const char* const id : {"p07", "P7", "P007", "P70", "PP07", "O07"}) {
     check_refused(signed_by(id, "2"), 2, {id, "P07", "--yes"});
   }
   CHECK(signed_by("P70", "2").exit_code == 2);
-  CHECK(consent({"--participant", "P70", "--version", "2", "--yes"}).exit_code == 0);
+  succeeded(consent({"--participant", "P70", "--version", "2", "--yes"}));
   const ProgramResult list = consent({"--list"});
   CHECK(list.output.find("P70") != std::string::npos);
   CHECK(list.output.find("ann@") == std::string::npos);
@@ -232,7 +206,7 @@ TEST_CASE("a limit on the size of files ends a command in one line, and the data
   CHECK(line_count(limited.errors) == 1);
   CHECK(limited.errors.find("study.db") != std::string::npos);
   check_verified(study);
-  CHECK(run_touchtrial(study.path(), note).exit_code == 0);
+  succeeded(run_touchtrial(study.path(), note));
 }
 
 TEST_CASE("an output that nobody reads ends a command without a word, as the shell expects") {
@@ -252,8 +226,7 @@ TEST_CASE("an output that nobody reads ends a command without a word, as the she
          "\"$0\" " + command + (command == "verify" ? " \"$1\"" : "") + " > /dev/full; echo $? >&2",
          TOUCHTRIAL_PROGRAM, study.in("study.db")});
     INFO(full.errors);
-    CHECK(full.errors.find("standard output: cannot be written (No space left") !=
-          std::string::npos);
+    CHECK_THAT(full.errors, holds_text("standard output: cannot be written (No space left"));
     CHECK(full.errors.ends_with("\n1\n"));
   }
 }
@@ -262,9 +235,8 @@ TEST_CASE("an output that nobody reads ends a command without a word, as the she
 
 TEST_CASE("an excluded participant is left out of outcomes, and the reason is recorded") {
   const PeopleStudy study;
-  const ProgramResult excluded = study.people("exclude", "P002", {"--reason", "fell asleep"});
-  INFO(excluded.errors);
-  REQUIRE(excluded.exit_code == 0);
+  const ProgramResult excluded =
+      succeeded(study.people("exclude", "P002", {"--reason", "fell asleep"}));
   CHECK(excluded.output.find("P002: excluded") != std::string::npos);
   CHECK(session_of(study.store(), "P002").excluded);
   CHECK(study.store().events(0).back().body.find("fell asleep") == std::string::npos);
@@ -279,9 +251,8 @@ TEST_CASE("an excluded participant is left out of outcomes, and the reason is re
                 {"study.db", "P9", "no session", "check the participant id"});
   check_refused(study.people("exclude", "P001", {"--reason", ""}), 1, {"reason"});
   check_refused(study.people("exclude", "P001"), 2, {"--reason"});
-  check_refused(
-      study.run({"exclude", study.in("none.db"), "--participant", "P001", "--reason", "gone"}), 1,
-      {"none.db", "no such database"});
+  check_refused(study.type("exclude @none.db --participant P001 --reason gone"), 1,
+                {"none.db", "no such database"});
   CHECK(study.outcomes().at("trials") == 3 * 6);
 }
 
@@ -290,9 +261,7 @@ TEST_CASE("an exclusion after outcomes were seen is accepted only if that is rec
   CHECK(study.outcomes().at("participants") == 4);
   check_refused(study.people("exclude", "P001", {"--reason", "bad figures"}), 1,
                 {"P001", "outcomes have been seen", "--after-outcomes"});
-  REQUIRE(
-      study.people("exclude", "P001", {"--reason", "bad figures", "--after-outcomes"}).exit_code ==
-      0);
+  succeeded(study.people("exclude", "P001", {"--reason", "bad figures", "--after-outcomes"}));
   CHECK(participant_from_json(study.store().events(0).back().body).after_outcomes);
   CHECK(study.quality().at("participants") == 3);
 }
@@ -301,7 +270,7 @@ TEST_CASE("a replacement inherits the participant's enrolment number and its sch
   const PeopleStudy study;
   check_refused(study.people("replace", "P002", {"--with", "P021", "--reason", "ill"}), 1,
                 {"P002", "complete", "stopped, excluded or withdrawn"});
-  REQUIRE(study.people("exclude", "P002", {"--reason", "ill"}).exit_code == 0);
+  succeeded(study.people("exclude", "P002", {"--reason", "ill"}));
   check_refused(study.people("replace", "P002", {"--with", "P003", "--reason", "ill"}), 1,
                 {"P003", "already has session"});
   check_refused(study.people("replace", "P002", {"--with", "no id", "--reason", "ill"}), 1,
@@ -310,17 +279,13 @@ TEST_CASE("a replacement inherits the participant's enrolment number and its sch
                 {"P9", "no session"});
   check_refused(study.people("replace", "P002", {"--reason", "ill"}), 2, {"--with"});
   const ProgramResult replaced =
-      study.people("replace", "P002", {"--with", "P021", "--reason", "ill"});
-  INFO(replaced.errors);
-  REQUIRE(replaced.exit_code == 0);
+      succeeded(study.people("replace", "P002", {"--with", "P021", "--reason", "ill"}));
   CHECK(replaced.output.find("P021 inherits enrolment 2") != std::string::npos);
   check_refused(study.people("replace", "P002", {"--with", "P022", "--reason", "ill"}), 1,
                 {"already replaced by participant P021"});
 
-  const ProgramResult other = study.session_of("P005");
-  INFO(other.errors);
-  REQUIRE(other.exit_code == 0);
-  REQUIRE(study.session_of("P021").exit_code == 0);
+  succeeded(study.session_of("P005"));
+  succeeded(study.session_of("P021"));
   const StudyStore store = study.store();
   CHECK(session_of(store, "P005").enrolment == 5);
   CHECK(session_of(store, "P021").enrolment == 2);
@@ -357,7 +322,7 @@ TEST_CASE(
     CHECK_FALSE(PersonalData(personal).find("P001"));
     CHECK(files_with(study, bytes_of("somebody@example.org")).empty());
   }
-  CHECK(study.people("withdraw", "P001", reason).exit_code == 0);
+  succeeded(study.people("withdraw", "P001", reason));
   CHECK(files_with(study, wrapped).empty());
   CHECK(session_of(study.store(), "P001").withdrawn);
 
@@ -375,9 +340,7 @@ TEST_CASE(
                   {"P002", "the personal data are not removed yet", "study.db.personal"});
     CHECK(session_of(study.store(), "P002").withdrawn);
   }
-  const ProgramResult finished = study.people("withdraw", "P002", reason);
-  INFO(finished.errors);
-  CHECK(finished.exit_code == 0);
+  const ProgramResult finished = succeeded(study.people("withdraw", "P002", reason));
   CHECK(finished.output.find("personal data are removed") != std::string::npos);
   CHECK(files_with(study, bytes_of("else@example.org")).empty());
   check_verified(study);
@@ -399,7 +362,7 @@ TEST_CASE("a withdrawal says and records what it could not erase") {
 
 TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") {
   const PeopleStudy study;
-  REQUIRE(study.session_of("P005").exit_code == 0);
+  succeeded(study.session_of("P005"));
   PersonalData(personal_data_path(study.database()))
       .put({.participant = "P005",
             .consent_version = "3",
@@ -419,9 +382,7 @@ TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") 
   REQUIRE_FALSE(files_with(study, bytes_of("somebody@example.org")).empty());
 
   const ProgramResult withdrawn =
-      study.people("withdraw", "P005", {"--erase", "--reason", "asked to"});
-  INFO(withdrawn.errors);
-  REQUIRE(withdrawn.exit_code == 0);
+      succeeded(study.people("withdraw", "P005", {"--erase", "--reason", "asked to"}));
   CHECK(withdrawn.output.find("cannot be read again") != std::string::npos);
   CHECK(withdrawn.output.find("personal data are removed") != std::string::npos);
 
@@ -463,8 +424,7 @@ TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") 
 TEST_CASE("a participant who withdrew can be replaced, and copies must be destroyed") {
   const PeopleStudy study;
   const ProgramResult withdrawn =
-      study.people("withdraw", "P001", {"--erase", "--reason", "asked to"});
-  REQUIRE(withdrawn.exit_code == 0);
+      succeeded(study.people("withdraw", "P001", {"--erase", "--reason", "asked to"}));
   CHECK(withdrawn.output.find("destroy every other copy of the database") != std::string::npos);
   check_refused(study.people("withdraw", "P001", {"--erase", "--reason", "again"}), 1,
                 {"P001", "already withdrawn"});
@@ -474,10 +434,9 @@ TEST_CASE("a participant who withdrew can be replaced, and copies must be destro
   check_refused(study.people("withdraw", "P002", {"--erase"}), 2, {"--reason"});
   check_refused(study.people("withdraw", "P002", {"--reason", "asked to"}), 2,
                 {"--keep-data", "--erase"});
-  REQUIRE(study.people("replace", "P001", {"--with", "P031", "--reason", "place is wanted"})
-              .exit_code == 0);
+  succeeded(study.people("replace", "P001", {"--with", "P031", "--reason", "place is wanted"}));
   check_refused(study.session_of("P001"), 1, {"P001"});
-  REQUIRE(study.session_of("P031").exit_code == 0);
+  succeeded(study.session_of("P031"));
   CHECK(session_of(study.store(), "P031").enrolment == 1);
   check_verified(study);
   const json sessions = study.quality().at("sessions");
@@ -488,17 +447,14 @@ TEST_CASE("a participant who withdrew can be replaced, and copies must be destro
 TEST_CASE("who lets the data be used stays in the report, and may have them erased later") {
   const PeopleStudy study;
   const Bytes key = study.store().wrapped_key(session_of(study.store(), "P001").session).value();
-  const ProgramResult kept =
-      study.people("withdraw", "P001", {"--keep-data", "--reason", "moves away"});
-  INFO(kept.errors);
-  REQUIRE(kept.exit_code == 0);
+  succeeded(study.people("withdraw", "P001", {"--keep-data", "--reason", "moves away"}));
   check_refused(study.people("withdraw", "P001", {"--keep-data", "--reason", "again"}), 1,
                 {"P001", "already withdrawn"});
   CHECK(study.quality().at("participants") == 4);
   CHECK(study.quality().at("collection").at("flow").at("withdrawn") == 1);
   CHECK(files_with(study, key).contains("study.db"));
   check_verified(study);
-  REQUIRE(study.people("withdraw", "P001", {"--erase", "--reason", "asked to"}).exit_code == 0);
+  succeeded(study.people("withdraw", "P001", {"--erase", "--reason", "asked to"}));
   CHECK(files_with(study, key).empty());
   check_refused(study.people("withdraw", "P001", {"--keep-data", "--reason", "again"}), 1,
                 {"P001", "already withdrawn"});
@@ -511,10 +467,10 @@ TEST_CASE("the safety record of an erased person is erased by a command of its o
   const int session = session_of(study.store(), "P001").session;
   const Bytes safety = study.store().wrapped_keys(session).safety.value();
   check_refused(study.people("withdraw", "P001", {"--erase-safety"}), 1, {"erase those first"});
-  REQUIRE(study.people("withdraw", "P001", {"--erase", "--reason", "asked to"}).exit_code == 0);
+  succeeded(study.people("withdraw", "P001", {"--erase", "--reason", "asked to"}));
   CHECK(files_with(study, safety).contains("study.db"));
   // A simulated session was in 1970, so that its years have passed.
-  REQUIRE(study.people("withdraw", "P001", {"--erase-safety"}).exit_code == 0);
+  succeeded(study.people("withdraw", "P001", {"--erase-safety"}));
   CHECK(files_with(study, safety).empty());
   check_refused(study.people("withdraw", "P001", {"--erase-safety"}), 1, {"already erased"});
   check_verified(study);
@@ -540,19 +496,15 @@ TEST_CASE("one participant's outcomes are exported after a recorded look at them
     return text_of(ByteView(read_file(study.path() / file)));
   };
   check_refused(exported("never", key), 1, {"P002", "unblind DB --participant P002"});
-  REQUIRE(exported("clear", {}).exit_code == 0);
+  succeeded(exported("clear", {}));
   CHECK(text("clear/P002_trials.csv").find("response") == std::string::npos);
   CHECK(line_count(text("clear/P002_trials.csv")) == 1 + 6);
   CHECK(text("clear/P002_personal.csv").find("somebody@example.org") != std::string::npos);
   CHECK(line_count(text("clear/P002_sessions.csv")) == 1 + 1);
-  check_refused(
-      study.run({"unblind", study.in("study.db"), "--participant", "P9", "--reason", "x", "--yes"}),
-      1, {"P9", "no session"});
-  REQUIRE(study
-              .run({"unblind", study.in("study.db"), "--participant", "P002", "--reason",
-                    "asked for the data", "--yes"})
-              .exit_code == 0);
-  REQUIRE(exported("whole", key).exit_code == 0);
+  check_refused(study.type("unblind @study.db --participant P9 --reason x --yes"), 1,
+                {"P9", "no session"});
+  study.done("unblind @study.db --participant P002 --reason 'asked for the data' --yes");
+  succeeded(exported("whole", key));
   CHECK(text("whole/P002_trials.csv").find("response") != std::string::npos);
   CHECK(text("whole/P002_trials.csv").find("P001") == std::string::npos);
   CHECK(fs::exists(study.path() / "whole/P002_events.csv"));
@@ -561,22 +513,20 @@ TEST_CASE("one participant's outcomes are exported after a recorded look at them
   CHECK(quality.at("collection").at("looks").at(0).at("reason") == "asked for the data");
   check_refused(study.people("exclude", "P002", {"--reason", "bad figures"}), 1,
                 {"outcomes have been seen"});
-  CHECK(study.people("exclude", "P001", {"--reason", "asleep"}).exit_code == 0);
+  succeeded(study.people("exclude", "P001", {"--reason", "asleep"}));
   check_verified(study);
 }
 
 TEST_CASE("notes and deviations are on the file's chain, before and after closing") {
   const PeopleStudy study;
-  REQUIRE(study.people("note", "P003", {"came late"}).exit_code == 0);
-  REQUIRE(
-      study.people("note", "P003", {"--deviation", "no-curtain", "it was in the wash"}).exit_code ==
-      0);
+  succeeded(study.people("note", "P003", {"came late"}));
+  succeeded(study.people("note", "P003", {"--deviation", "no-curtain", "it was in the wash"}));
   check_refused(study.people("note", "P003", {""}), 1, {"study.db"});
   check_refused(study.people("note", "P003", {"--deviation", "no-curtian", "torn"}), 2,
                 {"did you mean no-curtain?", "no-placement", "no-day-sheet-NUMBER", "--own-code"});
   check_refused(study.people("note", "P003", {"--deviation", "sneezed", "twice"}), 2,
                 {"sneezed is none of the program's codes: answers-lost, comfort-stop"});
-  CHECK_THAT(study.run({"note", "--help"}).output, holds_text("practice-not-passed"));
+  CHECK_THAT(study.type("note --help").output, holds_text("practice-not-passed"));
   check_refused(study.people("note", "P9", {"who"}), 1, {"P9", "no session"});
   check_refused(study.people("note", "P003"), 2, {"TEXT"});
   const std::vector<Event> chain = study.store().events(0);
@@ -591,7 +541,7 @@ TEST_CASE("notes and deviations are on the file's chain, before and after closin
   }
   check_verified(study);
   CHECK(study.outcomes().at("participants") == 4);
-  CHECK(study.people("note", "P003", {"wrote a letter"}).exit_code == 0);
+  succeeded(study.people("note", "P003", {"wrote a letter"}));
   check_verified(study);
 }
 
@@ -612,9 +562,7 @@ TEST_CASE("every command that records prints the head for the day sheet") {
     REQUIRE(begin != std::string::npos);
     CHECK(done.output.find("acknowledged; write it on the day sheet\n") != std::string::npos);
     const std::string head = done.output.substr(begin + 5, 19);
-    const ProgramResult verified = study.run({"verify", study.in("study.db"), "--head", head});
-    INFO(verified.output << verified.errors);
-    CHECK(verified.exit_code == 0);
+    succeeded(study.run({"verify", study.in("study.db"), "--head", head}));
   };
   const std::vector<std::string> reason = {"--reason", "asked to"};
   const auto withdraw = [&](const std::string& participant, const std::string& how) {
@@ -626,8 +574,8 @@ TEST_CASE("every command that records prints the head for the day sheet") {
   check_head(study.people("withdraw", "P002", {"--erase-safety"}));
   check_head(study.people("unblind", "P003", reason));
   check_head(study.people("exclude", "P004", reason));
-  check_head(study.run({"close", study.in("study.db"), "--yes"}));
-  check_head(study.run({"unblind", study.in("study.db"), "--reason", "the planned test", "--yes"}));
+  check_head(study.type("close @study.db --yes"));
+  check_head(study.type("unblind @study.db --reason 'the planned test' --yes"));
 }
 
 TEST_CASE("what cannot be undone says whom it concerns and what is lost, and is not done unasked") {
@@ -682,15 +630,13 @@ TEST_CASE("what is recorded is signed with a station's file or with a key, not w
 
 TEST_CASE("a second look at the same sessions is refused, and one at more is not") {
   const PeopleStudy study;
-  const auto look = [&] {
-    return study.run({"unblind", study.in("study.db"), "--interim", "--reason", "look", "--yes"});
-  };
-  REQUIRE(look().exit_code == 0);
+  const auto look = [&] { return study.type("unblind @study.db --interim --reason look --yes"); };
+  succeeded(look());
   const std::size_t events = study.store().events(0).size();
   check_refused(look(), 1, {"study.db", "nothing has been collected since the last look"});
   CHECK(study.store().events(0).size() == events);
-  REQUIRE(study.session_of("P005").exit_code == 0);
-  CHECK(look().exit_code == 0);
+  succeeded(study.session_of("P005"));
+  succeeded(look());
   check_verified(study);
 }
 

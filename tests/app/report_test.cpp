@@ -29,11 +29,9 @@ ProgramResult without_gnuplot(const StudyFolder& study, const std::vector<std::s
 TEST_CASE(
     "report --out without gnuplot writes everything except figures, and says so in one line") {
   const StudyFolder study;
-  REQUIRE(study.simulate("s.db").exit_code == 0);
+  succeeded(study.simulate("s.db"));
   const std::vector<std::string> report = {"report", study.in("s.db"), "--out", study.in("out")};
-  const ProgramResult ran = without_gnuplot(study, report);
-  INFO(ran.errors);
-  REQUIRE(ran.exit_code == 0);
+  const ProgramResult ran = succeeded(without_gnuplot(study, report));
   CHECK(ran.output == study.in("out/report.html") + "\n");
   CHECK(line_count(ran.errors) == 1);
   CHECK_THAT(ran.errors, holds_text("gnuplot"));
@@ -42,7 +40,7 @@ TEST_CASE(
   CHECK_THAT(page, holds_text("SIMULATED"));
   CHECK_THAT(page, holds_text("figure-exploration-1-"));
   CHECK_THAT(page, !holds_text("<svg"));
-  const ProgramResult json = study.run({"report", study.in("s.db"), "--json", "--cues", "yes"});
+  const ProgramResult json = study.type("report @s.db --json --cues yes");
   CHECK(content(study.path() / "out/results.json") == json.output);
 
   // The same report without cues has fewer tables: only these are removed.
@@ -50,14 +48,14 @@ TEST_CASE(
   REQUIRE(fs::exists(study.path() / "out/tables/cues-1.md"));
   std::vector<std::string> fewer = report;
   fewer.insert(fewer.end(), {"--cues", "no"});
-  REQUIRE(without_gnuplot(study, fewer).exit_code == 0);
+  succeeded(without_gnuplot(study, fewer));
   CHECK_FALSE(fs::exists(study.path() / "out/tables/cues-1.md"));
   CHECK(content(study.path() / "out/tables/mine.md") == "mine");
 }
 
 TEST_CASE("report --out refuses a file, another study's folder, and a missing trial") {
   const StudyFolder study;
-  REQUIRE(study.simulate("s.db").exit_code == 0);
+  succeeded(study.simulate("s.db"));
   replace_file(study.path() / "file", std::string("text"));
   fs::create_directory(study.path() / "other");
   replace_file(study.path() / "other/results.json", std::string(R"({"study": "leaves"})"));
@@ -69,21 +67,16 @@ TEST_CASE("report --out refuses a file, another study's folder, and a missing tr
   }
   CHECK_FALSE(fs::exists(study.path() / "other/report.html"));
   for (const std::string trial : {"P001", "P001:999", "nobody:1"}) {
-    const ProgramResult ran =
-        study.run({"report", study.in("s.db"), "--out", study.in("out"), "--trial", trial});
-    INFO(ran.errors);
-    CHECK(ran.exit_code == 2);
-    CHECK(line_count(ran.errors) == 1);
+    check_refused(
+        study.run({"report", study.in("s.db"), "--out", study.in("out"), "--trial", trial}), 2, {});
   }
   CHECK_FALSE(fs::exists(study.path() / "out"));
 }
 
 TEST_CASE("report --out of a blind study reveals nothing about what was presented") {
   const StudyFolder study;
-  REQUIRE(study.simulate("s.db", {"--keep-blind"}).exit_code == 0);
-  const ProgramResult ran = study.run({"report", study.in("s.db"), "--out", study.in("out")});
-  INFO(ran.errors);
-  REQUIRE(ran.exit_code == 0);
+  succeeded(study.simulate("s.db", {"--keep-blind"}));
+  study.done("report @s.db --out @out");
   const std::string all = texts_in(study.path() / "out");
   for (const std::string& label : kLabels) CHECK_THAT(all, !holds_text(label));
   CHECK_THAT(all, !holds_text("accuracy"));

@@ -60,14 +60,10 @@ int acknowledged(const std::string& output) {
 /// Checks that every trial is answered once, that all classes are equally frequent, and that the
 /// chain is whole.
 void check_balanced(const StudyFolder& study, int participants) {
-  const ProgramResult verified = study.run({"verify", study.in("db")});
-  INFO(verified.output << verified.errors);
-  CHECK(verified.exit_code == 0);
-  REQUIRE(study.run({"close", study.in("db"), "--yes"}).exit_code == 0);
-  REQUIRE(study.run({"unblind", study.in("db"), "--reason", "test", "--yes"}).exit_code == 0);
-  const ProgramResult reported = study.run({"report", study.in("db"), "--json"});
-  REQUIRE(reported.exit_code == 0);
-  const json report = json::parse(reported.output);
+  study.done("verify @db");
+  study.done("close @db --yes");
+  study.done("unblind @db --reason test --yes");
+  const json report = study.printed("report @db --json");
   CHECK(report.at("participants") == participants);
   CHECK(report.at("trials") == 6 * participants);
   for (const json& row : report.at("methods").at(0).at("confusion")) {
@@ -81,9 +77,7 @@ void check_balanced(const StudyFolder& study, int participants) {
 
 TEST_CASE("run makes the database, acknowledges every response, and is refused a second time") {
   const StudyFolder study;
-  const ProgramResult first = run(study, "P01");
-  INFO(first.errors);
-  REQUIRE(first.exit_code == 0);
+  const ProgramResult first = succeeded(run(study, "P01"));
   CHECK(acknowledged(first.output) == 6);
   CHECK(first.output.find("complete") != std::string::npos);
   CHECK(first.output.find("SIMULATED") != std::string::npos);
@@ -92,10 +86,8 @@ TEST_CASE("run makes the database, acknowledges every response, and is refused a
     CHECK(first.output.find(label) == std::string::npos);
     CHECK(first.errors.find(label) == std::string::npos);
   }
-  const ProgramResult again = run(study, "P01", {"--on-existing", "resume"});
-  CHECK(again.exit_code == 1);
-  CHECK(again.errors.find("another participant") != std::string::npos);
-  CHECK(run(study, "P02").exit_code == 0);
+  check_refused(run(study, "P01", {"--on-existing", "resume"}), 1, {"another participant"});
+  succeeded(run(study, "P02"));
   check_balanced(study, 2);
 }
 
@@ -114,10 +106,10 @@ TEST_CASE("run asks about an id like another's, and about a number beyond the pl
   };
   refused("P02", {"--enrolment", "99999"}, "beyond the 8 participants that the study plans");
   CHECK_FALSE(fs::exists(study.path() / "db"));
-  REQUIRE(run(study, "P02", {"--enrolment", "8"}).exit_code == 0);
+  succeeded(run(study, "P02", {"--enrolment", "8"}));
   for (const char* const id : {"p02", "P2", "P002"}) refused(id, {}, "P02 is known");
-  CHECK(run(study, "p02", {"--yes"}).exit_code == 0);
-  CHECK(run(study, "P03", {"--enrolment", "9", "--yes"}).exit_code == 0);
+  succeeded(run(study, "p02", {"--yes"}));
+  succeeded(run(study, "P03", {"--enrolment", "9", "--yes"}));
   const StudyStore store = StudyStore::open(study.in("db"), StudyStore::Access::read_only);
   std::vector<int> numbers;
   for (const SessionRow& row : store.sessions()) numbers.push_back(row.enrolment);
@@ -127,7 +119,7 @@ TEST_CASE("run asks about an id like another's, and about a number beyond the pl
 TEST_CASE("a run that is refused leaves nothing, and the corrected command runs") {
   const StudyFolder study;
   const bool is_prepared = GENERATE(true, false);
-  if (is_prepared) REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  if (is_prepared) study.done("prepare @cloths.json");
   // A simulated study's pack stays, because the next run can use it.
   static_cast<void>(run(study, "P 01"));
   const auto files = [&] {
@@ -140,10 +132,7 @@ TEST_CASE("a run that is refused leaves nothing, and the corrected command runs"
   const std::set<std::string> before = files();
   CHECK_FALSE(before.contains("db"));
   const auto refused = [&](const std::vector<std::string>& more, const std::string& part) {
-    std::vector<std::string> command = {"run",  study.in("cloths.json"), "--participant", "P01",
-                                        "--db", study.in("db")};
-    command.insert(command.end(), more.begin(), more.end());
-    const ProgramResult result = study.run(command);
+    const ProgramResult result = study.type("run @cloths.json --participant P01 --db @db", more);
     INFO(result.errors);
     CHECK(result.exit_code != 0);
     CHECK(line_count(result.errors) >= 1);
@@ -158,28 +147,19 @@ TEST_CASE("a run that is refused leaves nothing, and the corrected command runs"
     refused({"--device", "mouse", "--pilot", "--monitor", "16", "--no-sound"}, "window: ");
     refused({"--device", "simulated", "--no-sound"}, "is not a terminal");
   }
-  CHECK(run(study, "P01").exit_code == 0);
+  succeeded(run(study, "P01"));
 }
 
 TEST_CASE("a session on a device with force needs an acceptance of that very device") {
   const StudyFolder study;
-  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  study.done("prepare @cloths.json");
   replace_file(study.path() / "devices.json",
                json{{"dhd", {{"library", TOUCHTRIAL_FAKE_DHD}}}}.dump());
   const auto refused = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> command = {"run",
-                                        study.in("cloths.json"),
-                                        "--participant",
-                                        "P01",
-                                        "--db",
-                                        study.in("db"),
-                                        "--device",
-                                        "dhd",
-                                        "--no-sound",
-                                        "--settings",
-                                        study.in("devices.json")};
-    command.insert(command.end(), more.begin(), more.end());
-    const ProgramResult result = study.run(command);
+    const ProgramResult result = study.type(
+        "run @cloths.json --participant P01 --db @db --device dhd --no-sound --settings "
+        "@devices.json",
+        more);
     CHECK(result.exit_code != 0);
     CHECK_FALSE(fs::exists(study.path() / "db"));
     return result.errors;
@@ -190,10 +170,7 @@ TEST_CASE("a session on a device with force needs an acceptance of that very dev
     CHECK_THAT(refused(kind),
                holds_text("touchtrial device accept dhd") && holds_text("--allow-unverified"));
   }
-  REQUIRE(study
-              .run({"device", "accept", "--emulate", "omega_3", "--certificate",
-                    study.in("rehearsed.json")})
-              .exit_code == 0);
+  study.done("device accept --emulate omega_3 --certificate @rehearsed.json");
   CHECK_THAT(refused({"--certificate", study.in("rehearsed.json")}),
              holds_text("proves no device"));
   // Only the terminal is missing then, whether or not the machine allows real time.
@@ -203,9 +180,8 @@ TEST_CASE("a session on a device with force needs an acceptance of that very dev
 
 TEST_CASE("a database in a folder that is not there is refused before anything else") {
   const StudyFolder study;
-  const ProgramResult refused =
-      study.run({"run", study.in("cloths.json"), "--participant", "P01", "--db",
-                 study.in("nowhere/db"), "--subject", study.in("quick.json"), "--headless"});
+  const ProgramResult refused = study.type(
+      "run @cloths.json --participant P01 --db @nowhere/db --subject @quick.json --headless");
   CHECK(refused.exit_code != 0);
   CHECK_THAT(refused.errors, holds_text("there is no folder for it"));
 }
@@ -213,43 +189,27 @@ TEST_CASE("a database in a folder that is not there is refused before anything e
 TEST_CASE("stations use their own numbers of a plan, and a replacement uses its predecessor's") {
   const StudyFolder study;
   const auto plan = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"plan", study.in("cloths.json"), "--participants"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return study.run(arguments);
+    return study.type("plan @cloths.json --participants", more);
   };
-  const ProgramResult unprepared = plan({"4", "--names", "attic,cellar"});
-  CHECK(unprepared.exit_code == 1);
-  CHECK_THAT(unprepared.errors, holds_text("cloths.key: there is no key"));
-  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
-  REQUIRE(plan({"4", "--names", "attic,cellar"}).exit_code == 0);
-  const ProgramResult again = plan({"6", "--names", "attic,cellar"});
-  CHECK(again.exit_code == 2);
-  CHECK_THAT(again.errors, holds_text("--extend"));
+  check_refused(plan({"4", "--names", "attic,cellar"}), 1, {"cloths.key: there is no key"});
+  study.done("prepare @cloths.json");
+  succeeded(plan({"4", "--names", "attic,cellar"}));
+  check_refused(plan({"6", "--names", "attic,cellar"}), 2, {"--extend"});
 
-  const ProgramResult nowhere = run(study, "P01");
-  CHECK(nowhere.exit_code == 2);
-  CHECK_THAT(nowhere.errors, holds_text("cloths.station") && holds_text("--station"));
-  const ProgramResult unknown = run(study, "P01", {"--station", "roof"});
-  CHECK(unknown.exit_code == 2);
-  CHECK_THAT(unknown.errors, holds_text("cloths.roof.station"));
+  check_refused(run(study, "P01"), 2, {"cloths.station", "--station"});
+  check_refused(run(study, "P01", {"--station", "roof"}), 2, {"cloths.roof.station"});
 
-  REQUIRE(run(study, "P01", {"--station", "cellar"}).exit_code == 0);
-  const ProgramResult elsewhere = run(study, "P02", {"--station", "attic"});
-  CHECK(elsewhere.exit_code == 1);
-  CHECK_THAT(elsewhere.errors, holds_text("is the database of station cellar"));
-  REQUIRE(run(study, "P02", {"--station", "cellar"}).exit_code == 0);
-  const ProgramResult full = run(study, "P03", {"--station", "cellar"});
-  CHECK(full.exit_code == 2);
-  CHECK_THAT(full.errors, holds_text("numbers of station cellar are taken"));
-  REQUIRE(plan({"6", "--extend"}).exit_code == 0);
-  REQUIRE(run(study, "P03", {"--station", "cellar"}).exit_code == 0);
-  REQUIRE(study.run({"exclude", study.in("db"), "--participant", "P01", "--reason", "test"})
-              .exit_code == 0);
-  REQUIRE(study
-              .run({"replace", study.in("db"), "--participant", "P01", "--with", "P04", "--reason",
-                    "test"})
-              .exit_code == 0);
-  REQUIRE(run(study, "P04", {"--station", "cellar"}).exit_code == 0);
+  succeeded(run(study, "P01", {"--station", "cellar"}));
+  check_refused(run(study, "P02", {"--station", "attic"}), 1,
+                {"is the database of station cellar"});
+  succeeded(run(study, "P02", {"--station", "cellar"}));
+  check_refused(run(study, "P03", {"--station", "cellar"}), 2,
+                {"numbers of station cellar are taken"});
+  succeeded(plan({"6", "--extend"}));
+  succeeded(run(study, "P03", {"--station", "cellar"}));
+  study.done("exclude @db --participant P01 --reason test");
+  study.done("replace @db --participant P01 --with P04 --reason test");
+  succeeded(run(study, "P04", {"--station", "cellar"}));
 
   const StudyStore store = StudyStore::open(study.in("db"), StudyStore::Access::read_only);
   std::vector<int> numbers;
@@ -264,12 +224,8 @@ TEST_CASE("a killed session resumes after the acknowledged responses") {
   const int before = acknowledged(killed.output);
   CHECK(before >= 1);
   CHECK(before < 6);
-  const ProgramResult refused = run(study, "P01");
-  CHECK(refused.exit_code == 1);
-  CHECK(refused.errors.find("--on-existing resume") != std::string::npos);
-  const ProgramResult resumed = run(study, "P01", {"--on-existing", "resume"});
-  INFO(resumed.errors);
-  CHECK(resumed.exit_code == 0);
+  check_refused(run(study, "P01"), 1, {"--on-existing resume"});
+  const ProgramResult resumed = succeeded(run(study, "P01", {"--on-existing", "resume"}));
   // The last response may be durable although its acknowledgement was not read.
   CHECK(before + acknowledged(resumed.output) >= 5);
   CHECK(before + acknowledged(resumed.output) <= 6);
@@ -282,57 +238,44 @@ TEST_CASE("a session that a signal ends stays open, says so, and can be resumed"
   CHECK(stopped.exit_code == 128 + SIGTERM);
   CHECK(stopped.output.find("SIGTERM") != std::string::npos);
   CHECK(stopped.output.find("left open") != std::string::npos);
-  REQUIRE(run(study, "P01", {"--on-existing", "resume"}).exit_code == 0);
+  succeeded(run(study, "P01", {"--on-existing", "resume"}));
   check_balanced(study, 1);
 }
 
 TEST_CASE("an unfinished session can be restarted, and the first one does not count") {
   const StudyFolder study;
   REQUIRE(Interrupted(study, "P01", SIGKILL).exit_code == -1);
-  const ProgramResult restarted = run(study, "P01", {"--on-existing", "restart"});
-  INFO(restarted.errors);
-  CHECK(restarted.exit_code == 0);
+  const ProgramResult restarted = succeeded(run(study, "P01", {"--on-existing", "restart"}));
   CHECK(acknowledged(restarted.output) == 6);
   check_balanced(study, 1);
 }
 
 TEST_CASE("a mistyped --on-existing names the words that there are") {
   const StudyFolder study;
-  const ProgramResult refused = run(study, "P01", {"--on-existing", "resum"});
-  CHECK(refused.exit_code == 2);
-  CHECK(line_count(refused.errors) == 1);
-  CHECK(refused.errors.find("--on-existing: 'resum' is unknown; give refuse, resume or restart") !=
-        std::string::npos);
+  check_refused(run(study, "P01", {"--on-existing", "resum"}), 2,
+                {"--on-existing: 'resum' is unknown; give refuse, resume or restart"});
 }
 
 TEST_CASE("pilot sessions and changed studies are refused") {
   const StudyFolder study;
-  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
-  REQUIRE(run(study, "P01").exit_code == 0);
-  const ProgramResult pilot = run(study, "P02", {"--pilot"});
-  CHECK(pilot.exit_code == 1);
-  CHECK(pilot.errors.find("pilot") != std::string::npos);
+  study.done("prepare @cloths.json");
+  succeeded(run(study, "P01"));
+  check_refused(run(study, "P02", {"--pilot"}), 1, {"pilot"});
 
   json changed = study_of("classification");
   changed["trials"]["repeats"] = 3;
   replace_file(study.path() / "cloths.json", changed.dump());
-  const ProgramResult other = run(study, "P02");
-  CHECK(other.exit_code == 2);
-  CHECK(other.errors.find("prepare") != std::string::npos);
+  check_refused(run(study, "P02"), 2, {"prepare"});
 }
 
 TEST_CASE("closing a study names the sessions that can no longer be continued") {
   const StudyFolder study;
   REQUIRE(Interrupted(study, "P01", SIGKILL).exit_code == -1);
-  REQUIRE(run(study, "P02").exit_code == 0);
-  const ProgramResult closed = study.run({"close", study.in("db"), "--yes"});
-  INFO(closed.errors);
-  CHECK(closed.exit_code == 0);
+  succeeded(run(study, "P02"));
+  const ProgramResult closed = study.done("close @db --yes");
   CHECK(line_count(closed.errors) == 1);
   CHECK(closed.errors.find("can no longer be continued: P01") != std::string::npos);
   CHECK(closed.errors.find("P02") == std::string::npos);
-  const ProgramResult refused = run(study, "P01", {"--on-existing", "resume"});
-  CHECK(refused.exit_code == 1);
-  CHECK(refused.errors.find("closed") != std::string::npos);
-  CHECK(study.run({"verify", study.in("db")}).exit_code == 0);
+  check_refused(run(study, "P01", {"--on-existing", "resume"}), 1, {"closed"});
+  study.done("verify @db");
 }

@@ -68,11 +68,7 @@ void write_visits(const StudyFolder& folder, int planned) {
 }
 
 json status_of(const StudyFolder& folder, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments = {"status", folder.in("study.db"), "--json"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  const ProgramResult shown = folder.run(arguments);
-  INFO(shown.errors);
-  REQUIRE(shown.exit_code == 0);
+  const ProgramResult shown = succeeded(folder.type("status @study.db --json", more));
   return json::parse(shown.output);
 }
 
@@ -80,7 +76,7 @@ json status_of(const StudyFolder& folder, const std::vector<std::string>& more =
 
 TEST_CASE("status names the next participant and has the lines to copy") {
   const StudyFolder folder;
-  REQUIRE(folder.run({"prepare", folder.in("cloths.json")}).exit_code == 0);
+  folder.done("prepare @cloths.json");
   begin_database(folder, "cloths.station");
   const json first = status_of(folder);
   CHECK(first["complete"] == 0);
@@ -100,17 +96,15 @@ TEST_CASE("status names the next participant and has the lines to copy") {
   REQUIRE(consented["next"].size() == 1);
   CHECK(consented["people"][0]["participant"] == "P01");
   CHECK(consented["people"][0]["state"] == "to come");
-  const ProgramResult text = folder.run({"status", folder.in("study.db")});
+  const ProgramResult text = folder.type("status @study.db");
   CHECK(text.output.find("session of P01:\n    touchtrial run ") != std::string::npos);
   CHECK(text.output.find("example.org") == std::string::npos);
 }
 
 TEST_CASE("status of a station of several names the station, and another study is refused") {
   const StudyFolder folder;
-  REQUIRE(folder.run({"prepare", folder.in("cloths.json")}).exit_code == 0);
-  REQUIRE(
-      folder.run({"plan", folder.in("cloths.json"), "--participants", "4", "--names", "left,right"})
-          .exit_code == 0);
+  folder.done("prepare @cloths.json");
+  folder.done("plan @cloths.json --participants 4 --names left,right");
   begin_database(folder, "cloths.right.station");
   const std::string line = status_of(folder)["next"].back()["command"];
   CHECK(line.find(" " + folder.in("cloths.json") + " ") != std::string::npos);
@@ -118,19 +112,13 @@ TEST_CASE("status of a station of several names the station, and another study i
   json other = study_of("classification");
   other["study"] = "others";
   replace_file(folder.path() / "others.json", other.dump());
-  const ProgramResult refused =
-      folder.run({"status", folder.in("study.db"), "--study", folder.in("others.json")});
-  CHECK(refused.exit_code == 2);
-  CHECK(refused.errors.find("is the study others") != std::string::npos);
+  check_refused(folder.type("status @study.db --study @others.json"), 2, {"is the study others"});
 }
 
 TEST_CASE("before the first session status lists the consents and has the first lines to copy") {
   const StudyFolder folder;
-  const ProgramResult nothing = folder.run({"status", folder.in("study.db")});
-  CHECK(nothing.exit_code == 1);
-  CHECK(line_count(nothing.errors) == 1);
-  CHECK(nothing.errors.find("neither such a database nor a consent") != std::string::npos);
-  REQUIRE(folder.run({"prepare", folder.in("cloths.json")}).exit_code == 0);
+  check_refused(folder.type("status @study.db"), 1, {"neither such a database nor a consent"});
+  folder.done("prepare @cloths.json");
   const json first = status_of(folder);
   CHECK(first["study"] == "cloths");
   CHECK(first["state"] == "collecting");
@@ -139,9 +127,7 @@ TEST_CASE("before the first session status lists the consents and has the first 
   REQUIRE(first["next"].size() == 2);
   CHECK(first["next"][1]["command"] == "touchtrial run " + folder.in("cloths.json") +
                                            " --participant P01 --db " + folder.in("study.db"));
-  REQUIRE(
-      folder.run({"consent", folder.in("study.db"), "--participant", "P01", "--version", "2026-03"})
-          .exit_code == 0);
+  folder.done("consent @study.db --participant P01 --version 2026-03");
   const json consented = status_of(folder);
   CHECK(consented["people"][0]["participant"] == "P01");
   CHECK(consented["people"][0]["consent"] == "2026-03");
@@ -153,7 +139,7 @@ TEST_CASE("before the first session status lists the consents and has the first 
 TEST_CASE("a pilot is not counted against the plan") {
   const StudyFolder folder;
   write_visits(folder, 8);
-  REQUIRE(folder.run({"prepare", folder.in("cloths.json")}).exit_code == 0);
+  folder.done("prepare @cloths.json");
   begin_database(folder, "cloths.station", true);
   add_session(folder, "P01", 1, 1, std::chrono::hours(1));
   const json status = status_of(folder);
@@ -164,7 +150,7 @@ TEST_CASE("a pilot is not counted against the plan") {
 TEST_CASE("status proposes the visit that is due, and names it in the line to copy") {
   const StudyFolder folder;
   write_visits(folder, 2);
-  REQUIRE(folder.run({"prepare", folder.in("cloths.json")}).exit_code == 0);
+  folder.done("prepare @cloths.json");
   begin_database(folder, "cloths.station");
   add_session(folder, "P01", 1, 1, std::chrono::hours(24));
   const json early = status_of(folder);
@@ -184,7 +170,7 @@ TEST_CASE("status proposes the visit that is due, and names it in the line to co
   const json full = status_of(folder);  // as many as are planned have come
   CHECK(full["complete"] == 1);
   CHECK(full["next"].back()["what"].get<std::string>().starts_with("visit 2 of P01, from 20"));
-  const ProgramResult text = folder.run({"status", folder.in("study.db")});
+  const ProgramResult text = folder.type("status @study.db");
   CHECK(text.output.find("2 of 2") != std::string::npos);
   CHECK(text.output.find("P01: visit 2 of 2 is to come, from 20") != std::string::npos);
 }
@@ -194,21 +180,19 @@ TEST_CASE("the plan of a simulated study comes from the files beside its databas
   json study = study_of("classification");
   study["registration"] = {{"participants", 6}};
   replace_file(folder.path() / "cloths.json", study.dump());
-  REQUIRE(folder.simulate("study.db", {"--keep-blind"}).exit_code == 0);
+  succeeded(folder.simulate("study.db", {"--keep-blind"}));
   CHECK(status_of(folder)["planned"] == 6);
 }
 
 TEST_CASE("status of merged and of simulated studies has no line to copy") {
   const StudyFolder folder;
-  REQUIRE(folder.simulate("study.db", {"--keep-blind"}).exit_code == 0);
+  succeeded(folder.simulate("study.db", {"--keep-blind"}));
   const json simulated = status_of(folder);
   CHECK(simulated["stamp"] == "SIMULATED");
   CHECK(simulated["complete"] == 4);
   CHECK(simulated["next"].empty());
-  REQUIRE(folder.run({"merge", folder.in("study.db"), "-o", folder.in("all.db")}).exit_code == 0);
-  const ProgramResult merged = folder.run({"status", folder.in("all.db")});
-  INFO(merged.errors);
-  CHECK(merged.exit_code == 0);
+  folder.done("merge @study.db -o @all.db");
+  const ProgramResult merged = folder.done("status @all.db");
   CHECK(merged.output.find("P004") != std::string::npos);
   CHECK(merged.output.find("touchtrial run") == std::string::npos);
 }

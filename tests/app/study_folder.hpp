@@ -54,8 +54,38 @@ inline json study_of(const std::string& protocol) {
           {"seed", 11}};
 }
 
+/// A folder in which the program is run.
+struct ProgramFolder {
+  [[nodiscard]] const fs::path& path() const { return folder.path(); }
+  [[nodiscard]] std::string in(const std::string& name) const { return (path() / name).string(); }
+
+  ProgramResult run(const std::vector<std::string>& arguments,
+                    const std::string& input = "") const {
+    return run_touchtrial(path(), arguments, input);
+  }
+  /// A line as it is typed, "close @study.db --yes": see typed_words.
+  /// \param more  further words
+  [[nodiscard]] ProgramResult type(const std::string& line,
+                                   const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = typed_words(line, path());
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+  /// The same; fails the test unless it succeeds.
+  ProgramResult done(const std::string& line, const std::vector<std::string>& more = {}) const {
+    return succeeded(type(line, more));
+  }
+  /// The object that such a line prints with --json.
+  [[nodiscard]] json printed(const std::string& line,
+                             const std::vector<std::string>& more = {}) const {
+    return json::parse(done(line, more).output);
+  }
+
+  TempFolder folder;
+};
+
 /// A folder with a study file, its pictures, and a quick subject.
-struct StudyFolder {
+struct StudyFolder : ProgramFolder {
   explicit StudyFolder(const std::string& protocol = "classification") {
     for (std::size_t i = 0; i < kLabels.size(); ++i) {
       engine::write_png(path() / (kLabels[i] + "-photo.png"), texture_number(static_cast<int>(i)));
@@ -64,22 +94,12 @@ struct StudyFolder {
     replace_file(path() / "quick.json",
                  R"({"feature_noise": 0.1, "explore_s": 1.5, "training_passes": 2})");
   }
-  [[nodiscard]] const fs::path& path() const { return folder.path(); }
-  [[nodiscard]] std::string in(const std::string& name) const { return (path() / name).string(); }
-
-  ProgramResult run(const std::vector<std::string>& arguments) const {
-    return run_touchtrial(path(), arguments);
-  }
   ProgramResult simulate(const std::string& db, const std::vector<std::string>& more = {},
                          const std::string& seed = "3") const {
-    std::vector<std::string> arguments = {
-        "simulate", in("cloths.json"), "--participants", "4", "--seed", seed, "--db",
-        in(db),     "--subject",       in("quick.json")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments);
+    return type("simulate @cloths.json --participants 4 --subject @quick.json --db @" + db +
+                    " --seed '" + seed + "'",
+                more);
   }
-
-  TempFolder folder;
 };
 
 inline std::string content(const fs::path& path) {

@@ -22,15 +22,11 @@ std::string first_line(const std::string& text) {
 
 TEST_CASE("a study goes from its file to an accuracy table that adds up") {
   const StudyFolder study;
-  const ProgramResult simulated = study.simulate("a.db");
-  INFO(simulated.errors);
-  REQUIRE(simulated.exit_code == 0);
+  const ProgramResult simulated = succeeded(study.simulate("a.db"));
   CHECK(simulated.output.find("SIMULATED") != std::string::npos);
   CHECK(first_line(simulated.output) == kOnIdeal);
 
-  const ProgramResult reported = study.run({"report", study.in("a.db"), "--json"});
-  REQUIRE(reported.exit_code == 0);
-  const json report = json::parse(reported.output);
+  const json report = study.printed("report @a.db --json");
   CHECK(report.at("participants") == 4);
   CHECK(report.at("trials") == 4 * 6);
   CHECK(report.at("classes") == json(kLabels));
@@ -47,8 +43,7 @@ TEST_CASE("a study goes from its file to an accuracy table that adds up") {
   CHECK(method.at("overall").at("correct") == correct);
   CHECK(method.at("overall").at("n") == 24);
 
-  const ProgramResult text = study.run({"report", study.in("a.db")});
-  CHECK(text.exit_code == 0);
+  const ProgramResult text = study.done("report @a.db");
   CHECK(text.output.find("SIMULATED") != std::string::npos);
   CHECK(first_line(text.output) == kOnIdeal);
   CHECK(text.output.find("corduroy") != std::string::npos);
@@ -57,9 +52,7 @@ TEST_CASE("a study goes from its file to an accuracy table that adds up") {
 TEST_CASE("numbers name the modelled device that they were simulated on, blind or not") {
   const StudyFolder study;
   const ProgramResult simulated =
-      study.simulate("t.db", {"--on", "omni", "--keep-blind", "--json"});
-  INFO(simulated.errors);
-  REQUIRE(simulated.exit_code == 0);
+      succeeded(study.simulate("t.db", {"--on", "omni", "--keep-blind", "--json"}));
   CHECK(json::parse(simulated.output).at("simulated_on") == "modelled device touch");
   const auto reported = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"report", study.in("t.db")});
@@ -67,28 +60,27 @@ TEST_CASE("numbers name the modelled device that they were simulated on, blind o
   };
   CHECK(first_line(reported({})) == "simulated on: modelled device touch");
   CHECK(json::parse(reported({"--json"})).at("simulated_on") == "modelled device touch");
-  REQUIRE(study.run({"close", study.in("t.db"), "--yes"}).exit_code == 0);
-  REQUIRE(study.run({"unblind", study.in("t.db"), "--reason", "done", "--yes"}).exit_code == 0);
+  study.done("close @t.db --yes");
+  study.done("unblind @t.db --reason done --yes");
   CHECK(first_line(reported({})) == "simulated on: modelled device touch");
   CHECK(json::parse(reported({"--json"})).at("simulated_on") == "modelled device touch");
-  REQUIRE(study.run({"report", study.in("t.db"), "--out", study.in("page")}).exit_code == 0);
+  study.done("report @t.db --out @page");
   CHECK_THAT(content(study.path() / "page" / "report.html"),
              holds_text("simulated on: modelled device touch"));
-  REQUIRE(study.run({"export", study.in("t.db"), "--format", "csv", "--out", study.in("csv")})
-              .exit_code == 0);
+  study.done("export @t.db --format csv --out @csv");
   CHECK(json::parse(content(study.path() / "csv" / "export.json")).at("simulated_on") ==
         "modelled device touch");
 }
 
 TEST_CASE("exports and reports are the same bytes for a seed, whatever the number of jobs") {
   const StudyFolder study("comparison");
-  REQUIRE(study.simulate("one.db", {"--jobs", "1"}).exit_code == 0);
-  REQUIRE(study.simulate("three.db", {"--jobs", "3"}).exit_code == 0);
+  succeeded(study.simulate("one.db", {"--jobs", "1"}));
+  succeeded(study.simulate("three.db", {"--jobs", "3"}));
   for (const std::string format : {"csv", "json"}) {
-    REQUIRE(study.run({"export", study.in("one.db"), "--format", format, "--out", study.in("1")})
-                .exit_code == 0);
-    REQUIRE(study.run({"export", study.in("three.db"), "--format", format, "--out", study.in("3")})
-                .exit_code == 0);
+    succeeded(
+        study.run({"export", study.in("one.db"), "--format", format, "--out", study.in("1")}));
+    succeeded(
+        study.run({"export", study.in("three.db"), "--format", format, "--out", study.in("3")}));
   }
   int files = 0;
   for (const auto& entry : fs::directory_iterator(study.path() / "1")) {
@@ -97,23 +89,22 @@ TEST_CASE("exports and reports are the same bytes for a seed, whatever the numbe
     ++files;
   }
   CHECK(files >= 5);
-  CHECK(study.run({"report", study.in("one.db"), "--json"}).output ==
-        study.run({"report", study.in("three.db"), "--json"}).output);
+  CHECK(study.type("report @one.db --json").output == study.type("report @three.db --json").output);
 }
 
 TEST_CASE("another seed gives other answers") {
   const StudyFolder study;
-  REQUIRE(study.simulate("a.db").exit_code == 0);
-  REQUIRE(study.simulate("b.db", {}, "4").exit_code == 0);
+  succeeded(study.simulate("a.db"));
+  succeeded(study.simulate("b.db", {}, "4"));
   for (const std::string name : {"a", "b"}) {
-    REQUIRE(study.run({"export", study.in(name + ".db"), "--out", study.in(name)}).exit_code == 0);
+    succeeded(study.run({"export", study.in(name + ".db"), "--out", study.in(name)}));
   }
   CHECK(content(study.path() / "a" / "trials.csv") != content(study.path() / "b" / "trials.csv"));
 }
 
 TEST_CASE("a blind study's database and pack name no class and no picture") {
   const StudyFolder study;
-  REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
+  succeeded(study.simulate("a.db", {"--keep-blind"}));
   std::vector<fs::path> files = {study.path() / "a.db"};
   for (const auto& entry : fs::directory_iterator(study.path() / "cloths.sim.pack")) {
     files.push_back(entry.path());
@@ -132,21 +123,19 @@ TEST_CASE("a blind study's database and pack name no class and no picture") {
 
 TEST_CASE("before unblinding, report and export show quality and no outcome") {
   const StudyFolder study;
-  REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
-  const ProgramResult reported = study.run({"report", study.in("a.db"), "--json"});
-  REQUIRE(reported.exit_code == 0);
+  succeeded(study.simulate("a.db", {"--keep-blind"}));
+  const ProgramResult reported = study.done("report @a.db --json");
   const json quality = json::parse(reported.output);
   CHECK(quality.at("participants") == 4);
   CHECK_FALSE(quality.contains("methods"));
   for (const std::string& label : kLabels) {
     CHECK(reported.output.find(label) == std::string::npos);
   }
-  REQUIRE(study.run({"export", study.in("a.db"), "--out", study.in("csv")}).exit_code == 0);
+  study.done("export @a.db --out @csv");
   for (const std::string format : {"r", "events"}) {
-    const ProgramResult refused =
-        study.run({"export", study.in("a.db"), "--format", format, "--out", study.in("none")});
-    CHECK(refused.exit_code == 1);
-    CHECK(refused.errors.find("is not unblinded") != std::string::npos);
+    check_refused(
+        study.run({"export", study.in("a.db"), "--format", format, "--out", study.in("none")}), 1,
+        {"is not unblinded"});
     CHECK_FALSE(fs::exists(study.path() / "none"));
   }
   const std::string trials = content(study.path() / "csv" / "trials.csv");
@@ -159,24 +148,22 @@ TEST_CASE("before unblinding, report and export show quality and no outcome") {
 
 TEST_CASE("outcomes show only after closing and unblinding, which are recorded") {
   const StudyFolder study;
-  REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
-  CHECK(study.run({"unblind", study.in("a.db"), "--reason", "curious", "--yes"}).exit_code == 1);
-  CHECK(study.run({"unblind", study.in("a.db"), "--yes"}).exit_code == 2);
-  CHECK(study.run({"close", study.in("a.db"), "--yes"}).exit_code == 0);
-  CHECK(study.run({"close", study.in("a.db"), "--yes"}).exit_code == 1);
-  CHECK(study.run({"unblind", study.in("a.db"), "--reason", "collection is over", "--yes"})
-            .exit_code == 0);
-  const json report = json::parse(study.run({"report", study.in("a.db"), "--json"}).output);
+  succeeded(study.simulate("a.db", {"--keep-blind"}));
+  CHECK(study.type("unblind @a.db --reason curious --yes").exit_code == 1);
+  CHECK(study.type("unblind @a.db --yes").exit_code == 2);
+  study.done("close @a.db --yes");
+  CHECK(study.type("close @a.db --yes").exit_code == 1);
+  study.done("unblind @a.db --reason 'collection is over' --yes");
+  const json report = study.printed("report @a.db --json");
   CHECK(report.contains("methods"));
-  CHECK(study.run({"verify", study.in("a.db")}).exit_code == 0);
+  study.done("verify @a.db");
 }
 
 TEST_CASE("an interim look is possible before closing, if it is declared as one") {
   const StudyFolder study;
-  REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
-  CHECK(study.run({"unblind", study.in("a.db"), "--reason", "safety", "--interim", "--yes"})
-            .exit_code == 0);
-  CHECK(json::parse(study.run({"report", study.in("a.db"), "--json"}).output).contains("methods"));
+  succeeded(study.simulate("a.db", {"--keep-blind"}));
+  study.done("unblind @a.db --reason safety --interim --yes");
+  CHECK(study.printed("report @a.db --json").contains("methods"));
 }
 
 TEST_CASE("a registered look shows the registered question alone") {
@@ -185,48 +172,39 @@ TEST_CASE("a registered look shows the registered question alone") {
   file["registration"] = {
       {"participants", 8}, {"estimand", "mean-accuracy"}, {"looks", json::array({4})}};
   replace_file(study.path() / "cloths.json", file.dump());
-  REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
+  succeeded(study.simulate("a.db", {"--keep-blind"}));
   const auto look = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words = {"unblind",  study.in("a.db"), "--interim",
-                                      "--reason", "plan",           "--yes"};
-    words.insert(words.end(), more.begin(), more.end());
-    return study.run(words);
+    return study.type("unblind @a.db --interim --reason plan --yes", more);
   };
-  REQUIRE(look({}).exit_code == 0);
+  succeeded(look({}));
 
-  const json report = json::parse(study.run({"report", study.in("a.db"), "--json"}).output);
+  const json report = study.printed("report @a.db --json");
   CHECK(report.at("question_alone") == true);
   CHECK(report.at("looks").at(0).at("kind") == "registered");
   CHECK(report.at("primary").at("choices").size() == 1);
   CHECK(report.at("primary").at("level") < report.at("primary").at("alpha"));
   CHECK(report.at("prevalence").is_null());
   CHECK_FALSE(report.contains("methods"));
-  const std::string text = study.run({"report", study.in("a.db")}).output;
+  const std::string text = study.type("report @a.db").output;
   CHECK_THAT(text, holds_text("INTERIM LOOK at the registered question"));
   CHECK_THAT(text, !holds_text("granite  "));
-  REQUIRE(study.run({"report", study.in("a.db"), "-o", study.in("page")}).exit_code == 0);
+  study.done("report @a.db -o @page");
   CHECK_FALSE(fs::exists(study.path() / "page" / "figures"));
 
-  REQUIRE(study.run({"export", study.in("a.db"), "--out", study.in("csv")}).exit_code == 0);
+  study.done("export @a.db --out @csv");
   CHECK_FALSE(fs::exists(study.path() / "csv" / "confusion_adaptive.csv"));
   CHECK_THAT(content(study.path() / "csv" / "trials.csv"), !holds_text("granite"));
   CHECK_THAT(content(study.path() / "csv" / "participants.csv"), !holds_text("order_block"));
-  CHECK_THAT(
-      study.run({"export", study.in("a.db"), "--format", "r", "--out", study.in("r")}).errors,
-      holds_text("blind but for the registered question"));
-  CHECK_THAT(study.run({"fit", study.in("a.db")}).errors,
+  CHECK_THAT(study.type("export @a.db --format r --out @r").errors,
              holds_text("blind but for the registered question"));
-  CHECK_THAT(study
-                 .run({"export", study.in("a.db"), "--participant", "P001", "--key",
-                       study.in("a.db.key"), "--out", study.in("one")})
-                 .errors,
+  CHECK_THAT(study.type("fit @a.db").errors, holds_text("blind but for the registered question"));
+  CHECK_THAT(study.type("export @a.db --participant P001 --key @a.db.key --out @one").errors,
              holds_text("no look at the outcomes of participant P001 is recorded"));
 
-  CHECK_THAT(study.run({"status", study.in("a.db")}).output,
-             holds_text("; a registered look was made"));
-  const json quoted = json::parse(study.run({"report", study.in("a.db"), "--json"}).output);
-  REQUIRE(look({"--unregistered"}).exit_code == 0);
-  const json all = json::parse(study.run({"report", study.in("a.db"), "--json"}).output);
+  CHECK_THAT(study.type("status @a.db").output, holds_text("; a registered look was made"));
+  const json quoted = study.printed("report @a.db --json");
+  succeeded(look({"--unregistered"}));
+  const json all = study.printed("report @a.db --json");
   CHECK(all.contains("methods"));
   CHECK(all.at("looks").at(1).at("kind") == "unregistered");
   CHECK_THAT(all.at("departures").dump(), holds_text("This look was not registered"));
@@ -235,11 +213,9 @@ TEST_CASE("a registered look shows the registered question alone") {
 
 TEST_CASE("a session of a study that is not prepared names the command that prepares it") {
   const StudyFolder study;
-  const ProgramResult refused = study.run(
-      {"run", study.in("cloths.json"), "--participant", "P01", "--db", study.in("study.db")});
-  CHECK(refused.exit_code == 2);
-  CHECK(line_count(refused.errors) == 1);
-  CHECK_THAT(refused.errors, holds_text("is not prepared yet; run `touchtrial prepare "));
+  check_refused(study.run({"run", study.in("cloths.json"), "--participant", "P01", "--db",
+                           study.in("study.db")}),
+                2, {"is not prepared yet; run `touchtrial prepare "});
   CHECK_FALSE(fs::exists(study.path() / "study.db"));
 }
 
@@ -249,46 +225,33 @@ TEST_CASE("an interim look at a number of participants that was not registered i
   file["registration"] = {
       {"participants", 8}, {"estimand", "mean-accuracy"}, {"looks", json::array({3, 6})}};
   replace_file(study.path() / "cloths.json", file.dump());
-  REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
-  const ProgramResult refused =
-      study.run({"unblind", study.in("a.db"), "--interim", "--reason", "curious"});
-  CHECK(refused.exit_code == 1);
-  CHECK_THAT(refused.errors,
-             holds_text("4 participants are complete, and the registered looks are at 3 and 6"));
-  CHECK(line_count(refused.errors) == 1);
-  CHECK_FALSE(
-      json::parse(study.run({"report", study.in("a.db"), "--json"}).output).contains("primary"));
+  succeeded(study.simulate("a.db", {"--keep-blind"}));
+  check_refused(study.type("unblind @a.db --interim --reason curious"), 1,
+                {"4 participants are complete, and the registered looks are at 3 and 6"});
+  CHECK_FALSE(study.printed("report @a.db --json").contains("primary"));
 }
 
 TEST_CASE("outcomes need the study's own key") {
   const StudyFolder study;
-  REQUIRE(study.simulate("a.db").exit_code == 0);
+  succeeded(study.simulate("a.db"));
   fs::rename(study.path() / "a.db.key", study.path() / "elsewhere.key");
-  const ProgramResult missing = study.run({"report", study.in("a.db")});
-  CHECK(missing.exit_code == 1);
-  CHECK(line_count(missing.errors) == 1);
-  CHECK(study.run({"report", study.in("a.db"), "--key", study.in("elsewhere.key")}).exit_code == 0);
+  check_refused(study.type("report @a.db"), 1, {});
+  study.done("report @a.db --key @elsewhere.key");
 
   replace_file(study.path() / "other.json", [] {
     json other = study_of("classification");
     other["seed"] = 12;
     return other.dump();
   }());
-  REQUIRE(study
-              .run({"simulate", study.in("other.json"), "--participants", "1", "--db",
-                    study.in("other.db"), "--subject", study.in("quick.json")})
-              .exit_code == 0);
-  const ProgramResult wrong =
-      study.run({"report", study.in("a.db"), "--key", study.in("other.db.key")});
-  CHECK(wrong.exit_code == 3);
-  CHECK(line_count(wrong.errors) == 1);
-  CHECK(study.run({"verify", study.in("a.db"), "--key", study.in("other.db.key")}).exit_code == 3);
+  study.done("simulate @other.json --participants 1 --db @other.db --subject @quick.json");
+  check_refused(study.type("report @a.db --key @other.db.key"), 3, {});
+  CHECK(study.type("verify @a.db --key @other.db.key").exit_code == 3);
 }
 
 TEST_CASE("verify finds a field that was tampered with") {
   const StudyFolder study;
-  REQUIRE(study.simulate("a.db").exit_code == 0);
-  REQUIRE(study.run({"verify", study.in("a.db")}).exit_code == 0);
+  succeeded(study.simulate("a.db"));
+  study.done("verify @a.db");
   for (const auto& entry : fs::directory_iterator(study.path() / "cloths.sim.pack")) {
     if (entry.path().extension() != ".field") continue;
     Bytes bytes = read_file(entry.path());
@@ -296,23 +259,21 @@ TEST_CASE("verify finds a field that was tampered with") {
     replace_file(entry.path(), ByteView(bytes));
     break;
   }
-  const ProgramResult result = study.run({"verify", study.in("a.db")});
+  const ProgramResult result = study.type("verify @a.db");
   CHECK(result.exit_code == 3);
   CHECK(result.output.find("pack") != std::string::npos);
 }
 
 TEST_CASE("verify reports a truncated database and an altered key as findings, with exit 3") {
   const StudyFolder study;
-  REQUIRE(study.simulate("a.db").exit_code == 0);
+  succeeded(study.simulate("a.db"));
   const auto verified = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"verify", study.in("a.db"), "--json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return study.run(arguments);
+    return study.type("verify @a.db --json", more);
   };
   const json whole = json::parse(verified({}).output);
   CHECK(whole.at("complete") == true);
   const std::string head = whole.at("head").at("hash");
-  CHECK(verified({"--head", head}).exit_code == 0);
+  succeeded(verified({"--head", head}));
   CHECK(verified({"--head", std::string(64, '0')}).exit_code == 3);
   CHECK(verified({"--head", "12"}).exit_code == 2);
 
@@ -326,15 +287,13 @@ TEST_CASE("verify reports a truncated database and an altered key as findings, w
   const ProgramResult cut = verified({});
   CHECK(cut.exit_code == 3);
   CHECK(json::parse(cut.output).at("checks").at(0).at("state") == "failed");
-  CHECK(study.run({"verify", study.in("none.db")}).exit_code == 1);
+  CHECK(study.type("verify @none.db").exit_code == 1);
 }
 
 TEST_CASE("simulate never overwrites a database") {
   const StudyFolder study;
   replace_file(study.path() / "a.db", "precious");
-  const ProgramResult result = study.simulate("a.db");
-  CHECK(result.exit_code == 1);
-  CHECK(line_count(result.errors) == 1);
+  check_refused(study.simulate("a.db"), 1, {});
   CHECK(content(study.path() / "a.db") == "precious");
 }
 
@@ -349,20 +308,14 @@ TEST_CASE("a bad study file is refused with exit 2, its name and the place") {
       arguments.emplace_back("--db");
       arguments.push_back(study.in("bad.db"));
     }
-    const ProgramResult result = study.run(arguments);
-    INFO(result.errors);
-    CHECK(result.exit_code == 2);
-    CHECK(line_count(result.errors) == 1);
-    CHECK(result.errors.find("bad.json") != std::string::npos);
-    CHECK(result.errors.find("/trials/repeat") != std::string::npos);
-    CHECK(result.errors.find("repeats") != std::string::npos);
+    check_refused(study.run(arguments), 2, {"bad.json", "/trials/repeat", "repeats"});
   }
   CHECK_FALSE(fs::exists(study.path() / "bad.db"));
 }
 
 TEST_CASE("simulate does not replace a key that belongs to something else") {
   const StudyFolder study;
-  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  study.done("prepare @cloths.json");
   const std::string key = content(study.path() / "cloths.key");
   const ProgramResult result = study.simulate("cloths");  // its key would be cloths.key
   CHECK(result.exit_code == 1);
@@ -373,9 +326,9 @@ TEST_CASE("simulate does not replace a key that belongs to something else") {
 
 TEST_CASE("a removed database can be made again beside its key") {
   const StudyFolder study;
-  REQUIRE(study.simulate("a.db").exit_code == 0);
+  succeeded(study.simulate("a.db"));
   fs::remove(study.path() / "a.db");
-  CHECK(study.simulate("a.db").exit_code == 0);
+  succeeded(study.simulate("a.db"));
 }
 
 TEST_CASE("a seed that is not a 64-bit whole number is refused") {
@@ -390,7 +343,5 @@ TEST_CASE("a seed that is not a 64-bit whole number is refused") {
 
 TEST_CASE("a misspelt command is answered with the nearest name") {
   const StudyFolder study;
-  const ProgramResult result = study.run({"simulat"});
-  CHECK(result.exit_code == 2);
-  CHECK(result.errors.find("did you mean simulate") != std::string::npos);
+  check_refused(study.type("simulat"), 2, {"did you mean simulate"});
 }

@@ -18,19 +18,14 @@ namespace {
 /// A study that is prepared for people, with two simulated sessions.
 struct PreparedStudy : StudyFolder {
   PreparedStudy() {
-    REQUIRE(StudyFolder::run({"prepare", in("cloths.json")}).exit_code == 0);
+    done("prepare @cloths.json");
     for (const std::string participant : {"P01", "P02"}) {
-      const ProgramResult ran =
-          StudyFolder::run({"run", in("cloths.json"), "--participant", participant, "--db",
-                            in("study.db"), "--subject", in("quick.json"), "--headless"});
-      INFO(ran.errors);
-      REQUIRE(ran.exit_code == 0);
+      succeeded(StudyFolder::run({"run", in("cloths.json"), "--participant", participant, "--db",
+                                  in("study.db"), "--subject", in("quick.json"), "--headless"}));
     }
   }
   [[nodiscard]] ProgramResult verify(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {"verify", in("study.db"), "--key", in("cloths.key")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return StudyFolder::run(arguments);
+    return type("verify @study.db --key @cloths.key", more);
   }
 };
 
@@ -158,9 +153,7 @@ std::string failed_lines(const std::string& output) {
 
 TEST_CASE("verify names one altered byte anywhere, with exit 3") {
   const PreparedStudy study;
-  const ProgramResult whole = study.verify();
-  INFO(whole.output << whole.errors);
-  REQUIRE(whole.exit_code == 0);
+  succeeded(study.verify());
   const fs::path kept = study.path() / "kept";
   fs::create_directory(kept);
   const std::vector<std::string> evidence = {"study.db", "cloths.pack", "cloths.key"};
@@ -184,7 +177,7 @@ TEST_CASE("verify names one altered byte anywhere, with exit 3") {
       fs::copy(kept / name, study.path() / name, fs::copy_options::recursive);
     }
   }
-  CHECK(study.verify().exit_code == 0);
+  succeeded(study.verify());
 }
 
 TEST_CASE("verify prints UTF-8 even for a damaged list of the pack, as lines and as JSON") {

@@ -61,6 +61,36 @@ ProgramResult run_touchtrial(const std::filesystem::path& folder,
   return run_program(TOUCHTRIAL_PROGRAM, folder, arguments, input);
 }
 
+std::vector<std::string> typed_words(const std::string& line, const std::filesystem::path& folder) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at < line.size(); ++at) {
+    const bool is_quoted = line[at] == '\'';
+    const std::size_t begin = at + (is_quoted ? 1 : 0);
+    at = std::min(line.find(is_quoted ? '\'' : ' ', begin), line.size());
+    words.push_back(line.substr(begin, at - begin));
+    if (!is_quoted && words.back().starts_with('@')) {
+      words.back() = (folder / words.back().substr(1)).string();
+    }
+    if (is_quoted) ++at;
+  }
+  return words;
+}
+
+ProgramResult succeeded(const ProgramResult& result) {
+  INFO(result.output << result.errors);
+  REQUIRE(result.exit_code == 0);
+  return result;
+}
+
+void check_refused(const ProgramResult& result, int exit_code,
+                   const std::vector<std::string>& parts) {
+  INFO(result.output << result.errors);
+  CHECK(result.exit_code == exit_code);
+  CHECK(result.output.empty());
+  CHECK(line_count(result.errors) == 1);
+  for (const std::string& part : parts) CHECK_THAT(result.errors, holds_text(part));
+}
+
 ProgramResult run_touchtrial_limited(const std::filesystem::path& folder, const std::string& limit,
                                      const std::vector<std::string>& arguments) {
   std::vector<std::string> words = {"-c", "ulimit " + limit + " && exec \"$0\" \"$@\"",

@@ -28,7 +28,20 @@ struct ProgramResult {
 [[nodiscard]] ProgramResult run_touchtrial(const std::filesystem::path& folder,
                                            const std::vector<std::string>& arguments,
                                            const std::string& input = "");
-/// The same under the limits that a shell's `ulimit` sets, for instance "-f 8".
+/// The words of a line as a shell would have them: blanks separate, but for those between single
+/// quotes. A word that begins with @ names a file of the folder.
+[[nodiscard]] std::vector<std::string> typed_words(const std::string& line,
+                                                   const std::filesystem::path& folder);
+
+/// Fails the test unless the program ended with 0.
+/// \return the same result
+ProgramResult succeeded(const ProgramResult& result);
+
+/// Checks for this exit code, no output, and one line of errors that holds every part.
+void check_refused(const ProgramResult& result, int exit_code,
+                   const std::vector<std::string>& parts);
+
+/// run_touchtrial under the limits that a shell's `ulimit` sets, for instance "-f 8".
 [[nodiscard]] ProgramResult run_touchtrial_limited(const std::filesystem::path& folder,
                                                    const std::string& limit,
                                                    const std::vector<std::string>& arguments);

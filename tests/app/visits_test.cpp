@@ -33,9 +33,7 @@ struct VisitFolder : StudyFolder {
                 "--seed", "3", "--db", in(db), "--subject", in("quick.json")});
   }
   [[nodiscard]] json checks(const std::string& db) const {
-    const ProgramResult verified = run({"verify", in(db), "--json"});
-    INFO(verified.output << verified.errors);
-    REQUIRE(verified.exit_code == 0);
+    const ProgramResult verified = succeeded(run({"verify", in(db), "--json"}));
     return json::parse(verified.output);
   }
 };
@@ -49,17 +47,14 @@ bool says(const ProgramResult& result, const std::string& words) {
 
 TEST_CASE("simulated participants come as often as the study says") {
   const VisitFolder study;
-  const ProgramResult simulated = study.simulate("all.db", {"--json"});
-  INFO(simulated.errors);
-  REQUIRE(simulated.exit_code == 0);
+  const ProgramResult simulated = succeeded(study.simulate("all.db", {"--json"}));
   CHECK(json::parse(simulated.output)["sessions"] == 8);
   CHECK(study.checks("all.db")["complete"] == true);
-  const json report = json::parse(study.run({"report", study.in("all.db"), "--json"}).output);
+  const json report = study.printed("report @all.db --json");
   CHECK(report["participants"] == 4);
   CHECK(report["methods"][0]["breakdowns"]["visit"].size() == 2);
   CHECK(report["methods"][0]["breakdowns"]["group"].size() == 2);
-  REQUIRE(study.run({"export", study.in("all.db"), "--format", "csv", "--out", study.in("out")})
-              .exit_code == 0);
+  study.done("export @all.db --format csv --out @out");
   CHECK(content(study.path() / "out" / "trials.csv").find(",visit,group\n") != std::string::npos);
   const auto store =
       store::StudyStore::open(study.path() / "all.db", store::StudyStore::Access::read_only);
@@ -71,13 +66,10 @@ TEST_CASE("simulated participants come as often as the study says") {
 
 TEST_CASE("stations of a study with visits merge into what one simulation makes") {
   const VisitFolder study;
-  REQUIRE(study.simulate("all.db").exit_code == 0);
-  REQUIRE(study.simulate_two("a.db", "1").exit_code == 0);
-  REQUIRE(study.simulate_two("b.db", "3").exit_code == 0);
-  const ProgramResult merged =
-      study.run({"merge", study.in("a.db"), study.in("b.db"), "--out", study.in("merged.db")});
-  INFO(merged.output << merged.errors);
-  REQUIRE(merged.exit_code == 0);
+  succeeded(study.simulate("all.db"));
+  succeeded(study.simulate_two("a.db", "1"));
+  succeeded(study.simulate_two("b.db", "3"));
+  const ProgramResult merged = study.done("merge @a.db @b.db --out @merged.db");
   static_cast<void>(study.checks("merged.db"));
   const auto sessions = [&](const std::string& db) {
     std::vector<std::string> all;
@@ -96,7 +88,7 @@ TEST_CASE("a visit is asked for by its number, and comes after the one before it
   CHECK(says(study.visit("P07", "2"), "there is no visit before; check the participant id"));
   fs::remove(study.path() / "study.db");
   fs::remove(study.path() / "study.db.head");
-  REQUIRE(study.visit("P07", "1").exit_code == 0);
+  succeeded(study.visit("P07", "1"));
   const ProgramResult again = study.visit("P07", "1");
   CHECK(again.exit_code == 1);
   CHECK(says(again, "is complete; give another participant id, or --visit 2 for the next visit"));
@@ -107,9 +99,7 @@ TEST_CASE("a visit is asked for by its number, and comes after the one before it
   CHECK(says(early,
              "comes 0.0 days after visit 1 by this machine's clock, and the study has at "
              "least 7 days between visits: come back after 20"));
-  const ProgramResult second = study.visit("P07", "2");
-  INFO(second.errors);
-  REQUIRE(second.exit_code == 0);
+  const ProgramResult second = succeeded(study.visit("P07", "2"));
   CHECK(says(study.visit("P07", "1"), "the last visit was visit 2 (session 2)"));
   CHECK_FALSE(says(second, "trained"));
   CHECK_FALSE(says(second, "control"));
@@ -118,14 +108,12 @@ TEST_CASE("a visit is asked for by its number, and comes after the one before it
 
 TEST_CASE("an exclusion is of the participant, with all visits, and ends them") {
   const VisitFolder study;
-  REQUIRE(study.visit("P07", "1").exit_code == 0);
-  REQUIRE(study.visit("P07", "2").exit_code == 0);
-  REQUIRE(study.visit("P08", "1").exit_code == 0);
+  succeeded(study.visit("P07", "1"));
+  succeeded(study.visit("P07", "2"));
+  succeeded(study.visit("P08", "1"));
   for (const std::string participant : {"P07", "P08"}) {
-    REQUIRE(study
-                .run({"exclude", study.in("study.db"), "--participant", participant, "--reason",
-                      "asleep"})
-                .exit_code == 0);
+    succeeded(study.run(
+        {"exclude", study.in("study.db"), "--participant", participant, "--reason", "asleep"}));
   }
   const auto store =
       store::StudyStore::open(study.path() / "study.db", store::StudyStore::Access::read_only);
@@ -138,16 +126,13 @@ TEST_CASE("groups that are open are said when a session begins, and the key's ho
   const ProgramResult first = study.visit("P01", "1");
   CHECK((says(first, "P01 is in group trained") || says(first, "P01 is in group control")));
   const VisitFolder hidden;
-  REQUIRE(hidden.run({"prepare", hidden.in("cloths.json")}).exit_code == 0);
-  const ProgramResult dealt =
-      hidden.run({"plan", hidden.in("cloths.json"), "--groups", "--participants", "10", "--json"});
-  INFO(dealt.errors);
-  REQUIRE(dealt.exit_code == 0);
+  hidden.done("prepare @cloths.json");
+  const ProgramResult dealt = hidden.done("plan @cloths.json --groups --participants 10 --json");
   std::map<std::string, int> sizes;
   const json document = json::parse(dealt.output);
   for (const json& one : document["groups"]) ++sizes[one["group"]];
   CHECK(sizes == std::map<std::string, int>{{"control", 5}, {"trained", 5}});
-  CHECK(says(hidden.run({"plan", hidden.in("cloths.json"), "--groups", "--participants", "3"}),
+  CHECK(says(hidden.type("plan @cloths.json --groups --participants 3"),
              "Keep this from whoever runs sessions."));
 }
 

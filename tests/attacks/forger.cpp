@@ -140,8 +140,7 @@ std::string AttackedStudy::found_by_head(const Digest& head) const {
 }
 
 Forgery::Forgery(const fs::path& database) : path(database) {
-  const store::Database read =
-      store::Database::open(path, store::Database::Mode::read_only, store::kSchemaVersion);
+  const store::Database read = store::Database::open(path, store::Database::Mode::read_only);
   store::for_each_event(read, store::EventFilter{},
                         [&](const store::Event& event) { chains[event.session].push_back(event); });
   for (const auto& [session, chain] : chains) {
@@ -198,25 +197,18 @@ void Forgery::relink(const Signer* signer) {
 }
 
 void Forgery::write() const {
-  const store::Database database =
-      store::Database::open(path, store::Database::Mode::read_write, store::kSchemaVersion);
+  const store::Database database = store::Database::open(path, store::Database::Mode::read_write);
   fixture::without_triggers(database.connection(), [&] {
     database.change([&] {
-      for (const char* table : {"events", "traces", "participant_keys", "safety_keys",
-                                "station_keys", "trials", "sessions"}) {
-        database.connection().exec("DELETE FROM " + std::string(table));
+      for (const std::string table : store::kTables) {
+        database.connection().exec("DELETE FROM " + table);
       }
-      store::DerivedRows rows;
       for (auto chain = chains.rbegin(); chain != chains.rend(); ++chain) {
-        for (const store::Event& event : chain->second) {
-          store::insert_event(database, event);
-          store::fold(rows, event);
-        }
+        for (const store::Event& event : chain->second) store::insert_event(database, event);
       }
       for (const auto& [session, own] : keys) store::insert_keys(database, session, own);
       for (const auto& [session, one] : kept) store::insert_station_key(database, session, one);
       for (const store::SealedTrace& trace : traces) store::insert_trace(database, trace);
-      store::write_rows(database, rows);
     });
   });
 }
@@ -236,7 +228,7 @@ void with_sql(const fs::path& database, const std::string& sql) {
 std::string rows_of(const fs::path& database) {
   std::string rows;
   try {
-    const SQLite::Database raw(database.string(), SQLite::OPEN_READONLY);
+    SQLite::Database raw(database.string(), SQLite::OPEN_READONLY);
     for (const std::string table : store::kTables) {
       const std::string columns =
           raw.execAndGet(

@@ -30,22 +30,13 @@ TEST_CASE("the worst motion extracts as much energy as the bound allows, within 
   CHECK(damping_by_energy(wall) == Approx(passivity_bound(wall)).epsilon(0.02));
 }
 
-TEST_CASE("a heavy mass comes to rest with half of K T less the wall's damping") {
-  const SampledWall wall{GENERATE(100.0, 400.0), 0.0, 1.0 / GENERATE(1000.0, 10'000.0)};
-  CHECK(damping_for_rest(wall) == Approx(passivity_bound(wall)).epsilon(0.02));
-  SampledWall damped = wall;
-  damped.damping_n_s_per_m = 0.2 * passivity_bound(wall);
-  CHECK(damping_for_rest(damped) == Approx(0.8 * passivity_bound(wall)).epsilon(0.02));
-}
-
-TEST_CASE("a delay asks for its stiffness times itself of damping, by each of the three ways") {
+TEST_CASE("a delay asks for its stiffness times itself of damping, by both ways") {
   const SampledWall wall = delayed_wall();
   SampledWall prompt = wall;
   prompt.delay_ticks = 0;
   const double more = wall.stiffness_n_per_m * wall.delay_ticks * wall.period_s;
   CHECK(damping_by_frequency(wall) - damping_by_frequency(prompt) == Approx(more).epsilon(1e-4));
   CHECK(damping_by_energy(wall) - damping_by_energy(prompt) == Approx(more).epsilon(0.02));
-  CHECK(damping_for_rest(wall) - damping_for_rest(prompt) == Approx(more).epsilon(0.03));
 }
 
 TEST_CASE("no wall needs more damping than the bound, whatever its estimator of velocity") {
@@ -64,9 +55,8 @@ TEST_CASE("beside a delay, a little damping of the wall leaves less to hand and 
   CHECK(damping_by_frequency(wall) < 0.8 * without);
 }
 
-TEST_CASE("readings in steps ask for half a step's force of friction, by motion and by rest") {
+TEST_CASE("readings in steps ask for half a step's force of friction") {
   const SampledWall wall = quantised_wall();
-  CHECK(friction_by_energy(wall) == Approx(friction_bound(wall)).epsilon(0.01));
   const double damping = 1.2 * passivity_bound(wall);
   CHECK(friction_for_rest(wall, 0.1, damping) == Approx(friction_bound(wall)).epsilon(0.01));
 }

@@ -172,9 +172,9 @@ void check_csgv(const GreyImage& image, int levels, engine::Gradient gradient,
   const engine::WantedPlanes wanted{.csgv = true, .order = true};
   const auto result =
       engine::extract_texture<double>(image, adaptive_with(levels, gradient, combine), wanted);
-  const Plane<double> expected = reference::csgv(
-      image, levels, std::string(engine::name_among(engine::kGradientNames, gradient)),
-      std::string(engine::name_among(engine::kCombineNames, combine)));
+  const Plane<double> expected =
+      reference::csgv(image, levels, std::string(name_in(engine::kGradientNames, gradient)),
+                      std::string(name_in(engine::kCombineNames, combine)));
   CHECK(largest_relative_difference(result.csgv, expected) < 1e-10);  // ll grows by 2 a level
   CHECK(largest_difference(result.order, reference::order_map(result.csgv)) < 1e-12);
   CHECK(largest_difference(result.texture, reference::texture(image, result.order, 2)) < 1e-10);
@@ -188,8 +188,8 @@ TEST_CASE("every gradient and combination agrees with its definition at every le
         for (const engine::Combine combine :
              {engine::Combine::sum, engine::Combine::l2, engine::Combine::max}) {
           INFO(size.height << " x " << size.width << ", levels " << levels << ", "
-                           << engine::name_among(engine::kGradientNames, gradient) << ", "
-                           << engine::name_among(engine::kCombineNames, combine));
+                           << name_in(engine::kGradientNames, gradient) << ", "
+                           << name_in(engine::kCombineNames, combine));
           check_csgv(cloth_image(size), levels, gradient, combine);
         }
       }
@@ -284,14 +284,12 @@ TEST_CASE("a number of levels outside 1 to 8 is refused by name") {
 }
 
 TEST_CASE("words are found for values, and values for words") {
-  CHECK(engine::choice_named<engine::Norm>(engine::kNormNames, "sum") == engine::Norm::sum);
-  CHECK(engine::choice_named<engine::Mapping>(engine::kMappingNames, "stretch") ==
-        engine::Mapping::stretch);
-  CHECK(engine::choice_named<engine::Gradient>(engine::kGradientNames, "central") ==
-        engine::Gradient::central);
-  CHECK(engine::choice_named<engine::Combine>(engine::kCombineNames, "l2") == engine::Combine::l2);
-  CHECK_FALSE(engine::choice_named<engine::Norm>(engine::kNormNames, "l2").has_value());
-  CHECK(engine::name_among(engine::kGradientNames, engine::Gradient::prewitt) == "prewitt");
+  CHECK(value_in(engine::kNormNames, "sum") == engine::Norm::sum);
+  CHECK(value_in(engine::kMappingNames, "stretch") == engine::Mapping::stretch);
+  CHECK(value_in(engine::kGradientNames, "central") == engine::Gradient::central);
+  CHECK(value_in(engine::kCombineNames, "l2") == engine::Combine::l2);
+  CHECK_FALSE(value_in(engine::kNormNames, "l2").has_value());
+  CHECK(name_in(engine::kGradientNames, engine::Gradient::prewitt) == "prewitt");
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ struct Laboratory {
     study["session"] = {{"handedness", false}, {"closing", false}};
     replace_file(in("config/study.json"), study.dump());
     replace_file(in("quick.json"), R"({"explore_s": 1.0, "training_passes": 2})");
-    REQUIRE(run_touchtrial(folder.path(), {"prepare", in("config/study.json")}).exit_code == 0);
+    succeeded(run_touchtrial(folder.path(), {"prepare", in("config/study.json")}));
   }
 
   [[nodiscard]] std::string in(const std::string& name) const {
@@ -54,10 +54,8 @@ struct Laboratory {
     return arguments;
   }
   void verify(const std::string& database) const {
-    const ProgramResult verified =
-        run_touchtrial(folder.path(), {"verify", in(database), "--key", in("config/study.key")});
-    INFO(verified.output << verified.errors);
-    CHECK(verified.exit_code == 0);
+    succeeded(
+        run_touchtrial(folder.path(), {"verify", in(database), "--key", in("config/study.key")}));
   }
 
   TempFolder folder;
@@ -88,10 +86,9 @@ TEST_CASE("a simulated participant answers with the window's keys as without a w
   const std::vector<std::string> subject = {"--subject", lab.in("quick.json"), "--seed", "4"};
   std::vector<std::string> headless = subject;
   headless.push_back("--headless");
-  REQUIRE(run_touchtrial(lab.folder.path(), lab.run_arguments("a.db", headless)).exit_code == 0);
-  const ProgramResult seen = run_touchtrial(lab.folder.path(), lab.run_arguments("b.db", subject));
-  INFO(seen.errors);
-  REQUIRE(seen.exit_code == 0);
+  succeeded(run_touchtrial(lab.folder.path(), lab.run_arguments("a.db", headless)));
+  const ProgramResult seen =
+      succeeded(run_touchtrial(lab.folder.path(), lab.run_arguments("b.db", subject)));
   CHECK(seen.output.find("trial 25 acknowledged\n") != std::string::npos);
   const std::vector<int> answers = positions_of(trials_in(lab, "b.db"));
   CHECK(answers.size() == 25);
@@ -214,12 +211,10 @@ TEST_CASE("a simulated participant gets past required questions of every kind be
   }
   study["session"] = {{"closing_questions", questions}};
   replace_file(lab.in("config/asking.json"), study.dump());
-  const ProgramResult seen = run_touchtrial(
+  succeeded(run_touchtrial(
       lab.folder.path(),
       {"run", lab.in("config/asking.json"), "--participant", "P01", "--db", lab.in("asking.db"),
-       "--subject", lab.in("quick.json"), "--no-sound", "--window", "1280x720"});
-  INFO(seen.errors);
-  CHECK(seen.exit_code == 0);
+       "--subject", lab.in("quick.json"), "--no-sound", "--window", "1280x720"}));
 }
 
 /// A study of six trials with two short planes each, of which the last two are only heard.
@@ -239,9 +234,7 @@ std::string study_with_intervals() {
 
 void prepare_intervals(const Laboratory& lab) {
   replace_file(lab.in("config/intervals.json"), study_with_intervals());
-  REQUIRE(
-      run_touchtrial(lab.folder.path(), {"prepare", lab.in("config/intervals.json")}).exit_code ==
-      0);
+  succeeded(run_touchtrial(lab.folder.path(), {"prepare", lab.in("config/intervals.json")}));
 }
 
 TEST_CASE("a simulated participant answers trials with several planes before a window") {
@@ -259,13 +252,11 @@ TEST_CASE("a simulated participant answers trials with several planes before a w
                                         "4",
                                         "--db",
                                         lab.in("seen.db")};
-  const ProgramResult seen = run_touchtrial(lab.folder.path(), arguments);
-  INFO(seen.errors);
-  REQUIRE(seen.exit_code == 0);
+  const ProgramResult seen = succeeded(run_touchtrial(lab.folder.path(), arguments));
   CHECK(seen.output.find("trial 6 acknowledged\n") != std::string::npos);
   arguments.back() = lab.in("headless.db");
   arguments.push_back("--headless");
-  REQUIRE(run_touchtrial(lab.folder.path(), arguments).exit_code == 0);
+  succeeded(run_touchtrial(lab.folder.path(), arguments));
   const auto answers = [&](const char* database) {
     const auto store =
         store::StudyStore::open(lab.in(database), store::StudyStore::Access::read_only);

@@ -153,6 +153,69 @@ std::string shifted_time(const BidsSession& session, nanoseconds since_opening) 
                      (at - whole).count());
 }
 
+/// Collects the files of recordings.
+class MotionFiles {
+ public:
+  MotionFiles(const DatasetSource& study, const DatasetOptions& options, const std::string& task)
+      : study_(study), options_(options), task_(task), shared_(std::make_shared<SharedReading>()) {
+    shared_->keys = person_keys(study.store, *study.key);
+    events_ = trace_events(study.store, shared_->keys);
+  }
+
+  void add_shared() {
+    const bool simulated = study_.store.commitment().simulated;
+    const std::string all = "task-" + task_;
+    files_.push_back(text_file(all + "_channels.tsv", tsv_text(motion_channels())));
+    files_.push_back(text_file(all + "_channels.json", channels_json()));
+    files_.push_back(text_file("scans.json", columns_json({"filename", "acq_time"}, simulated)));
+  }
+
+  void add(const BidsSession& session) {
+    const std::string trials = "beh/" + session.stem() + "_task-" + task_ + "_beh.tsv";
+    DataTable scans{{"filename", "acq_time"}, {{trials, shifted_time(session, {})}}};
+    for (const TrialOutcome& trial : study_.outcomes->trials) {
+      if (trial.row.session != session.row.session || !trial.row.has_trace()) continue;
+      const nanoseconds at = add_run(session, trial);
+      scans.rows.push_back(
+          {motion_file(session, task_, trial.row.trial), shifted_time(session, at)});
+    }
+    std::ranges::stable_sort(scans.rows, {},
+                             [](const auto& cells) { return std::get<std::string>(cells[1]); });
+    files_.push_back(
+        text_file(session.folder() + "/" + session.stem() + "_scans.tsv", tsv_text(scans)));
+  }
+
+  [[nodiscard]] std::vector<ExportFile> take() { return std::move(files_); }
+
+ private:
+  /// \return when its first sample was taken
+  nanoseconds add_run(const BidsSession& session, const TrialOutcome& trial) {
+    const store::TrialRow& row = trial.row;
+    const TraceEvents& own = events_.at({row.session, row.trial});
+    const Recording recording = recording_of(row, own.body);
+    const std::string path = session.folder() + "/" + motion_file(session, task_, row.trial);
+    const std::string run = path.substr(0, path.size() - std::string_view("motion.tsv").size());
+    files_.push_back({path,
+                      [study = study_, row, recording, shared = shared_](const auto& to) {
+                        const store::Trace trace = opened_trace(study, row, *shared);
+                        replace_file(to, motion_text(trace, recording));
+                      },
+                      true});
+    files_.push_back(
+        text_file(run + "motion.json", motion_json(study_, options_, session, own.body)));
+    const DataTable events = motion_events(recording, own, row, texture_of(study_, trial));
+    files_.push_back(text_file(run + "events.tsv", tsv_text(events)));
+    return recording.first_sample;
+  }
+
+  const DatasetSource& study_;
+  const DatasetOptions& options_;
+  const std::string& task_;
+  std::shared_ptr<SharedReading> shared_;
+  std::map<store::TrialId, TraceEvents> events_;
+  std::vector<ExportFile> files_;
+};
+
 }  // namespace
 
 Recording recording_of(const store::TrialRow& row, const store::TraceBody& body) {
@@ -222,73 +285,6 @@ const std::vector<std::string>& motion_event_columns() {
                                                  "exploration"};
   return kColumns;
 }
-
-namespace {
-
-/// Collects the files of recordings.
-class MotionFiles {
- public:
-  MotionFiles(const DatasetSource& study, const DatasetOptions& options, const std::string& task)
-      : study_(study), options_(options), task_(task), shared_(std::make_shared<SharedReading>()) {
-    shared_->keys = person_keys(study.store, *study.key);
-    events_ = trace_events(study.store, shared_->keys);
-  }
-
-  void add_shared() {
-    const bool simulated = study_.store.commitment().simulated;
-    const std::string all = "task-" + task_;
-    files_.push_back(text_file(all + "_channels.tsv", tsv_text(motion_channels())));
-    files_.push_back(text_file(all + "_channels.json", channels_json()));
-    files_.push_back(text_file("scans.json", columns_json({"filename", "acq_time"}, simulated)));
-  }
-
-  void add(const BidsSession& session) {
-    const std::string trials = "beh/" + session.stem() + "_task-" + task_ + "_beh.tsv";
-    DataTable scans{{"filename", "acq_time"}, {{trials, shifted_time(session, {})}}};
-    for (const TrialOutcome& trial : study_.outcomes->trials) {
-      if (trial.row.session != session.row.session || !trial.row.has_trace()) continue;
-      const nanoseconds at = add_run(session, trial);
-      scans.rows.push_back(
-          {motion_file(session, task_, trial.row.trial), shifted_time(session, at)});
-    }
-    std::ranges::stable_sort(scans.rows, {},
-                             [](const auto& cells) { return std::get<std::string>(cells[1]); });
-    files_.push_back(
-        text_file(session.folder() + "/" + session.stem() + "_scans.tsv", tsv_text(scans)));
-  }
-
-  [[nodiscard]] std::vector<ExportFile> take() { return std::move(files_); }
-
- private:
-  /// \return when its first sample was taken
-  nanoseconds add_run(const BidsSession& session, const TrialOutcome& trial) {
-    const store::TrialRow& row = trial.row;
-    const TraceEvents& own = events_.at({row.session, row.trial});
-    const Recording recording = recording_of(row, own.body);
-    const std::string path = session.folder() + "/" + motion_file(session, task_, row.trial);
-    const std::string run = path.substr(0, path.size() - std::string_view("motion.tsv").size());
-    files_.push_back({path,
-                      [study = study_, row, recording, shared = shared_](const auto& to) {
-                        const store::Trace trace = opened_trace(study, row, *shared);
-                        replace_file(to, motion_text(trace, recording));
-                      },
-                      true});
-    files_.push_back(
-        text_file(run + "motion.json", motion_json(study_, options_, session, own.body)));
-    const DataTable events = motion_events(recording, own, row, texture_of(study_, trial));
-    files_.push_back(text_file(run + "events.tsv", tsv_text(events)));
-    return recording.first_sample;
-  }
-
-  const DatasetSource& study_;
-  const DatasetOptions& options_;
-  const std::string& task_;
-  std::shared_ptr<SharedReading> shared_;
-  std::map<store::TrialId, TraceEvents> events_;
-  std::vector<ExportFile> files_;
-};
-
-}  // namespace
 
 std::vector<ExportFile> motion_files(const DatasetSource& study, const DatasetOptions& options,
                                      const std::vector<BidsSession>& sessions,

@@ -1,5 +1,6 @@
+#include "protocols/identification/analysis/measures_json.hpp"
+
 #include "analysis/json_figures.hpp"
-#include "protocols/identification/analysis/report_sections.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +8,12 @@ namespace touchtrial::analysis::identification {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+void put_mean(Json& object, const MeanEstimate& mean) {
+  object["participants"] = mean.participants;
+  object["mean"] = figure_json(mean.mean);
+  object["interval"] = interval_json(mean.known_interval());
+}
 
 Json hits_json(const UnbiasedHits& hits) {
   return {{"mean", figure_json(hits.rate.mean)},
@@ -19,6 +26,18 @@ Json dependence_json(const SerialDependence& dependence) {
           {"same", dependence.same},
           {"expected", figure_json(dependence.expected)},
           {"p", figure_json(dependence.p)}};
+}
+
+Json groups_json(const Breakdown& breakdown) {
+  Json groups = Json::array();
+  for (const GroupAccuracy& one : breakdown.groups) {
+    Json entry{{"group", one.group}};
+    put_proportion(entry, one.accuracy);
+    entry["wilson"] = interval_json(known(one.wilson, one.accuracy));
+    if (one.mean) put_mean(entry, *one.mean);
+    groups.push_back(std::move(entry));
+  }
+  return groups;
 }
 
 }  // namespace
@@ -69,9 +88,7 @@ nlohmann::ordered_json confidence_object(const std::optional<ConfidenceReport>& 
   for (const RatedAccuracy& one : confidence->ratings) {
     Json entry{{"rating", one.rating}};
     put_proportion(entry, one.accuracy);
-    entry["participants"] = one.mean.participants;
-    entry["mean"] = figure_json(one.mean.mean);
-    entry["interval"] = interval_json(one.mean.known_interval());
+    put_mean(entry, one.mean);
     ratings.push_back(std::move(entry));
   }
   Json object{{"ratings", std::move(ratings)},
@@ -86,6 +103,36 @@ nlohmann::ordered_json confidence_object(const std::optional<ConfidenceReport>& 
              "answer was rated higher than a wrong one, equal ratings counting half",
              {"student1908", "fleming2014"});
   return object;
+}
+
+nlohmann::ordered_json reaction_array(const std::vector<ReactionTimes>& reaction,
+                                      const std::vector<std::string>& classes) {
+  Json all = Json::array();
+  for (std::size_t i = 0; i < reaction.size(); ++i) {
+    const bool is_class = i < classes.size();
+    all.push_back({{"class", is_class ? Json(classes[i]) : Json(nullptr)},
+                   {"paused", reaction[i].paused},
+                   {"from_plane_on", quartiles_json(reaction[i].from_plane_on)},
+                   {"from_contact", quartiles_json(reaction[i].from_contact)}});
+  }
+  return all;
+}
+
+nlohmann::ordered_json breakdowns_object(const std::vector<Breakdown>& breakdowns) {
+  Json object = Json::object();
+  for (const Breakdown& one : breakdowns) object[name_of(one.kind)] = groups_json(one);
+  return object;
+}
+
+nlohmann::ordered_json robustness_array(const std::vector<SubsetAccuracy>& subsets) {
+  Json all = Json::array();
+  for (const SubsetAccuracy& one : subsets) {
+    Json entry{{"trials", name_of(one.subset)}};
+    put_proportion(entry, one.pooled);
+    put_mean(entry, one.mean);
+    all.push_back(std::move(entry));
+  }
+  return all;
 }
 
 }  // namespace touchtrial::analysis::identification

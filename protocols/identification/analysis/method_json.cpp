@@ -1,10 +1,11 @@
+#include "protocols/identification/analysis/method_json.hpp"
+
 #include "analysis/json_figures.hpp"
-#include "protocols/identification/analysis/report_sections.hpp"
+#include "protocols/identification/analysis/measures_json.hpp"
 
 #include <fmt/format.h>
 
 namespace touchtrial::analysis::identification {
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -18,32 +19,6 @@ Json rows_json(const Plane<double>& values) {
   }
   return rows;
 }
-
-}  // namespace
-
-nlohmann::ordered_json choice_object(const ChoiceModel& model) {
-  Json bias = Json::array();
-  for (const double value : model.bias) bias.push_back(figure_json(value));
-  Json object{{"similarity", rows_json(model.similarity)},
-              {"bias", std::move(bias)},
-              {"group", model.group},
-              {"expected", rows_json(model.expected)},
-              {"g_squared", figure_json(model.g_squared)},
-              {"degrees_of_freedom", model.degrees_of_freedom},
-              {"p", figure_json(model.p)},
-              {"converged", model.converged},
-              {"bootstrap_p", figure_json(model.drawn_p)},
-              {"draws", model.draws}};
-  put_method(object,
-             "similarity choice model, maximum likelihood; biases sum to 1 within a group of "
-             "classes that answers connect in both directions; p of G squared under chi-square "
-             "against the saturated model, and bootstrap_p, to quote, of tables drawn from the "
-             "model, (b+1)/(m+1)",
-             {"luce1963", "townsend1982"});
-  return object;
-}
-
-namespace {
 
 using Json = nlohmann::ordered_json;
 
@@ -183,6 +158,28 @@ Json information_json(const InformationTransfer& information) {
   return object;
 }
 
+Json choice_json(const ChoiceModel& model) {
+  Json bias = Json::array();
+  for (const double value : model.bias) bias.push_back(figure_json(value));
+  Json object{{"similarity", rows_json(model.similarity)},
+              {"bias", std::move(bias)},
+              {"group", model.group},
+              {"expected", rows_json(model.expected)},
+              {"g_squared", figure_json(model.g_squared)},
+              {"degrees_of_freedom", model.degrees_of_freedom},
+              {"p", figure_json(model.p)},
+              {"converged", model.converged},
+              {"bootstrap_p", figure_json(model.drawn_p)},
+              {"draws", model.draws}};
+  put_method(object,
+             "similarity choice model, maximum likelihood; biases sum to 1 within a group of "
+             "classes that answers connect in both directions; p of G squared under chi-square "
+             "against the saturated model, and bootstrap_p, to quote, of tables drawn from the "
+             "model, (b+1)/(m+1)",
+             {"luce1963", "townsend1982"});
+  return object;
+}
+
 }  // namespace
 
 nlohmann::ordered_json method_object(const MethodReport& method,
@@ -204,7 +201,7 @@ nlohmann::ordered_json method_object(const MethodReport& method,
              "those with the own label, times the number of such exchanges; swap_p_adjusted: false "
              "discovery rate over all participants and methods",
              {"kuhn1955", "benjamini1995"});
-  object["choice_model"] = method.choice ? choice_object(*method.choice) : Json(nullptr);
+  object["choice_model"] = method.choice ? choice_json(*method.choice) : Json(nullptr);
   object["reaction_time_s"] = reaction_array(method.reaction, classes);
   object["breakdowns"] = breakdowns_object(method.breakdowns);
   object["robustness"] = robustness_array(method.robustness);

@@ -33,20 +33,6 @@ ConfusionMatrix answers_of(int classes, const OwnTrials& trials) {
   return answers;
 }
 
-}  // namespace
-
-std::string choice_model_script(const Outcomes& outcomes) {
-  return fmt::format(
-             "// Hierarchical choice model of the study {}{}. Data: choice_model.json. How to run "
-             "it: "
-             "mixed_model.md.\n// Classes: {}.\n// Methods: {}.\n\n",
-             one_line(outcomes.study), outcomes.simulated ? " (SIMULATED)" : "",
-             numbered(outcomes.classes), numbered(outcomes.methods)) +
-         std::string(choice_model_program());
-}
-
-namespace {
-
 /// The Stan program's data: one block of K rows for each method and participant with an answer, by
 /// method, participants in the order of sessions; trials that count and have a response.
 std::string choice_model_data(const Outcomes& outcomes) {
@@ -215,7 +201,31 @@ DataTable mixed_model_table(const Outcomes& outcomes) {
   return table;
 }
 
+/// The text as a quoted R string.
+std::string r_text(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
+
+std::string method_names(const Outcomes& outcomes) {
+  return listed(outcomes.methods, ", ", r_text);
+}
+
 }  // namespace
+
+std::string choice_model_script(const Outcomes& outcomes) {
+  return fmt::format(
+             "// Hierarchical choice model of the study {}{}. Data: choice_model.json. How to run "
+             "it: "
+             "mixed_model.md.\n// Classes: {}.\n// Methods: {}.\n\n",
+             one_line(outcomes.study), outcomes.simulated ? " (SIMULATED)" : "",
+             numbered(outcomes.classes), numbered(outcomes.methods)) +
+         std::string(choice_model_program());
+}
 
 std::string mixed_model_formula(const Outcomes& outcomes) {
   const bool several = outcomes.methods.size() > 1;
@@ -241,24 +251,6 @@ std::vector<std::filesystem::path> export_mixed_model(const store::StudyStore& s
                        text_file("choice_model.json", choice_model_data(outcomes)),
                        text_file("mixed_model.md", notes(outcomes))});
 }
-
-namespace {
-
-/// The text as a quoted R string.
-std::string r_text(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
-
-std::string method_names(const Outcomes& outcomes) {
-  return listed(outcomes.methods, ", ", r_text);
-}
-
-}  // namespace
 
 std::string mixed_model_script(const Outcomes& outcomes) {
   const std::string head = fmt::format(

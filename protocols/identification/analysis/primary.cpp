@@ -1,5 +1,6 @@
 #include "protocols/identification/analysis/primary.hpp"
 
+#include "analysis/departures.hpp"
 #include "analysis/statistics/common.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/paired_tests.hpp"

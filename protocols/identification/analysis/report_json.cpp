@@ -1,65 +1,12 @@
 #include "analysis/bibliography.hpp"
 #include "analysis/json_figures.hpp"
 #include "protocols/identification/analysis/cues/cues_json.hpp"
-#include "protocols/identification/analysis/report_sections.hpp"
+#include "protocols/identification/analysis/method_json.hpp"
 
 namespace touchtrial::analysis::identification {
-
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json groups_json(const Breakdown& breakdown) {
-  Json groups = Json::array();
-  for (const GroupAccuracy& one : breakdown.groups) {
-    Json entry{{"group", one.group}};
-    put_proportion(entry, one.accuracy);
-    entry["wilson"] = interval_json(known(one.wilson, one.accuracy));
-    if (one.mean) {
-      entry["participants"] = one.mean->participants;
-      entry["mean"] = figure_json(one.mean->mean);
-      entry["interval"] = interval_json(one.mean->known_interval());
-    }
-    groups.push_back(std::move(entry));
-  }
-  return groups;
-}
-
-}  // namespace
-
-nlohmann::ordered_json reaction_array(const std::vector<ReactionTimes>& reaction,
-                                      const std::vector<std::string>& classes) {
-  Json all = Json::array();
-  for (std::size_t i = 0; i < reaction.size(); ++i) {
-    const bool is_class = i < classes.size();
-    all.push_back({{"class", is_class ? Json(classes[i]) : Json(nullptr)},
-                   {"paused", reaction[i].paused},
-                   {"from_plane_on", quartiles_json(reaction[i].from_plane_on)},
-                   {"from_contact", quartiles_json(reaction[i].from_contact)}});
-  }
-  return all;
-}
-
-nlohmann::ordered_json breakdowns_object(const std::vector<Breakdown>& breakdowns) {
-  Json object = Json::object();
-  for (const Breakdown& one : breakdowns) object[name_of(one.kind)] = groups_json(one);
-  return object;
-}
-
-nlohmann::ordered_json robustness_array(const std::vector<SubsetAccuracy>& subsets) {
-  Json all = Json::array();
-  for (const SubsetAccuracy& one : subsets) {
-    Json entry{{"trials", name_of(one.subset)}};
-    put_proportion(entry, one.pooled);
-    entry["participants"] = one.mean.participants;
-    entry["mean"] = figure_json(one.mean.mean);
-    entry["interval"] = interval_json(one.mean.known_interval());
-    all.push_back(std::move(entry));
-  }
-  return all;
-}
-
-namespace {
 
 Json proportion_json(const Proportion& proportion) {
   Json object;
@@ -121,29 +68,6 @@ Json pair_json(const MethodPair& pair, const StudyReport& report) {
   return object;
 }
 
-}  // namespace
-
-nlohmann::ordered_json pairs_array(const StudyReport& report) {
-  Json all = Json::array();
-  for (const MethodPair& pair : report.pairs) all.push_back(pair_json(pair, report));
-  return all;
-}
-
-nlohmann::ordered_json together_object(const MethodsTogether& together) {
-  Json object{{"q", figure_json(together.cochran.q)},
-              {"degrees_of_freedom", together.cochran.degrees_of_freedom},
-              {"p", figure_json(together.cochran.p)},
-              {"permuted_p", figure_json(together.permuted_p)}};
-  put_method(object,
-             "Cochran's Q over occasions (participant, class, n-th presentation); p under "
-             "chi-square takes occasions as independent; permuted_p exchanges methods within "
-             "participants, Monte Carlo over 9,999 deals, (b+1)/(m+1)",
-             {"cochran1950", "phipson2010"});
-  return object;
-}
-
-namespace {
-
 Json comparison_json(const MethodComparison& comparison) {
   return {{"difference", figure_json(comparison.difference)},
           {"interval", interval_json(comparison.known_interval())},
@@ -168,6 +92,25 @@ Json quantiles_json() {
   return object;
 }
 
+Json pairs_json(const StudyReport& report) {
+  Json all = Json::array();
+  for (const MethodPair& pair : report.pairs) all.push_back(pair_json(pair, report));
+  return all;
+}
+
+Json together_json(const MethodsTogether& together) {
+  Json object{{"q", figure_json(together.cochran.q)},
+              {"degrees_of_freedom", together.cochran.degrees_of_freedom},
+              {"p", figure_json(together.cochran.p)},
+              {"permuted_p", figure_json(together.permuted_p)}};
+  put_method(object,
+             "Cochran's Q over occasions (participant, class, n-th presentation); p under "
+             "chi-square takes occasions as independent; permuted_p exchanges methods within "
+             "participants, Monte Carlo over 9,999 deals, (b+1)/(m+1)",
+             {"cochran1950", "phipson2010"});
+  return object;
+}
+
 }  // namespace
 
 std::string report_json(const StudyReport& report) {
@@ -179,8 +122,8 @@ std::string report_json(const StudyReport& report) {
   }
   if (report.comparison) object["comparison"] = comparison_json(*report.comparison);
   object["warnings"] = report.warnings;
-  object["pairs"] = pairs_array(report);
-  if (report.together) object["together"] = together_object(*report.together);
+  object["pairs"] = pairs_json(report);
+  if (report.together) object["together"] = together_json(*report.together);
   object["accuracy_intervals"] = intervals_json();
   object["reaction_times"] = quantiles_json();
   object["registration"] = registration_object(report.registration);

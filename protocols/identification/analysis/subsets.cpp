@@ -122,6 +122,52 @@ bool has_several_exemplars(const Outcomes& outcomes) {
                              [](const auto& images) { return images.size() > 1; });
 }
 
+constexpr TrialSubset kSubsets[] = {TrialSubset::counted, TrialSubset::answered, TrialSubset::valid,
+                                    TrialSubset::with_excluded_sessions};
+
+bool belongs_to(TrialSubset subset, const TrialOutcome& trial, const std::set<int>& excluded) {
+  switch (subset) {
+    case TrialSubset::counted:
+      return trial.counted;
+    case TrialSubset::answered:
+      return trial.counted && trial.response.has_value();
+    case TrialSubset::valid:
+      return trial.counted && trial.valid();
+    case TrialSubset::with_excluded_sessions:
+      break;
+  }
+  return trial.counted ||
+         (trial.scored && has_ended(trial) && excluded.contains(trial.row.session));
+}
+
+void count(Proportion& proportion, bool correct) {
+  ++proportion.n;
+  if (correct) ++proportion.correct;
+}
+
+double seconds(std::chrono::nanoseconds time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+/// The reaction times of one class, in seconds.
+struct Times {
+  std::vector<double> from_plane_on;
+  std::vector<double> from_contact;
+  int paused = 0;
+
+  void add(const store::TrialRow& row) {
+    if (row.paused) ++paused;
+    if (const auto time = row.reaction_time()) from_plane_on.push_back(seconds(*time));
+    if (const auto time = row.from_contact()) from_contact.push_back(seconds(*time));
+  }
+};
+
+ReactionTimes summary_of(Times times) {
+  std::ranges::sort(times.from_plane_on);
+  return {quartiles(times.from_plane_on), quartiles(std::move(times.from_contact)),
+          times.from_plane_on, times.paused};
+}
+
 }  // namespace
 
 std::string name_of(BreakdownKind kind) {
@@ -170,13 +216,6 @@ std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method) {
   return all;
 }
 
-namespace {
-
-constexpr TrialSubset kSubsets[] = {TrialSubset::counted, TrialSubset::answered, TrialSubset::valid,
-                                    TrialSubset::with_excluded_sessions};
-
-}  // namespace
-
 std::set<int> excluded_sessions(const Outcomes& outcomes) {
   std::set<int> excluded;
   for (const SessionOutcome& session : outcomes.sessions) {
@@ -188,30 +227,6 @@ std::set<int> excluded_sessions(const Outcomes& outcomes) {
   }
   return excluded;
 }
-
-namespace {
-
-bool belongs_to(TrialSubset subset, const TrialOutcome& trial, const std::set<int>& excluded) {
-  switch (subset) {
-    case TrialSubset::counted:
-      return trial.counted;
-    case TrialSubset::answered:
-      return trial.counted && trial.response.has_value();
-    case TrialSubset::valid:
-      return trial.counted && trial.valid();
-    case TrialSubset::with_excluded_sessions:
-      break;
-  }
-  return trial.counted ||
-         (trial.scored && has_ended(trial) && excluded.contains(trial.row.session));
-}
-
-void count(Proportion& proportion, bool correct) {
-  ++proportion.n;
-  if (correct) ++proportion.correct;
-}
-
-}  // namespace
 
 std::string name_of(TrialSubset subset) {
   using enum TrialSubset;
@@ -242,33 +257,6 @@ std::vector<SubsetAccuracy> robustness(const Outcomes& outcomes, int method) {
   }
   return all;
 }
-
-namespace {
-
-double seconds(std::chrono::nanoseconds time) {
-  return std::chrono::duration<double>(time).count();
-}
-
-/// The reaction times of one class, in seconds.
-struct Times {
-  std::vector<double> from_plane_on;
-  std::vector<double> from_contact;
-  int paused = 0;
-
-  void add(const store::TrialRow& row) {
-    if (row.paused) ++paused;
-    if (const auto time = row.reaction_time()) from_plane_on.push_back(seconds(*time));
-    if (const auto time = row.from_contact()) from_contact.push_back(seconds(*time));
-  }
-};
-
-ReactionTimes summary_of(Times times) {
-  std::ranges::sort(times.from_plane_on);
-  return {quartiles(times.from_plane_on), quartiles(std::move(times.from_contact)),
-          times.from_plane_on, times.paused};
-}
-
-}  // namespace
 
 std::vector<ReactionTimes> reaction_times(const Outcomes& outcomes, int method) {
   std::vector<Times> times(outcomes.classes.size() + 1);

@@ -1,6 +1,8 @@
+#include "protocols/identification/analysis/warnings.hpp"
+
+#include "analysis/departures.hpp"
 #include "analysis/statistics/paired_tests.hpp"
 #include "analysis/text_figures.hpp"
-#include "protocols/identification/analysis/report_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +12,6 @@
 #include <fmt/ranges.h>
 
 namespace touchtrial::analysis::identification {
-
 namespace {
 
 using Warnings = std::vector<std::string>;
@@ -130,25 +131,6 @@ void warn_of_order(const Outcomes& outcomes, Warnings& warnings) {
       "them as they came.");
 }
 
-}  // namespace
-
-std::vector<std::string> figure_warnings(const Outcomes& outcomes, const StudyReport& report) {
-  Warnings warnings;
-  for (const MethodReport& method : report.methods) {
-    warn_of_validity(method, warnings);
-    warn_of_swapped_labels(method, warnings);
-    warn_of_small_classes(method, report.classes, warnings);
-    warn_of_unanswered_classes(method, report.classes, warnings);
-    warn_of_choice_model(method, warnings);
-    warn_of_ceiling(method, warnings);
-    warn_of_chance(method, warnings);
-  }
-  warn_of_order(outcomes, warnings);
-  return warnings;
-}
-
-namespace {
-
 using Warnings = std::vector<std::string>;
 
 constexpr int kFewParticipants = 10;
@@ -226,20 +208,6 @@ void warn_of_few_participants(const StudyReport& report, Warnings& warnings) {
                   "differ hardly at all, and the t interval leans on normality.",
                   report.participants));
 }
-
-}  // namespace
-
-std::vector<std::string> comparison_warnings(const Outcomes& outcomes, const StudyReport& report) {
-  Warnings warnings;
-  warn_of_few_participants(report, warnings);
-  warn_of_several(report, warnings);
-  warn_of_sign_flips(report, warnings);
-  warn_of_periods(outcomes, report, warnings);
-  warn_of_images(outcomes, report, warnings);
-  return warnings;
-}
-
-namespace {
 
 using Warnings = std::vector<std::string>;
 
@@ -360,6 +328,31 @@ void warn_of_information(const StudyReport& report, Warnings& warnings) {
 }
 
 }  // namespace
+
+std::vector<std::string> figure_warnings(const Outcomes& outcomes, const StudyReport& report) {
+  Warnings warnings;
+  for (const MethodReport& method : report.methods) {
+    warn_of_validity(method, warnings);
+    warn_of_swapped_labels(method, warnings);
+    warn_of_small_classes(method, report.classes, warnings);
+    warn_of_unanswered_classes(method, report.classes, warnings);
+    warn_of_choice_model(method, warnings);
+    warn_of_ceiling(method, warnings);
+    warn_of_chance(method, warnings);
+  }
+  warn_of_order(outcomes, warnings);
+  return warnings;
+}
+
+std::vector<std::string> comparison_warnings(const Outcomes& outcomes, const StudyReport& report) {
+  Warnings warnings;
+  warn_of_few_participants(report, warnings);
+  warn_of_several(report, warnings);
+  warn_of_sign_flips(report, warnings);
+  warn_of_periods(outcomes, report, warnings);
+  warn_of_images(outcomes, report, warnings);
+  return warnings;
+}
 
 std::vector<std::string> report_warnings(const Outcomes& outcomes, const StudyReport& report) {
   Warnings warnings;

@@ -5,7 +5,7 @@
 
 #include "analysis/outcomes.hpp"
 #include "analysis/statistics/descriptive.hpp"
-#include "analysis/statistics/same_or_odd.hpp"
+#include "analysis/statistics/same_different_d_prime.hpp"
 #include "analysis/study_head.hpp"
 #include "protocols/procedures/estimates.hpp"
 #include "protocols/threshold/design/threshold.hpp"

@@ -29,8 +29,8 @@ ExtractionCase adaptive_case(int radius, engine::Gradient gradient, engine::Comb
   options.combine = combine;
   options.levels = levels;
   return {"adaptive, radius " + std::to_string(radius) + ", levels " + std::to_string(levels) +
-              ", " + std::string(engine::name_among(engine::kGradientNames, gradient)) + ", " +
-              std::string(engine::name_among(engine::kCombineNames, combine)),
+              ", " + std::string(name_in(engine::kGradientNames, gradient)) + ", " +
+              std::string(name_in(engine::kCombineNames, combine)),
           options, kGreyRange};
 }
 
@@ -46,7 +46,7 @@ ExtractionCase fixed_case(double order, int radius, engine::Norm norm) {
                        : norm == engine::Norm::sum    ? additive / sum
                                                       : additive + kGreyRange * sum;
   return {"fixed, order " + std::to_string(order) + ", radius " + std::to_string(radius) + ", " +
-              std::string(engine::name_among(engine::kNormNames, norm)),
+              std::string(name_in(engine::kNormNames, norm)),
           options, with_rounding(bound) + 1e-6};
 }
 

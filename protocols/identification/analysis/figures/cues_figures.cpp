@@ -66,47 +66,6 @@ std::string panel_script(const CueReport& cues, const MethodCues& method, std::s
   return script + "\nunset label\nunset arrow\n";
 }
 
-}  // namespace
-
-std::optional<Figure> cues_figure(const CueReport& cues) {
-  std::vector<const MethodCues*> shown;
-  for (const MethodCues& method : cues.methods) {
-    if (!method.observers.empty()) shown.push_back(&method);
-  }
-  if (shown.empty()) return {};
-  // These names are short enough to be horizontal below half a sheet.
-  const std::vector<std::string> columns = {"rms", "spectrum", "everything", "participants"};
-  Margins around{1.5, 0.4, 0.6, 0.9};
-  const NamesBelow below(columns, Panels(shown.size(), 2, 7.0, around, cues.simulated).axis_cm());
-  around.bottom_cm = below.room_cm() + 0.3;
-  const Panels panels(shown.size(), 2, 6.1 + around.bottom_cm, around, cues.simulated);
-  const Legend legend(
-      panels.sheet(), 1.5,
-      std::vector<LegendEntry>{mark_entry(5, series_colour(0), "ideal observer"),
-                               mark_entry(7, series_colour(1), "participants"),
-                               mark_entry(7, kFaint, "each participant"),
-                               chance_entry(static_cast<int>(cues.classes.size()))});
-  Figure figure = figure_on(panels.sheet(), "ideal-observers",
-                            "Accuracy of ideal observers that feel what the participants felt, "
-                            "beside the participants', with 95 % intervals:");
-  figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    figure.script += panels.begin(i, shown[i]->method) + below.script();
-    if (i == 0) figure.script += legend.script();
-    figure.script += panel_script(cues, *shown[i], i);
-    figure.alt += alt_of_cues(*shown[i]);
-  }
-  figure.script += "unset multiplot\n";
-  figure.caption = stamped(
-      cues.simulated,
-      "what was there to feel, and what participants made of it. Ideal observers judge each "
-      "participant's own traces by force strength alone (rms), by the spectrum's shape alone, or "
-      "by everything felt; means with 95 % t intervals over participants.");
-  return figure;
-}
-
-namespace {
-
 /// The most grey values along the texture's longer side. More would be too fine for print and would
 /// make the script large.
 constexpr int kMostPixels = 250;
@@ -200,6 +159,43 @@ std::string caption_of(const ExplorationPath& path) {
 }
 
 }  // namespace
+
+std::optional<Figure> cues_figure(const CueReport& cues) {
+  std::vector<const MethodCues*> shown;
+  for (const MethodCues& method : cues.methods) {
+    if (!method.observers.empty()) shown.push_back(&method);
+  }
+  if (shown.empty()) return {};
+  // These names are short enough to be horizontal below half a sheet.
+  const std::vector<std::string> columns = {"rms", "spectrum", "everything", "participants"};
+  Margins around{1.5, 0.4, 0.6, 0.9};
+  const NamesBelow below(columns, Panels(shown.size(), 2, 7.0, around, cues.simulated).axis_cm());
+  around.bottom_cm = below.room_cm() + 0.3;
+  const Panels panels(shown.size(), 2, 6.1 + around.bottom_cm, around, cues.simulated);
+  const Legend legend(
+      panels.sheet(), 1.5,
+      std::vector<LegendEntry>{mark_entry(5, series_colour(0), "ideal observer"),
+                               mark_entry(7, series_colour(1), "participants"),
+                               mark_entry(7, kFaint, "each participant"),
+                               chance_entry(static_cast<int>(cues.classes.size()))});
+  Figure figure = figure_on(panels.sheet(), "ideal-observers",
+                            "Accuracy of ideal observers that feel what the participants felt, "
+                            "beside the participants', with 95 % intervals:");
+  figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    figure.script += panels.begin(i, shown[i]->method) + below.script();
+    if (i == 0) figure.script += legend.script();
+    figure.script += panel_script(cues, *shown[i], i);
+    figure.alt += alt_of_cues(*shown[i]);
+  }
+  figure.script += "unset multiplot\n";
+  figure.caption = stamped(
+      cues.simulated,
+      "what was there to feel, and what participants made of it. Ideal observers judge each "
+      "participant's own traces by force strength alone (rms), by the spectrum's shape alone, or "
+      "by everything felt; means with 95 % t intervals over participants.");
+  return figure;
+}
 
 Figure path_figure(const ExplorationPath& path) {
   const PlaneGeometry& geometry = path.texture.geometry;

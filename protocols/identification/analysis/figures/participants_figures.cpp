@@ -80,68 +80,6 @@ std::string alt_of_participants(const StudyReport& report) {
   return alt;
 }
 
-}  // namespace
-
-std::optional<Figure> participants_figure(const StudyReport& report) {
-  const auto rows = static_cast<int>(report.methods.size());
-  const bool any = std::any_of(report.methods.begin(), report.methods.end(),
-                               [](const MethodReport& m) { return m.mean.mean.has_value(); });
-  if (!any) return {};
-  Sheet sheet{16.0, 2.2 + kRow_cm * std::min(rows, 6), report.simulated};
-  Margins margins;
-  margins.left_cm = 3.2;
-  margins.bottom_cm = 1.25;
-  const auto classes = static_cast<int>(report.classes.size());
-  const Legend legend(
-      sheet, margins.left_cm,
-      std::vector<LegendEntry>{mark_entry(series_mark(0), series_colour(0), "participants"),
-                               mark_entry(13, kInk, "mean, with 95 % t interval"),
-                               chance_entry(classes)});
-  margins.top_cm = legend.room_cm() + 0.2;
-  std::string data;
-  std::string names;
-  std::string plot;
-  std::vector<std::vector<double>> means;
-  for (int i = 0; i < rows; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const MethodReport& method = report.methods[at];
-    const double base = rows - 1 - i;
-    const Heaps heaps = heaps_of(method);
-    const bool bars = heaps.highest > kDotsOfHeap;
-    names += text_at(fitted(method.method, 16),
-                     fmt::format("graph 0, first {} right offset -1, 0", base + 0.25));
-    if (!method.mean.mean) continue;
-    data += data_block(fmt::format("heap{}", i), marks_of(heaps, base, bars));
-    plot += (plot.empty() ? "plot " : ", ") + (bars ? bars_plot(at, heaps) : dots_plot(at, heaps));
-    const double mean = *method.mean.mean;
-    const Interval bar = method.mean.known_interval().value_or(Interval{mean, mean});
-    means.push_back({100.0 * mean, base - 0.13, 100.0 * bar.low, 100.0 * bar.high});
-  }
-
-  Figure figure = figure_on(sheet, "participants", alt_of_participants(report));
-  figure.caption = stamped(report.simulated,
-                           "every participant's accuracy, and the mean over participants. The "
-                           "interval is Student's t, at the level of participants.");
-  figure.script =
-      data + data_block("means", means) + sheet_head(sheet) + panel_at(sheet, margins) + names +
-      fmt::format(
-          "set border 1\nunset ytics\nunset grid\nset grid xtics lc rgb '#e0e0e0' lw 0.7\n"
-          "set xrange [-2:102]\nset xtics 0, 20, 100\nset xlabel 'correct, %' offset 0, "
-          "0.4\nset yrange [-0.3:{}]\n",
-          rows - 0.25) +
-      fmt::format(
-          "set arrow from first {0:.6g}, graph 0 to first {0:.6g}, graph 1 nohead dt (6, "
-          "5) lw 1.2 lc rgb '{1}' back\n",
-          100.0 / std::max(classes, 1), kInk) +
-      legend.script() + plot +
-      fmt::format(", $means using 1:2:3:4 with xerrorbars pt 13 ps 1 lw 1.8 lc rgb '{}' notitle",
-                  kInk) +
-      "\n";
-  return figure;
-}
-
-namespace {
-
 /// The least number of trials of a point. Places with fewer trials are joined, because their
 /// interval would be as wide as the panel.
 constexpr int kTrialsOfPoint = 15;
@@ -209,53 +147,6 @@ std::string plot_of_trials(std::size_t number) {
       number, series_colour(number), series_mark(number));
 }
 
-}  // namespace
-
-std::optional<Figure> trials_figure(const StudyReport& report) {
-  std::vector<std::size_t> shown;
-  for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    const Breakdown* breakdown = by_trial(report.methods[i]);
-    if (breakdown != nullptr && !breakdown->groups.empty()) shown.push_back(i);
-  }
-  if (shown.empty()) return {};
-  const auto classes = static_cast<int>(report.classes.size());
-  const Panels panels(shown.size(), 2, 6.0, {1.5, 0.4, 0.6, 1.25}, report.simulated);
-  Figure figure = figure_on(panels.sheet(), "accuracy-over-trials",
-                            "Accuracy by place among a participant's trials.");
-  figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
-  const Legend legend(
-      panels.sheet(), 1.5,
-      std::vector<LegendEntry>{{LegendEntry::Kind::field, "#4d4d4d", 7, "95 % Wilson interval"},
-                               chance_entry(classes)});
-  int most = 1;
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    const MethodReport& method = report.methods[shown[i]];
-    const std::vector<GroupAccuracy>& groups = by_trial(method)->groups;
-    const std::vector<Point> points = points_of(groups);
-    const std::vector<std::vector<double>> rows = rows_of(points);
-    most = std::max(most, places_together(groups));
-    if (rows.empty()) continue;
-    figure.script += data_block(fmt::format("trials{}", i), rows) + panels.begin(i, method.method) +
-                     accuracy_axis("correct, %") + "set xlabel 'trial' offset 0, 0.4\n" +
-                     fmt::format("set xrange [{}:{}]\n", place_of(groups.front().group) - 1.0,
-                                 place_of(groups.back().group) + 1.0) +
-                     chance_line(classes);
-    figure.script += (i == 0 ? legend.script() : "") + plot_of_trials(i) + "\n";
-    figure.script += "unset label\nunset arrow\nunset object\n";
-    figure.alt += fmt::format(" {}: {:.1f} % at first, {:.1f} % at last.", method.method,
-                              rows.front()[1], rows.back()[1]);
-  }
-  figure.script += "unset multiplot\n";
-  figure.caption = stamped(
-      report.simulated,
-      "accuracy by place among a participant's trials of the method, all participants pooled" +
-          (most > 1 ? fmt::format(", up to {} places together", most) : std::string()) +
-          ". Bands are 95 % Wilson intervals, as if all trials were independent.");
-  return figure;
-}
-
-namespace {
-
 /// Rows of the place of the class and the time in seconds.
 std::vector<std::vector<double>> points_of(const std::vector<ReactionTimes>& times,
                                            std::size_t classes) {
@@ -305,6 +196,107 @@ std::string alt_of_reactions(const StudyReport& report, const MethodReport& meth
 }
 
 }  // namespace
+
+std::optional<Figure> participants_figure(const StudyReport& report) {
+  const auto rows = static_cast<int>(report.methods.size());
+  const bool any = std::any_of(report.methods.begin(), report.methods.end(),
+                               [](const MethodReport& m) { return m.mean.mean.has_value(); });
+  if (!any) return {};
+  Sheet sheet{16.0, 2.2 + kRow_cm * std::min(rows, 6), report.simulated};
+  Margins margins;
+  margins.left_cm = 3.2;
+  margins.bottom_cm = 1.25;
+  const auto classes = static_cast<int>(report.classes.size());
+  const Legend legend(
+      sheet, margins.left_cm,
+      std::vector<LegendEntry>{mark_entry(series_mark(0), series_colour(0), "participants"),
+                               mark_entry(13, kInk, "mean, with 95 % t interval"),
+                               chance_entry(classes)});
+  margins.top_cm = legend.room_cm() + 0.2;
+  std::string data;
+  std::string names;
+  std::string plot;
+  std::vector<std::vector<double>> means;
+  for (int i = 0; i < rows; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const MethodReport& method = report.methods[at];
+    const double base = rows - 1 - i;
+    const Heaps heaps = heaps_of(method);
+    const bool bars = heaps.highest > kDotsOfHeap;
+    names += text_at(fitted(method.method, 16),
+                     fmt::format("graph 0, first {} right offset -1, 0", base + 0.25));
+    if (!method.mean.mean) continue;
+    data += data_block(fmt::format("heap{}", i), marks_of(heaps, base, bars));
+    plot += (plot.empty() ? "plot " : ", ") + (bars ? bars_plot(at, heaps) : dots_plot(at, heaps));
+    const double mean = *method.mean.mean;
+    const Interval bar = method.mean.known_interval().value_or(Interval{mean, mean});
+    means.push_back({100.0 * mean, base - 0.13, 100.0 * bar.low, 100.0 * bar.high});
+  }
+
+  Figure figure = figure_on(sheet, "participants", alt_of_participants(report));
+  figure.caption = stamped(report.simulated,
+                           "every participant's accuracy, and the mean over participants. The "
+                           "interval is Student's t, at the level of participants.");
+  figure.script =
+      data + data_block("means", means) + sheet_head(sheet) + panel_at(sheet, margins) + names +
+      fmt::format(
+          "set border 1\nunset ytics\nunset grid\nset grid xtics lc rgb '#e0e0e0' lw 0.7\n"
+          "set xrange [-2:102]\nset xtics 0, 20, 100\nset xlabel 'correct, %' offset 0, "
+          "0.4\nset yrange [-0.3:{}]\n",
+          rows - 0.25) +
+      fmt::format(
+          "set arrow from first {0:.6g}, graph 0 to first {0:.6g}, graph 1 nohead dt (6, "
+          "5) lw 1.2 lc rgb '{1}' back\n",
+          100.0 / std::max(classes, 1), kInk) +
+      legend.script() + plot +
+      fmt::format(", $means using 1:2:3:4 with xerrorbars pt 13 ps 1 lw 1.8 lc rgb '{}' notitle",
+                  kInk) +
+      "\n";
+  return figure;
+}
+
+std::optional<Figure> trials_figure(const StudyReport& report) {
+  std::vector<std::size_t> shown;
+  for (std::size_t i = 0; i < report.methods.size(); ++i) {
+    const Breakdown* breakdown = by_trial(report.methods[i]);
+    if (breakdown != nullptr && !breakdown->groups.empty()) shown.push_back(i);
+  }
+  if (shown.empty()) return {};
+  const auto classes = static_cast<int>(report.classes.size());
+  const Panels panels(shown.size(), 2, 6.0, {1.5, 0.4, 0.6, 1.25}, report.simulated);
+  Figure figure = figure_on(panels.sheet(), "accuracy-over-trials",
+                            "Accuracy by place among a participant's trials.");
+  figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
+  const Legend legend(
+      panels.sheet(), 1.5,
+      std::vector<LegendEntry>{{LegendEntry::Kind::field, "#4d4d4d", 7, "95 % Wilson interval"},
+                               chance_entry(classes)});
+  int most = 1;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const MethodReport& method = report.methods[shown[i]];
+    const std::vector<GroupAccuracy>& groups = by_trial(method)->groups;
+    const std::vector<Point> points = points_of(groups);
+    const std::vector<std::vector<double>> rows = rows_of(points);
+    most = std::max(most, places_together(groups));
+    if (rows.empty()) continue;
+    figure.script += data_block(fmt::format("trials{}", i), rows) + panels.begin(i, method.method) +
+                     accuracy_axis("correct, %") + "set xlabel 'trial' offset 0, 0.4\n" +
+                     fmt::format("set xrange [{}:{}]\n", place_of(groups.front().group) - 1.0,
+                                 place_of(groups.back().group) + 1.0) +
+                     chance_line(classes);
+    figure.script += (i == 0 ? legend.script() : "") + plot_of_trials(i) + "\n";
+    figure.script += "unset label\nunset arrow\nunset object\n";
+    figure.alt += fmt::format(" {}: {:.1f} % at first, {:.1f} % at last.", method.method,
+                              rows.front()[1], rows.back()[1]);
+  }
+  figure.script += "unset multiplot\n";
+  figure.caption = stamped(
+      report.simulated,
+      "accuracy by place among a participant's trials of the method, all participants pooled" +
+          (most > 1 ? fmt::format(", up to {} places together", most) : std::string()) +
+          ". Bands are 95 % Wilson intervals, as if all trials were independent.");
+  return figure;
+}
 
 std::optional<Figure> reaction_figure(const StudyReport& report) {
   const std::size_t classes = report.classes.size();

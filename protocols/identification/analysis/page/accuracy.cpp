@@ -104,21 +104,6 @@ Table participant_table(const StudyReport& report, std::size_t index) {
   return table;
 }
 
-}  // namespace
-
-Section accuracy_section(const StudyReport& report) {
-  Section section{"accuracy", "Accuracy", {}};
-  add_headline(report, section);
-  for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    add_method_heading(report, i, section);
-    section.blocks.emplace_back(class_table(report, i));
-    section.blocks.emplace_back(participant_table(report, i));
-  }
-  return section;
-}
-
-namespace {
-
 /// A count and its share of the row.
 std::string count_cell(int count, int of) {
   if (count == 0) return "0";
@@ -313,6 +298,17 @@ Table information_table(const StudyReport& report) {
 }
 
 }  // namespace
+
+Section accuracy_section(const StudyReport& report) {
+  Section section{"accuracy", "Accuracy", {}};
+  add_headline(report, section);
+  for (std::size_t i = 0; i < report.methods.size(); ++i) {
+    add_method_heading(report, i, section);
+    section.blocks.emplace_back(class_table(report, i));
+    section.blocks.emplace_back(participant_table(report, i));
+  }
+  return section;
+}
 
 Section confusions_section(const StudyReport& report) {
   Section section{"confusions", "Confusions", {}};

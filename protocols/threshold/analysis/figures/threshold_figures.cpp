@@ -82,43 +82,6 @@ ThresholdRows rows_of_thresholds(const ThresholdReport& report) {
   return rows;
 }
 
-}  // namespace
-
-std::optional<Figure> thresholds_figure(const ThresholdReport& report) {
-  const ThresholdRows rows = rows_of_thresholds(report);
-  if (rows.means.empty()) return {};
-  std::vector<std::string> names;
-  for (const StandardReport& one : report.standards) names.push_back(short_name(one));
-  Sheet sheet{16.0, 8.0, report.simulated};
-  Margins margins;
-  const NamesBelow below(names, sheet.width_cm - margins.left_cm - margins.right_cm);
-  margins.bottom_cm = below.room_cm() + 0.3;
-  sheet.height_cm = 6.5 + margins.bottom_cm;
-  const Legend legend(
-      sheet, margins.left_cm,
-      std::vector<LegendEntry>{mark_entry(series_mark(0), series_colour(0), "participants"),
-                               mark_entry(13, kInk, "mean, with 95 % t interval")});
-  margins.top_cm = legend.room_cm() + 0.2;
-  Figure figure = figure_on(sheet, "thresholds", alt_of_thresholds(report));
-  figure.caption = stamped(
-      report.simulated,
-      "participants' thresholds, their mean and its 95 % t interval over participants. Censored "
-      "tracks are left out.");
-  figure.script =
-      data_block("dots", rows.dots) + data_block("means", rows.means) + sheet_head(sheet) +
-      panel_at(sheet, margins) + below.script() +
-      fmt::format("set yrange {}\nset ylabel '{}' noenhanced\n", level_axis(report),
-                  unit_label(report)) +
-      legend.script() +
-      fmt::format(
-          "plot $dots using 1:2 with points pt {} ps 0.5 lc rgb '{}' notitle, $means using "
-          "1:2:3:4 with yerrorbars pt 13 ps 1 lw 1.8 lc rgb '{}' notitle\n",
-          series_mark(0), series_colour(0), kInk);
-  return figure;
-}
-
-namespace {
-
 bool has_function(const ThresholdReport& report, std::size_t standard) {
   return std::ranges::any_of(report.tracks, [&](const TrackReport& track) {
     return track.standard == standard && track.observer;
@@ -195,47 +158,6 @@ Legend legend_of_functions(const Sheet& sheet, const ThresholdReport& report) {
                      fmt::format("threshold: {:.1f} %", 100.0 * *report.criterion)}});
 }
 
-}  // namespace
-
-std::optional<Figure> functions_figure(const ThresholdReport& report) {
-  if (!report.has_thresholds() || report.tracks.empty()) return {};
-  const std::size_t count = report.standards.size();
-  const Panels panels(count, 2, 6.4, {1.5, 0.4, 0.6, 1.25}, report.simulated);
-  Figure figure = figure_on(panels.sheet(), "functions",
-                            "Right answers by level, all participants, and the mean of the "
-                            "functions that were fitted.");
-  const std::size_t said = figure.alt.size();
-  figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
-  for (std::size_t i = 0; i < count; ++i) {
-    const Rows answers = rows_of_answers(report, i);
-    const Rows curve = rows_of_curve(report, i);
-    if (answers.empty()) continue;
-    const bool is_first = figure.alt.size() == said;
-    figure.script += data_block(fmt::format("answers{}", i), answers) +
-                     (curve.empty() ? "" : data_block(fmt::format("curve{}", i), curve)) +
-                     panels.begin(i, report.standards[i].words) + accuracy_axis("right, %") +
-                     fmt::format("set xlabel '{}' offset 0, 0.4 noenhanced\nset xrange {}\n",
-                                 unit_label(report), level_axis(report)) +
-                     dashed_line(100.0 * *report.criterion) +
-                     (is_first ? legend_of_functions(panels.sheet(), report).script() : "") +
-                     plot_of_function(i, !curve.empty()) +
-                     "unset label\nunset arrow\nunset object\n";
-    figure.alt += fmt::format(" {}: {:.0f} % right at {:.1f} dB, {:.0f} % at {:.1f} dB.",
-                              report.standards[i].words, answers.front()[1], answers.front()[0],
-                              answers.back()[1], answers.back()[0]);
-  }
-  figure.script += "unset multiplot\n";
-  figure.caption = stamped(report.simulated,
-                           "right answers by level, all participants' trials pooled, and the mean "
-                           "of the functions fitted to their tracks; censored tracks are left "
-                           "out. An adaptive procedure puts "
-                           "its trials near each participant's threshold, so pooled points lie "
-                           "flatter than the function of one participant.");
-  return figure;
-}
-
-namespace {
-
 /// The most tracks that are drawn.
 constexpr std::size_t kMostTrackPanels = 12;
 
@@ -304,7 +226,89 @@ std::string alt_of_track(const ThresholdReport& report, const TrackReport& track
   return begin + fmt::format(" threshold {:.1f} dB.", *quoted->threshold.level);
 }
 
+/// Level, d', low and high, of one standard.
+Rows rows_of_d_prime(const ThresholdReport& report, std::size_t standard) {
+  Rows rows;
+  for (const SameDifferentGroup& one : report.same_different_groups) {
+    if (one.standard != standard || !one.differencing.mean) continue;
+    const double mean = *one.differencing.mean;
+    const Interval bar = one.differencing.known_interval().value_or(Interval{mean, mean});
+    rows.push_back({one.level, mean, bar.low, bar.high});
+  }
+  return rows;
+}
+
 }  // namespace
+
+std::optional<Figure> thresholds_figure(const ThresholdReport& report) {
+  const ThresholdRows rows = rows_of_thresholds(report);
+  if (rows.means.empty()) return {};
+  std::vector<std::string> names;
+  for (const StandardReport& one : report.standards) names.push_back(short_name(one));
+  Sheet sheet{16.0, 8.0, report.simulated};
+  Margins margins;
+  const NamesBelow below(names, sheet.width_cm - margins.left_cm - margins.right_cm);
+  margins.bottom_cm = below.room_cm() + 0.3;
+  sheet.height_cm = 6.5 + margins.bottom_cm;
+  const Legend legend(
+      sheet, margins.left_cm,
+      std::vector<LegendEntry>{mark_entry(series_mark(0), series_colour(0), "participants"),
+                               mark_entry(13, kInk, "mean, with 95 % t interval")});
+  margins.top_cm = legend.room_cm() + 0.2;
+  Figure figure = figure_on(sheet, "thresholds", alt_of_thresholds(report));
+  figure.caption = stamped(
+      report.simulated,
+      "participants' thresholds, their mean and its 95 % t interval over participants. Censored "
+      "tracks are left out.");
+  figure.script =
+      data_block("dots", rows.dots) + data_block("means", rows.means) + sheet_head(sheet) +
+      panel_at(sheet, margins) + below.script() +
+      fmt::format("set yrange {}\nset ylabel '{}' noenhanced\n", level_axis(report),
+                  unit_label(report)) +
+      legend.script() +
+      fmt::format(
+          "plot $dots using 1:2 with points pt {} ps 0.5 lc rgb '{}' notitle, $means using "
+          "1:2:3:4 with yerrorbars pt 13 ps 1 lw 1.8 lc rgb '{}' notitle\n",
+          series_mark(0), series_colour(0), kInk);
+  return figure;
+}
+
+std::optional<Figure> functions_figure(const ThresholdReport& report) {
+  if (!report.has_thresholds() || report.tracks.empty()) return {};
+  const std::size_t count = report.standards.size();
+  const Panels panels(count, 2, 6.4, {1.5, 0.4, 0.6, 1.25}, report.simulated);
+  Figure figure = figure_on(panels.sheet(), "functions",
+                            "Right answers by level, all participants, and the mean of the "
+                            "functions that were fitted.");
+  const std::size_t said = figure.alt.size();
+  figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
+  for (std::size_t i = 0; i < count; ++i) {
+    const Rows answers = rows_of_answers(report, i);
+    const Rows curve = rows_of_curve(report, i);
+    if (answers.empty()) continue;
+    const bool is_first = figure.alt.size() == said;
+    figure.script += data_block(fmt::format("answers{}", i), answers) +
+                     (curve.empty() ? "" : data_block(fmt::format("curve{}", i), curve)) +
+                     panels.begin(i, report.standards[i].words) + accuracy_axis("right, %") +
+                     fmt::format("set xlabel '{}' offset 0, 0.4 noenhanced\nset xrange {}\n",
+                                 unit_label(report), level_axis(report)) +
+                     dashed_line(100.0 * *report.criterion) +
+                     (is_first ? legend_of_functions(panels.sheet(), report).script() : "") +
+                     plot_of_function(i, !curve.empty()) +
+                     "unset label\nunset arrow\nunset object\n";
+    figure.alt += fmt::format(" {}: {:.0f} % right at {:.1f} dB, {:.0f} % at {:.1f} dB.",
+                              report.standards[i].words, answers.front()[1], answers.front()[0],
+                              answers.back()[1], answers.back()[0]);
+  }
+  figure.script += "unset multiplot\n";
+  figure.caption = stamped(report.simulated,
+                           "right answers by level, all participants' trials pooled, and the mean "
+                           "of the functions fitted to their tracks; censored tracks are left "
+                           "out. An adaptive procedure puts "
+                           "its trials near each participant's threshold, so pooled points lie "
+                           "flatter than the function of one participant.");
+  return figure;
+}
 
 std::optional<Figure> tracks_figure(const ThresholdReport& report) {
   if (!report.has_thresholds() || report.tracks.empty()) return {};
@@ -326,22 +330,6 @@ std::optional<Figure> tracks_figure(const ThresholdReport& report) {
                : std::string()));
   return figure;
 }
-
-namespace {
-
-/// Level, d', low and high, of one standard.
-Rows rows_of_d_prime(const ThresholdReport& report, std::size_t standard) {
-  Rows rows;
-  for (const SameDifferentGroup& one : report.same_different_groups) {
-    if (one.standard != standard || !one.differencing.mean) continue;
-    const double mean = *one.differencing.mean;
-    const Interval bar = one.differencing.known_interval().value_or(Interval{mean, mean});
-    rows.push_back({one.level, mean, bar.low, bar.high});
-  }
-  return rows;
-}
-
-}  // namespace
 
 std::optional<Figure> d_prime_figure(const ThresholdReport& report) {
   if (report.same_different_groups.empty()) return {};

@@ -1,0 +1,285 @@
+// MS-SSIM, co-occurrence statistics and TV-Gabor, beside OpenCV, plain code and other solvers.
+#include "bench/inputs.hpp"
+#include "bench/peers/opencv.hpp"
+#include "bench/rows.hpp"
+#include "engine/metrics/ssim.hpp"
+#include "engine/tv_gabor/problem.hpp"
+#include "engine/tv_gabor/solver.hpp"
+#include "engine/tv_gabor/tv_gabor.hpp"
+#include "tests/engine/plane_comparison.hpp"
+#include "tests/engine/reference/glcm_reference.hpp"
+#include "tests/engine/reference/ssim_reference.hpp"
+#include "tests/engine/reference/tv_gabor_course.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fftw3.h>
+#include <fmt/format.h>
+
+namespace touchtrial::bench {
+namespace {
+
+using Algorithm = reference::TvGaborAlgorithm;
+
+constexpr double kMsSsimTolerance = 1e-4;
+/// All statistics except contrast are at most a few units.
+constexpr double kGlcmTolerance = 1e-9;
+/// Relative to v; solvers that stop early are far from it.
+constexpr double kTvGaborTolerance = 0.5;
+constexpr double kGoalOfV = 1e-3;
+/// ADMM computes its own gap at every tenth step, so that only this interval costs nothing extra.
+constexpr int kAdmmRhythm = 10;
+constexpr int kMostAdmmSteps = 300;
+constexpr int kQuickPictures = 2;
+
+/// The two pictures that `evaluate` compares: the adaptive texture and that of a fixed order.
+struct TexturePair {
+  GreyImage a, b;
+  double similarity = 0.0;
+  OpenCvMsSsim opencv{};
+};
+
+TexturePair timed_pair() {
+  const GreyImage image = timed_image(kUsualSize_px);
+  engine::ExtractionOptions fixed;
+  fixed.method = engine::Method::fixed;
+  fixed.order = kFixedOrder;
+  return {engine::texture_picture(engine::extract_texture<float>(image, {}).texture),
+          engine::texture_picture(engine::extract_texture<float>(image, fixed).texture)};
+}
+
+/// \param measure  the similarity of a TexturePair
+template <class Measure>
+Case ms_ssim(const std::string& who, Measure measure) {
+  return timed(
+      who, timed_pair, [=](TexturePair& pair) { pair.similarity = measure(pair); },
+      [](const TexturePair& pair) {
+        return std::abs(pair.similarity - reference::ms_ssim(pair.a, pair.b).unit);
+      },
+      kMsSsimTolerance);
+}
+
+Row ms_ssim_row() {
+  return {.what = "MS-SSIM, five scales",
+          .ours = ms_ssim(
+              "touchtrial",
+              [](const TexturePair& pair) { return engine::ms_ssim<float>(pair.a, pair.b).unit; }),
+          .peers = {ms_ssim("OpenCV GaussianBlur, u8",
+                            [](TexturePair& pair) {
+                              return pair.opencv.run(mat_of(pair.a), mat_of(pair.b));
+                            }),
+                    ms_ssim("touchtrial, double",
+                            [](const TexturePair& pair) {
+                              return engine::ms_ssim<double>(pair.a, pair.b).unit;
+                            }),
+                    ms_ssim("windows one by one, double",
+                            [](const TexturePair& pair) {
+                              return reference::ms_ssim(pair.a, pair.b).unit;
+                            })},
+          .goal = {"ratio", 0.25},
+          .error_unit = "of MS-SSIM"};
+}
+
+double relative(double value, double truth) {
+  return std::abs(value - truth) / std::max(1.0, std::abs(truth));
+}
+
+struct Counted {
+  GreyImage image = timed_image(kUsualSize_px);
+  engine::GlcmTable table{};
+};
+
+double error_of(const Counted& counted) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < counted.table.size(); ++i) {
+    const engine::GlcmOffset offset = engine::kGlcmOffsets[i];
+    const engine::GlcmStatistics& ours = counted.table[i];
+    const auto truth = reference::glcm_statistics(counted.image, offset.dy, offset.dx);
+    largest =
+        std::max({largest, relative(ours.angular_second_moment, truth.angular_second_moment),
+                  relative(ours.entropy, truth.entropy), relative(ours.contrast, truth.contrast),
+                  relative(ours.correlation, truth.correlation)});
+  }
+  return largest;
+}
+
+template <class Measure>
+Case glcm(const std::string& who, Measure measure) {
+  return timed(
+      who, [] { return Counted{}; },
+      [=](Counted& counted) { counted.table = measure(counted.image); }, error_of, kGlcmTolerance);
+}
+
+Row glcm_row() {
+  return {.what = "GLCM and statistics",
+          .ours = glcm("touchtrial",
+                       [](const GreyImage& image) { return engine::glcm_statistics(image); }),
+          .peers = {glcm("plain loop over pairs, u8",
+                         [](const GreyImage& image) { return pair_loop_glcm(mat_of(image)); })},
+          .goal = {"ratio", 0.5},
+          .error_unit = "relative"};
+}
+
+/// After how many steps ADMM in single precision comes as close to v as the goal asks for.
+int steps_to_goal(const GreyImage& image) {
+  const Plane<double> truth = tv_gabor_truth(image);
+  reference::TvGaborCourse<float> course(image, {}, Algorithm::admm);
+  for (int steps = kAdmmRhythm; steps <= kMostAdmmSteps; steps += kAdmmRhythm) {
+    course.advance(kAdmmRhythm);
+    if (distance_relative_to(course.point().texture, truth) <= kGoalOfV) return steps;
+  }
+  return std::numeric_limits<int>::max();
+}
+
+int usual_steps() {
+  static const int steps = steps_to_goal(timed_image(kUsualSize_px));
+  return steps;
+}
+
+template <typename Real>
+struct Decomposed {
+  GreyImage image = timed_image(kUsualSize_px);
+  Plane<Real> v{};
+};
+
+/// \param decompose  computes v of an image
+template <typename Real, class Decompose>
+Case tv_gabor(const std::string& who, Decompose decompose) {
+  Case one = timed(
+      who, [] { return Decomposed<Real>{}; },
+      [=](Decomposed<Real>& work) { work.v = decompose(work.image); },
+      [](const Decomposed<Real>& work) {
+        static const Plane<double> truth = tv_gabor_truth(work.image);
+        return distance_relative_to(work.v, truth);
+      },
+      kTvGaborTolerance);
+  one.is_slow = true;
+  return one;
+}
+
+/// Set-up and this number of steps.
+template <typename Real>
+Plane<Real> v_after(int steps, Algorithm algorithm, const GreyImage& image) {
+  reference::TvGaborCourse<Real> course(image, {}, algorithm);
+  course.advance(steps);
+  return course.point().texture;
+}
+
+template <typename Real = float>
+Case solver(const std::string& name, Algorithm algorithm, int steps) {
+  return tv_gabor<Real>(fmt::format("{}, {} steps", name, steps), [=](const GreyImage& image) {
+    return v_after<Real>(steps, algorithm, image);
+  });
+}
+
+Case admm_to_goal() {
+  return tv_gabor<float>("touchtrial", [](const GreyImage& image) {
+    return v_after<float>(usual_steps(), Algorithm::admm, image);
+  });
+}
+
+/// FFTW's transforms of one size, there and back. They are planned by measurement, unlike the
+/// engine's: a bound need not give the same digits twice.
+class MeasuredTransforms {
+ public:
+  explicit MeasuredTransforms(int side)
+      : samples_(fftwf_alloc_real(area(side, side))),
+        spectrum_(fftwf_alloc_complex(area(side, side / 2 + 1))),
+        forward_(fftwf_plan_dft_r2c_2d(side, side, samples_, spectrum_, FFTW_MEASURE)),
+        inverse_(fftwf_plan_dft_c2r_2d(side, side, spectrum_, samples_, FFTW_MEASURE)) {
+    // Zeros stay zeros, and take no less time than other samples.
+    std::fill_n(samples_, area(side, side), 0.0F);
+  }
+  ~MeasuredTransforms() {
+    fftwf_destroy_plan(forward_);
+    fftwf_destroy_plan(inverse_);
+    fftwf_free(samples_);
+    fftwf_free(spectrum_);
+  }
+  MeasuredTransforms(const MeasuredTransforms&) = delete;
+  MeasuredTransforms& operator=(const MeasuredTransforms&) = delete;
+
+  void run(int rounds) const {
+    for (int round = 0; round < rounds; ++round) {
+      fftwf_execute(forward_);
+      fftwf_execute(inverse_);
+    }
+  }
+
+ private:
+  static std::size_t area(int height, int width) {
+    return static_cast<std::size_t>(height) * static_cast<std::size_t>(width);
+  }
+
+  float* samples_;
+  fftwf_complex* spectrum_;
+  fftwf_plan forward_;
+  fftwf_plan inverse_;
+};
+
+/// The transforms of as many steps and their checks, there and back.
+Case transforms() {
+  Case one = timed(
+      "transforms",
+      [] { return std::make_unique<MeasuredTransforms>(engine::torus_length(kUsualSize_px)); },
+      [](const std::unique_ptr<MeasuredTransforms>& transforms) {
+        const int steps = usual_steps();
+        transforms->run(steps + steps / engine::PenaltySchedule::kStepsBetweenChecks);
+      });
+  one.is_slow = true;
+  return one;
+}
+
+/// The greatest number of steps to the goal over the pictures that fill their frame.
+double steps_on_pictures(bool quick) {
+  std::vector<GreyImage> pictures = shipped_pictures(true);
+  if (quick) pictures.resize(kQuickPictures);
+  int most = 0;
+  for (const GreyImage& one : pictures) most = std::max(most, steps_to_goal(one));
+  return most;
+}
+
+Rows tv_gabor_rows(bool quick) {
+  return {{.what = "TV-Gabor, to 1e-3 of v",
+           .ours = admm_to_goal(),
+           .peers = {solver("fixed point", Algorithm::fixed_point, 1000)},
+           .goal = {"ratio", 0.08},
+           .error_unit = "of v"},
+          {.what = "TV-Gabor, beside its own transforms",
+           .ours = admm_to_goal(),
+           .bounds = {transforms()},
+           .goal = {"of bound", 1.3},
+           .error_unit = "of v"},
+          {.what = "TV-Gabor, most steps to 1e-3 of v",
+           .ours = counted("touchtrial", [=] { return steps_on_pictures(quick); }),
+           .goal = {"count", 80},
+           .count_unit = "steps"},
+          {.what = "TV-Gabor, default stop",
+           .ours = tv_gabor<float>(
+               "touchtrial",
+               [](const GreyImage& image) { return engine::tv_gabor<float>(image, {}).texture; }),
+           .peers = {solver("ADMM", Algorithm::admm, 20), solver("ADMM", Algorithm::admm, 100),
+                     solver<double>("ADMM in double", Algorithm::admm, 50),
+                     solver<double>("ADMM in double", Algorithm::admm, 150),
+                     solver("FISTA", Algorithm::fista, 50), solver("FISTA", Algorithm::fista, 200),
+                     solver("FISTA", Algorithm::fista, 1000),
+                     solver("fixed point", Algorithm::fixed_point, 50),
+                     solver("fixed point", Algorithm::fixed_point, 200)},
+           .error_unit = "of v"}};
+}
+
+}  // namespace
+
+Rows metric_rows(const Scope& scope) {
+  Rows rows = {ms_ssim_row(), glcm_row()};
+  for (Row& row : tv_gabor_rows(scope.quick)) rows.push_back(std::move(row));
+  return rows;
+}
+
+}  // namespace touchtrial::bench

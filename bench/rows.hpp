@@ -1,0 +1,127 @@
+/// \file The benchmark's table. A row is a piece of work by the engine, beside the same work by peers,
+/// what the machine cannot do faster, and the goal.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace touchtrial::bench {
+
+/// A piece of work with its inputs and outputs, ready to run again and again.
+struct Job {
+  std::function<void()> run;  ///< overwrites the outputs of the former run; allocates no planes
+  /// The error of the last run's outputs against double precision; empty if it has no meaning.
+  std::function<double()> error{};
+  /// What is counted, for instance steps; empty if nothing is.
+  std::function<double()> count{};
+};
+
+/// How a job's time is taken.
+enum class Clock {
+  processor,  ///< of the process, in all threads
+  wall,       ///< of work whose time includes the disk
+  none        ///< not at all: the job only has an error or a count
+};
+
+/// A job that is not made yet, so that its inputs are in memory only while it is measured.
+struct Case {
+  std::string who;  ///< "touchtrial", or for instance "OpenCV filter2D, f32"
+  std::function<Job()> make;
+  /// A larger error means that the case computes something else.
+  double tolerance = std::numeric_limits<double>::infinity();
+  std::string simd_target = {};  ///< to run on; "" for the best
+  Clock clock = Clock::processor;
+  int threads = 1;       ///< that the engine may use
+  int operations = 1;    ///< in one run; times are divided by it
+  bool is_slow = false;  ///< few repetitions
+};
+
+using Cases = std::vector<Case>;
+
+/// A case on a state that is made with it.
+/// \param make_state  returns the state: its inputs and outputs
+/// \param run  called with the state
+template <class MakeState, class Run>
+[[nodiscard]] Case timed(std::string who, MakeState make_state, Run run) {
+  return {std::move(who), [=] {
+            const auto state = std::make_shared<decltype(make_state())>(make_state());
+            return Job{[=] { run(*state); }};
+          }};
+}
+
+/// The same with an error.
+/// \param error  called with the state after a run
+template <class MakeState, class Run, class Error>
+[[nodiscard]] Case timed(std::string who, MakeState make_state, Run run, Error error,
+                         double tolerance) {
+  return {std::move(who),
+          [=] {
+            const auto state = std::make_shared<decltype(make_state())>(make_state());
+            return Job{.run = [=] { run(*state); }, .error = [=] { return error(*state); }};
+          },
+          tolerance};
+}
+
+/// A case that is only counted.
+[[nodiscard]] inline Case counted(std::string who, std::function<double()> count) {
+  return {.who = std::move(who),
+          .make = [=] { return Job{.run = {}, .count = count}; },
+          .clock = Clock::none};
+}
+
+/// A number of a row, and what limits it from above.
+struct Goal {
+  /// "ratio" (to the first peer), "of bound", "us", "error" or "count"; "" for none.
+  std::string_view limits;
+  double target = 0.0;
+};
+
+struct Row {
+  std::string what;
+  Case ours;
+  Cases peers = {};  ///< the first one is the goal's, the others are for the record
+  /// The machine's bounds by name. Several ways to one bound differ behind a comma: the fastest
+  /// counts.
+  Cases bounds = {};
+  Goal goal = {};
+  std::string error_unit = {};
+  std::string count_unit = {};
+};
+
+using Rows = std::vector<Row>;
+
+/// What the program was asked for.
+struct Scope {
+  std::vector<std::string> simd_targets;  ///< of this machine, best first
+  bool quick = false;                     ///< few repetitions and pictures
+};
+
+/// Fractional filters, sub-bands and whole extractions.
+[[nodiscard]] Rows extraction_rows(const Scope& scope);
+/// MS-SSIM, co-occurrence statistics and TV-Gabor.
+[[nodiscard]] Rows metric_rows(const Scope& scope);
+/// What the servo computes in a tick: forces, kinematics, and all of it together.
+[[nodiscard]] Rows servo_rows();
+/// The budgets of single precision, on every SIMD target.
+[[nodiscard]] Rows error_rows(const Scope& scope);
+/// A whole simulated study.
+[[nodiscard]] Rows study_rows();
+
+/// The side of a default stimulus.
+inline constexpr int kUsualSize_px = 500;
+/// The method's default K.
+inline constexpr int kUsualRadius = 2;
+/// The order of all cases with a fixed order.
+inline constexpr double kFixedOrder = 0.55;
+
+/// "AVX-512" for Highway's "AVX3" and its relatives; other names are unchanged.
+[[nodiscard]] inline std::string instruction_set_of(const std::string& simd_target) {
+  return simd_target.starts_with("AVX3") ? "AVX-512" : simd_target;
+}
+
+}  // namespace touchtrial::bench

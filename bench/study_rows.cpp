@@ -1,0 +1,141 @@
+// A whole simulated study.
+#include "app/study_inputs.hpp"
+#include "bench/rows.hpp"
+#include "core/random.hpp"
+#include "device/simulated/simulated_hand.hpp"
+#include "engine/pack/pack.hpp"
+#include "protocols/design/prepare.hpp"
+#include "protocols/registration/registration.hpp"
+#include "protocols/session/commitment.hpp"
+#include "protocols/session/exploration.hpp"
+#include "protocols/session/stimulus_source.hpp"
+#include "protocols/simulation/felt_decision.hpp"
+#include "protocols/simulation/felt_exploration.hpp"
+#include "protocols/simulation/simulation.hpp"
+#include "protocols/simulation/subject_model.hpp"
+#include "protocols/store/study_store.hpp"
+#include "tests/support/temp_folder.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include <benchmark/benchmark.h>
+
+namespace touchtrial::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kParticipants = 20;
+
+/// The classification study that comes with the program: 25 trials of 10 s.
+design::StudyKey study_key(const fs::path& folder) {
+  registration::register_protocols();
+  design::StudyKey key = design::simulated_study_key(
+      design::load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/classification.json"));
+  key.pack_folder = folder / "pack";
+  design::prepare_pack(key, key.pack_folder, {});
+  return key;
+}
+
+struct PreparedStudy {
+  TempFolder folder{};
+  design::StudyKey key = study_key(folder.path());
+  engine::Pack pack{key.pack_folder};
+};
+
+const PreparedStudy& prepared() {
+  static const PreparedStudy study;
+  return study;
+}
+
+/// One transaction for each session.
+/// \return the database's bytes a trial
+double simulate(int threads) {
+  const PreparedStudy& study = prepared();
+  const simulation::SubjectModel subject = app::subject_for({}, study.key.study, {});
+  simulation::SimulationOptions options;
+  options.participants = kParticipants;
+  options.jobs = threads;
+  const fs::path database = study.folder.path() / "study.db";
+  fs::remove(database);
+  int trials = 0;
+  {
+    store::StudyStore store = store::StudyStore::create(
+        database, session::commitment_of(study.key, study.pack, true, false),
+        std::chrono::nanoseconds(0), study.key.signer());
+    trials =
+        simulation::simulate_study(study.key, study.pack, subject, options, store).presentations;
+  }
+  return std::round(static_cast<double>(fs::file_size(database)) / trials);
+}
+
+/// As many explorations as the study has trials, tick by tick: the hand and the force of a stimulus
+/// and nothing else. No servo, limit, sense, trace or answer, and nobody learns before.
+void explore_alone() {
+  const design::StudyKey& key = prepared().key;
+  const simulation::SubjectModel subject = app::subject_for({}, key.study, {});
+  const session::StimulusSource source(prepared().pack, key);
+  const simulation::SimulationOptions options;
+  Vec3 kept;
+  for (int number = 1; number <= kParticipants; ++number) {
+    const device::HandFactors factors =
+        simulation::hand_of_participant(subject, options.seed, static_cast<std::uint64_t>(number));
+    for (int trial = 1; trial <= key.study.scored_trials(); ++trial) {
+      RandomStream random = simulation::stream_of_trial(
+          options.seed, simulation::kExplorationPurpose, number, static_cast<std::uint64_t>(trial));
+      device::SimulatedHand hand =
+          simulation::make_exploring_hand(subject, source.plane(), random, factors);
+      const auto stimulus = static_cast<std::size_t>(trial) % key.stimuli.size();
+      session::ModelForce force(source.model(key.stimuli[stimulus].code));
+      device::DeviceSample sample;
+      while (hand.read(sample) == device::DeviceStatus::ok) {
+        static_cast<void>(hand.write(force.force_n(sample)));
+      }
+      kept = kept + sample.position_mm;
+    }
+  }
+  benchmark::DoNotOptimize(kept);
+}
+
+/// Wall-clock time, because it includes the disk.
+template <class Work>
+Case on_the_study(const std::string& who, Work work, int threads = 1) {
+  Case one = timed(
+      who, [] { return &prepared(); }, [=](const PreparedStudy*) { work(); });
+  one.clock = Clock::wall;
+  one.threads = threads;
+  one.is_slow = true;
+  return one;
+}
+
+Case simulated_study(const std::string& who, int threads) {
+  return on_the_study(
+      who, [=] { simulate(threads); }, threads);
+}
+
+}  // namespace
+
+Rows study_rows() {
+  return {{.what = "study of 20 x 25 trials of 10 s, one thread",
+           .ours = simulated_study("touchtrial", 1),
+           .goal = {"us", 1e6}},
+          {.what = "the same study against its 5 million ticks",
+           .ours = simulated_study("touchtrial", 1),
+           .peers = {on_the_study("hand and force alone", explore_alone)},
+           .goal = {"ratio", 2}},
+          {.what = "the same study, two threads",
+           .ours = simulated_study("touchtrial", 2),
+           .peers = {simulated_study("one thread", 1)},
+           .goal = {"ratio", 1.0 / 1.8}},
+          {.what = "database, a trial of 10 s",
+           .ours = counted("touchtrial", [] { return simulate(1); }),
+           .goal = {"count", 100e3},
+           .count_unit = "bytes"}};
+}
+
+}  // namespace touchtrial::bench
