@@ -1,7 +1,7 @@
 // preview: the participant's screens of a study, without a session.
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/experimenter/console_experimenter.hpp"
+#include "app/experimenter/experimenter_desk.hpp"
 #include "app/participant/preview_screens.hpp"
 #include "app/participant/screen.hpp"
 #include "app/run/run_session.hpp"
@@ -180,8 +180,7 @@ class Preview {
   PlaneGeometry plane_;
   device::PointerExchange pointer_;
   std::atomic<Turn> turn_{Turn::none};
-  session::Experimenter nobody_;
-  ConsoleExperimenter console_{nobody_};  ///< whose requests nobody takes
+  ExperimenterDesk console_{false};  ///< whose requests nobody takes
   ParticipantWindow window_;
 };
 

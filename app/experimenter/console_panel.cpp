@@ -2,7 +2,6 @@
 
 #include "app/experimenter/status_words.hpp"
 #include "app/windows/look.hpp"
-#include "protocols/design/deviation_codes.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -15,14 +14,12 @@
 namespace touchtrial::app {
 namespace {
 
-using Kind = session::ExperimenterRequest::Kind;
+using Kind = ExperimenterQuestion::Kind;
 
 constexpr PackedColour kInk = 0xFF202020;
 constexpr PackedColour kGround = 0xFFF6F4F2;
 constexpr float kMargin = 20.0F;
 constexpr float kButtonHeight = 44.0F;
-constexpr std::size_t kAskedShown = 6;
-constexpr const char* kPaused = "paused";
 
 /// Light, like the participant's window.
 class Look {
@@ -179,165 +176,131 @@ bool button(const char* label, ImVec2 size, bool is_enabled = true) {
   return pressed;
 }
 
-std::string words_of(const session::ExperimenterRequest& request) {
-  switch (request.kind) {
-    case Kind::pause:
-      return "pause";
-    case Kind::resume:
-      return "resume";
-    case Kind::comfort_stop:
-      return "comfort stop";
-    case Kind::note:
-      return "note: " + request.text;
-    case Kind::deviation:
-      return "deviation " + request.code + (request.text.empty() ? "" : ": " + request.text);
-    case Kind::abort:
-      return "end of the session" + (request.text.empty() ? "" : ": " + request.text);
-    case Kind::leave:
-      break;
-  }
-  return "";
-}
-
-}  // namespace
-
-void ConsolePanel::draw(const session::SessionStatus& status, Vec2 size, float density,
-                        bool may_write) {
-  const Look look(density);
-  ImGui::SetNextWindowPos({0.0F, 0.0F});
-  ImGui::SetNextWindowSize(imgui_vec(size));
-  ImGui::Begin("console", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-  draw_heading(status);
-  draw_progress(status, density);
-  draw_stop(status);
-  ImGui::Spacing();
-  draw_facts(status);
-  ImGui::Spacing();
-  draw_buttons(status, density);
-  ImGui::Spacing();
-  is_writing_ = false;
-  draw_draft(density, may_write);
-  draw_asked();
-  ImGui::End();
-}
-
-void ConsolePanel::draw_buttons(const session::SessionStatus& status, float density) {
-  const float third =
-      (ImGui::GetContentRegionAvail().x - 2.0F * ImGui::GetStyle().ItemSpacing.x) / 3.0F;
-  const ImVec2 size = {third, kButtonHeight * density};
-  const bool is_paused = status.stage == kPaused;
-  if (button("Pause", size, !is_paused)) {
-    ask(Kind::pause);
-    begin(Draft::pause_reason);
-  }
-  ImGui::SameLine();
-  if (button("Resume", size, is_paused)) ask(Kind::resume);
-  ImGui::SameLine();
-  if (coloured_button("Comfort stop", kVermillion, size)) {
-    ask(Kind::comfort_stop);
-    begin(Draft::stop_reason);
-  }
-  if (button("Note", size)) begin(Draft::note);
-  ImGui::SameLine();
-  if (button("Deviation", size)) begin(Draft::deviation);
-  ImGui::SameLine();
-  if (button("Abort", size)) begin(Draft::abort);
-}
-
-void ConsolePanel::draw_draft(float density, bool may_write) {
-  if (draft_ == Draft::none) return;
-  const ImVec2 size = {150.0F * density, 0.0F};
-  static constexpr std::array<const char*, 6> kAsks = {
-      "",
-      "Paused. The reason, if it should be noted:",
-      "Stopped. The reason, which must say nothing about the texture:",
-      "Note:",
-      "Deviation: its code, and what was different:",
-      "Abort: ends this session for good; it cannot be resumed. The reason:"};
-  ImGui::TextUnformatted(kAsks[static_cast<std::size_t>(draft_)]);
-  bool is_sent = false;
-  ImGui::BeginDisabled(!may_write);
-  if (draft_ == Draft::deviation) {
-    ImGui::SetNextItemWidth(220.0F * density);
-    if (is_begun_ && may_write) ImGui::SetKeyboardFocusHere();
-    ImGui::InputTextWithHint("##code", "code", code_.data(), code_.size());
-    is_writing_ = is_writing_ || ImGui::IsItemActive();
-    ImGui::SameLine();
-    draw_codes();
-    ImGui::SameLine();
-  }
-  ImGui::SetNextItemWidth(-1.0F);
-  if (is_begun_ && may_write && draft_ != Draft::deviation) ImGui::SetKeyboardFocusHere();
-  is_sent = ImGui::InputTextWithHint("##text", "in words", text_.data(), text_.size(),
-                                     ImGuiInputTextFlags_EnterReturnsTrue);
-  is_writing_ = is_writing_ || ImGui::IsItemActive();
-  ImGui::EndDisabled();
-  is_begun_ = false;
-  // After the plane, the experimenter selects the field again: the next keys may be an answer.
-  if (is_writing_ && !may_write) ImGui::SetWindowFocus(nullptr);
-  is_writing_ = is_writing_ && may_write;
-  // Enter does not end a session.
-  if (draft_ == Draft::abort) {
-    is_sent = coloured_button("End the session", kVermillion, size);
-  } else {
-    is_sent = ImGui::Button("Enter it", size) || is_sent;
-  }
-  ImGui::SameLine();
-  const bool is_left = ImGui::Button(draft_ == Draft::abort ? "Go on" : "Discard it", size);
-  if (!may_write) {
-    ImGui::SameLine();
-    grey("A plane is on: the keyboard is the participant's.");
-  }
-  if (is_sent) send();
-  if (is_left) draft_ = Draft::none;
-}
-
-/// The program's codes, from which one can be taken into the field.
-void ConsolePanel::draw_codes() {
-  if (!ImGui::BeginCombo("##codes", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_HeightLarge)) {
+/// A list from which one can be taken into the field.
+void draw_suggestions(const ExperimenterQuestion& question, std::array<char, 501>& text) {
+  if (!ImGui::BeginCombo("##choices", "",
+                         ImGuiComboFlags_NoPreview | ImGuiComboFlags_HeightLarge)) {
     return;
   }
-  for (const std::string_view code : design::kDeviationCodes) {
-    if (!ImGui::Selectable(std::string(code).c_str())) continue;
-    code_.fill('\0');
-    std::copy(code.begin(), code.end(), code_.begin());
+  for (const ExperimenterQuestion::Choice& choice : question.choices) {
+    if (!ImGui::Selectable(choice.answer.c_str())) continue;
+    text.fill('\0');
+    std::ranges::copy(choice.answer, text.begin());
   }
   ImGui::EndCombo();
 }
 
-void ConsolePanel::draw_asked() {
-  if (asked_.empty()) return;
+void draw_asked(const ExperimenterView& view) {
+  if (view.asked.empty()) return;
   ImGui::Spacing();
   grey("requests to the session, newest first");
-  for (const std::string& words : asked_) ImGui::TextWrapped("%s", words.c_str());
+  for (const std::string& words : view.asked) ImGui::TextWrapped("%s", words.c_str());
 }
 
-void ConsolePanel::begin(Draft draft) {
-  draft_ = draft;
-  is_begun_ = true;
-  text_.fill('\0');
-  code_.fill('\0');
+}  // namespace
+
+void ConsolePanel::draw(Vec2 size, float density, bool may_write) {
+  const ExperimenterView view = desk_.view();
+  const Look look(density);
+  ImGui::SetNextWindowPos({0.0F, 0.0F});
+  ImGui::SetNextWindowSize(imgui_vec(size));
+  ImGui::Begin("console", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+  draw_heading(view.status);
+  draw_progress(view.status, density);
+  draw_stop(view.status);
+  ImGui::Spacing();
+  draw_facts(view.status);
+  ImGui::Spacing();
+  draw_actions(view, density);
+  ImGui::Spacing();
+  is_writing_ = false;
+  if (!view.need.empty()) ImGui::TextWrapped("%s", view.need.c_str());
+  draw_question(view, density, may_write);
+  draw_asked(view);
+  ImGui::End();
+  // An action or answer of this picture may have begun another line.
+  const ExperimenterView now = desk_.view();
+  if (now.questions != questions_) wants_keyboard_ = true;
+  if (!may_write || now.question.kind != Kind::text) wants_keyboard_ = false;
+  is_writing_ = is_writing_ || is_settling();
 }
 
-void ConsolePanel::send() {
-  const std::string text = text_.data();
-  const std::string code = code_.data();
-  const bool is_missing = draft_ == Draft::deviation ? code.empty() : text.empty();
-  if (is_missing && (draft_ == Draft::deviation || draft_ == Draft::note)) return;
-  const Draft sent = std::exchange(draft_, Draft::none);
-  if (sent == Draft::abort) return ask(Kind::abort, text);
-  if (sent == Draft::deviation) return ask(Kind::deviation, text, code);
-  if (text.empty()) return;
-  if (sent == Draft::pause_reason) return ask(Kind::note, "pause: " + text);
-  if (sent == Draft::stop_reason) return ask(Kind::deviation, text, session::kComfortStopCode);
-  ask(Kind::note, text);
+void ConsolePanel::draw_actions(const ExperimenterView& view, float density) {
+  constexpr std::size_t kColumns = 4;
+  const float gaps = static_cast<float>(kColumns - 1) * ImGui::GetStyle().ItemSpacing.x;
+  const ImVec2 size = {(ImGui::GetContentRegionAvail().x - gaps) / static_cast<float>(kColumns),
+                       kButtonHeight * density};
+  for (std::size_t i = 0; i < kExperimenterActions.size(); ++i) {
+    const ExperimenterAction& action = kExperimenterActions[i];
+    if (i % kColumns != 0) ImGui::SameLine();
+    const bool is_stop = action.what == ExperimenterAction::What::comfort_stop;
+    const bool is_pressed = is_stop ? coloured_button(action.label, kVermillion, size)
+                                    : button(action.label, size, view.allows(action.what));
+    if (is_pressed) desk_.act(action.what);
+  }
 }
 
-void ConsolePanel::ask(Kind kind, const std::string& text, const std::string& code) {
-  const session::ExperimenterRequest request{kind, text, code};
-  asked_.push_front(words_of(request));
-  if (asked_.size() > kAskedShown) asked_.pop_back();
-  ask_(request);
+void ConsolePanel::draw_question(const ExperimenterView& view, float density, bool may_write) {
+  if (std::exchange(questions_, view.questions) != view.questions) {
+    wants_keyboard_ = true;
+    text_.fill('\0');
+  }
+  const ExperimenterQuestion& question = view.question;
+  if (question.kind == Kind::none) return;
+  ImGui::TextWrapped("%s%s", question.text.c_str(), question.is_own() ? ":" : "");
+  const ImVec2 size = {150.0F * density, 0.0F};
+  if (question.kind == Kind::text) {
+    bool is_sent = draw_line(question, density, may_write);
+    is_sent = ImGui::Button("Enter it", size) || is_sent;
+    if (is_sent) desk_.answer(text_.data());
+  } else if (question.kind == Kind::sure) {
+    const ExperimenterQuestion::Choice& choice = question.choices.front();
+    if (coloured_button(choice.label.c_str(), kVermillion, size)) desk_.answer(choice.answer);
+  } else {
+    return draw_choices(question);
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Discard it", size)) desk_.discard();
+  if (question.kind == Kind::text && !may_write) {
+    ImGui::SameLine();
+    grey("A plane is on: the keyboard is the participant's.");
+  }
+}
+
+void ConsolePanel::draw_choices(const ExperimenterQuestion& question) {
+  const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
+  const ImGuiStyle& style = ImGui::GetStyle();
+  for (std::size_t i = 0; i < question.choices.size(); ++i) {
+    const auto& [answer, label, key] = question.choices[i];
+    const char* const words = label.empty() ? answer.c_str() : label.c_str();
+    const float width = ImGui::CalcTextSize(words).x + 2.0F * style.FramePadding.x;
+    const float end = ImGui::GetItemRectMax().x + style.ItemSpacing.x + width;
+    if (i > 0 && end < right) ImGui::SameLine();
+    if (ImGui::Button(words)) desk_.answer(answer);
+  }
+}
+
+bool ConsolePanel::draw_line(const ExperimenterQuestion& question, float density, bool may_write) {
+  ImGui::BeginDisabled(!may_write);
+  // Another line is another field, which can get the keyboard from the one before.
+  ImGui::PushID(static_cast<int>(questions_));
+  // Room for the list of suggestions beside it.
+  ImGui::SetNextItemWidth(question.choices.empty() ? -1.0F : -50.0F * density);
+  if (wants_keyboard_ && may_write) ImGui::SetKeyboardFocusHere();
+  const bool is_ended =
+      ImGui::InputText("##text", text_.data(), text_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+  is_writing_ = ImGui::IsItemActive();
+  if (is_writing_) wants_keyboard_ = false;
+  if (!question.choices.empty()) {
+    ImGui::SameLine();
+    draw_suggestions(question, text_);
+  }
+  ImGui::PopID();
+  ImGui::EndDisabled();
+  // After the plane, the experimenter selects the field again: the next keys may be an answer.
+  if (is_writing_ && !may_write) ImGui::SetWindowFocus(nullptr);
+  is_writing_ = is_writing_ && may_write;
+  return is_ended;
 }
 
 }  // namespace touchtrial::app

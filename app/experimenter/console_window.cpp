@@ -1,6 +1,7 @@
 #include "app/experimenter/console_window.hpp"
 
 #include "app/experimenter/console_panel.hpp"
+#include "app/experimenter/status_words.hpp"
 #include "app/windows/glfw_support.hpp"
 #include "app/windows/look.hpp"
 #include "core/errors.hpp"
@@ -157,11 +158,16 @@ float enlargement(const Surface& surface) {
 
 }  // namespace
 
-struct ConsoleWindow::State {
-  State(ConsoleExperimenter& model, ConsoleWindowOptions wanted)
-      : console(model),
-        options(std::move(wanted)),
-        panel([this](const session::ExperimenterRequest& asked) { console.add(asked); }) {}
+struct ConsoleWindow::State final : ExperimenterFace {
+  State(ExperimenterDesk& its_desk, ConsoleWindowOptions wanted)
+      : desk(its_desk), options(std::move(wanted)), panel(desk) {}
+
+  /// Every change needs a picture.
+  void show(const ExperimenterView& view) override {
+    const std::string words =
+        status_line(view.status) + view.need + view.question.text + std::to_string(view.questions);
+    if (std::exchange(shown, words) != words) redraw();
+  }
 
   static State& of(GLFWwindow* window) {
     return *static_cast<State*>(glfwGetWindowUserPointer(window));
@@ -184,7 +190,7 @@ struct ConsoleWindow::State {
     take_callbacks();
     glfwShowWindow(window);
     tell_surface();
-    console.on_change([this] { redraw(); });
+    desk.add_face(*this);
   }
 
   void take_callbacks() {
@@ -259,14 +265,17 @@ struct ConsoleWindow::State {
     redraw();
   }
 
-  /// Takes events up to the first button or key, because each needs a picture of its own.
+  /// Takes one button or key, or all events before it: each needs a picture of its own, and ImGui
+  /// would else keep some for a later one, when their field is gone.
   void take_events(ImGuiIO& io) {
     const std::lock_guard lock(mutex);
-    while (!events.empty()) {
+    for (bool is_first = true; !events.empty(); is_first = false) {
       const Event event = events.front();
+      const bool is_alone = event.kind == Event::Kind::button || event.kind == Event::Kind::key;
+      if (is_alone && !is_first) return;
       events.pop_front();
       tell(io, event);
-      if (event.kind == Event::Kind::button || event.kind == Event::Kind::key) return;
+      if (is_alone) return;
     }
   }
 
@@ -287,14 +296,14 @@ struct ConsoleWindow::State {
     ImGui::SetCurrentContext(context);
     fit_fonts(now.density);
     ImGuiIO& io = ImGui::GetIO();
-    take_events(io);
+    if (!panel.is_settling()) take_events(io);
     io.DisplaySize = {static_cast<float>(now.width), static_cast<float>(now.height)};
     io.DisplayFramebufferScale = {static_cast<float>(now.width_px) / io.DisplaySize.x,
                                   static_cast<float>(now.height_px) / io.DisplaySize.y};
     io.DeltaTime = 1.0F / 60.0F;
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
-    panel.draw(console.status(), {io.DisplaySize.x, io.DisplaySize.y}, now.density,
+    panel.draw({io.DisplaySize.x, io.DisplaySize.y}, now.density,
                !options.keyboard_is_participants());
     is_writing = panel.is_writing();
     ImGui::Render();
@@ -303,7 +312,7 @@ struct ConsoleWindow::State {
     ImGui::SetCurrentContext(others);
   }
 
-  ConsoleExperimenter& console;
+  ExperimenterDesk& desk;
   const ConsoleWindowOptions options;
   GLFWwindow* window = nullptr;
 
@@ -317,19 +326,22 @@ struct ConsoleWindow::State {
   bool picture_wanted = false;
   std::optional<engine::ColourImage> picture;
 
+  // Session's thread.
+  std::string shown;
+
   // Drawing thread.
   ImGuiContext* context = nullptr;
   float fonts_density = 0.0F;
   ConsolePanel panel;
 };
 
-ConsoleWindow::ConsoleWindow(ConsoleExperimenter& console, const ConsoleWindowOptions& options)
-    : state_(std::make_unique<State>(console, options)) {
+ConsoleWindow::ConsoleWindow(ExperimenterDesk& desk, const ConsoleWindowOptions& options)
+    : state_(std::make_unique<State>(desk, options)) {
   state_->open();
 }
 
 ConsoleWindow::~ConsoleWindow() {
-  state_->console.on_change({});
+  state_->desk.remove_face(*state_);
   glfwDestroyWindow(state_->window);
 }
 
@@ -363,7 +375,8 @@ void ConsoleWindow::end_drawing() {
 bool ConsoleWindow::wants_picture() const {
   const std::lock_guard lock(state_->mutex);
   if (state_->surface.width_px <= 0) return false;
-  return state_->frames_due > 0 || !state_->events.empty() || state_->picture_wanted;
+  return state_->frames_due > 0 || !state_->events.empty() || state_->picture_wanted ||
+         state_->panel.is_settling();
 }
 
 void ConsoleWindow::draw() {

@@ -1,7 +1,7 @@
 /// \file The experimenter's window. Its owner has started GLFW.
 #pragma once
 
-#include "app/experimenter/console_experimenter.hpp"
+#include "app/experimenter/experimenter_desk.hpp"
 #include "engine/pictures/colour_image.hpp"
 
 #include <chrono>
@@ -39,9 +39,9 @@ struct ConsoleWindowOptions {
 class ConsoleWindow {
  public:
   /// Call it on the main thread while GLFW is running.
-  /// \param console  must outlive this
+  /// \param desk  must outlive this
   /// \throws DeviceError with the remedy if there is no such monitor, or no OpenGL 3.2
-  ConsoleWindow(ConsoleExperimenter& console, const ConsoleWindowOptions& options);
+  ConsoleWindow(ExperimenterDesk& desk, const ConsoleWindowOptions& options);
   /// Runs on the main thread, after drawing has ended.
   ~ConsoleWindow();
   ConsoleWindow(const ConsoleWindow&) = delete;

@@ -28,7 +28,7 @@ std::string stop_advice(const session::SessionStatus& status) {
   return std::string("Ask how they are, and type a reason as a deviation (code ") +
          session::kComfortStopCode + "). " +
          (status.needs_consent
-              ? "The force stays off until you press g at the terminal; abort ends the session."
+              ? "The force stays off until you switch it on again (g); abort ends the session."
               : "They go on by themselves; abort ends the session.");
 }
 

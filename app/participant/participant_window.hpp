@@ -22,7 +22,7 @@
 
 namespace touchtrial::app {
 
-class ConsoleExperimenter;
+class ExperimenterDesk;
 class Screen;
 
 struct ParticipantWindowOptions {
@@ -59,7 +59,7 @@ struct ParticipantWindowOptions {
   /// nothing.
   std::function<void(int pages)> turn;
   /// Shows a second window for the experimenter; null: none. Must outlive the window.
-  ConsoleExperimenter* console = nullptr;
+  ExperimenterDesk* console = nullptr;
   /// Number of that window's monitor, from 1; none: another one than this window fills, or beside
   /// this window on one monitor.
   std::optional<int> console_monitor;

@@ -1,9 +1,8 @@
 #include "app/run/run_session.hpp"
 
 #include "app/device_words.hpp"
-#include "app/experimenter/console_experimenter.hpp"
-#include "app/experimenter/terminal_experimenter.hpp"
-#include "app/experimenter/typing.hpp"
+#include "app/experimenter/experimenter_desk.hpp"
+#include "app/experimenter/terminal_face.hpp"
 #include "app/participant/page_layout.hpp"
 #include "app/participant/participant_window.hpp"
 #include "app/participant/window_subject.hpp"
@@ -298,12 +297,17 @@ store::ScreenRecord record_of(const ScreenScale& screen) {
                                                  : "assumed"};
 }
 
+/// Whether the experimenter has a keyboard at the terminal, or a window.
+bool is_attended(const RunOptions& options) {
+  return options.console || ::isatty(STDIN_FILENO) != 0;
+}
+
 /// The experimenter must be able to consent to the force.
-void require_consent(const device::DeviceInfo& device) {
-  if (device.visual || ::isatty(STDIN_FILENO) != 0) return;
+void require_consent(const RunOptions& options, const device::DeviceInfo& device) {
+  if (device.visual || is_attended(options)) return;
   throw UsageError(
       "run: standard input is not a terminal, where the experimenter lets the force on; start it "
-      "from a terminal");
+      "from a terminal, or with --console");
 }
 
 /// A person's session with a device, before a window.
@@ -314,12 +318,13 @@ class PersonsSession {
         study_(study),
         database_(options, study),
         source_(study.pack, study.key),
-        terminal_(standard_terminal()),
-        device_(options, source_.plane(), terminal_),
+        desk_(is_attended(options)),
+        terminal_(desk_, standard_terminal()),
+        device_(options, source_.plane(), desk_),
         instruments_(session_instruments(device_.instruments(), device::kServoRateHz)),
         practice_(study, source_.plane()) {
     require_blind(options, device_.info());
-    require_consent(device_.info());
+    require_consent(options, device_.info());
     device_.require_stable_wall(study.key.study.rendering.stiffness_n_per_mm);
     warn_of_stiffness(study.key.study.rendering, device_.info());
     if (options.sound) {
@@ -327,9 +332,9 @@ class PersonsSession {
       if (!sound_->trouble().empty()) spdlog::warn("{}", sound_->trouble());
     }
     for (const session::ExperimenterRequest& known : known_deviations(options, study, device_)) {
-      terminal_.add(known);
+      desk_.add(known);
     }
-    for (const auto& note : notes_on_screens(options, study.key.study)) terminal_.add(note);
+    for (const auto& note : notes_on_screens(options, study.key.study)) desk_.add(note);
   }
 
   int run() {
@@ -337,7 +342,7 @@ class PersonsSession {
     wanted.device = [this]() -> device::HapticDevice& { return device_.device(); };
     wanted.pointer = device_.pointer();
     if (sound_) wanted.cues = &*sound_;
-    if (options_.console) wanted.console = &console_;
+    if (options_.console) wanted.console = &desk_;
     if (options_.console_monitor > 0) wanted.console_monitor = options_.console_monitor;
     ParticipantWindow window(wanted);
     warn_of_unknown_size(options_, study_.key.study, window);
@@ -363,11 +368,11 @@ class PersonsSession {
           study_.key_in_reach.string());
     }
     session::SteadySessionClock clock(entered.clock);
-    SpokenAnswers spoken(window, terminal_);
+    SpokenAnswers spoken(window, desk_);
     DatabaseWatch watch(options_.database);
     FocusWatch focus(window);
     RunExperimenter experimenter(
-        console_, [&] { return why_ended(watch, &window); },
+        desk_, [&] { return why_ended(watch, &window); },
         [&] { return recorded_by_itself(*entered.sink, focus); }, [&] { return focus.alert(); });
     entered.sink->set_waiting([&](const std::string& why) {
       return waits(why, [&] { static_cast<void>(spoken.attend(session::PauseStep{})); });
@@ -403,8 +408,8 @@ class PersonsSession {
   const RunStudy& study_;
   RunDatabase database_;
   session::StimulusSource source_;
-  TerminalExperimenter terminal_;
-  ConsoleExperimenter console_{terminal_};
+  ExperimenterDesk desk_;
+  TerminalFace terminal_;
   SessionDevice device_;
   std::unique_ptr<session::Instruments> instruments_;
   ParticipantPractice practice_;

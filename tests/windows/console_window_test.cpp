@@ -1,5 +1,6 @@
 // The experimenter's window beside the participant's, on a virtual screen.
-#include "app/experimenter/console_experimenter.hpp"
+#include "app/experimenter/experimenter_desk.hpp"
+#include "app/experimenter/terminal_face.hpp"
 #include "app/participant/participant_window.hpp"
 #include "device/servo/servo_control.hpp"
 #include "engine/pictures/colour_image.hpp"
@@ -10,8 +11,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -23,6 +26,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 using Kind = session::ExperimenterRequest::Kind;
+using What = app::ExperimenterAction::What;
 
 constexpr const char* kTitle = "Touchtrial";
 constexpr const char* kConsoleTitle = "Touchtrial console";
@@ -51,10 +55,10 @@ session::SessionStatus stopped() {
   return now;
 }
 
-app::ParticipantWindowOptions options(app::ConsoleExperimenter& console) {
+app::ParticipantWindowOptions options(app::ExperimenterDesk& desk) {
   app::ParticipantWindowOptions all;
   all.size_px = {kParticipantWidth, 720};
-  all.console = &console;
+  all.console = &desk;
   return all;
 }
 
@@ -63,7 +67,7 @@ struct Room {
   /// \param place  of the console on a screen of this size
   explicit Room(const std::string& size = "2240x1080",
                 std::pair<int, int> place = {kParticipantWidth, 0})
-      : screen(VirtualScreen::open(size)), window(options(console)), corner(place) {
+      : screen(VirtualScreen::open(size)), window(options(desk)), corner(place) {
     window.see_pictures({"bark", "cloth"});
   }
 
@@ -96,23 +100,16 @@ struct Room {
   std::optional<session::ExperimenterRequest> request() {
     const auto give_up = steady_clock::now() + kPatience;
     while (steady_clock::now() < give_up) {
-      if (auto asked = console.request()) return asked;
+      if (auto asked = desk.request()) return asked;
       std::this_thread::sleep_for(milliseconds(5));
     }
     return std::nullopt;
   }
 
-  session::Experimenter nobody;
-  app::ConsoleExperimenter console{nobody};
+  app::ExperimenterDesk desk{true};
   std::unique_ptr<VirtualScreen> screen;
   app::ParticipantWindow window;
   std::pair<int, int> corner;  ///< of the console
-};
-
-/// Where the buttons are, in window units; found by the colour of the comfort stop.
-struct Buttons {
-  using Place = std::pair<int, int>;
-  Place pause, resume, comfort_stop, note, deviation, abort;
 };
 
 bool is_vermillion(const engine::Rgb& sample) {
@@ -140,11 +137,17 @@ std::pair<int, int> middle_of_vermillion(const engine::ColourImage& picture, boo
   return {(first + last) / 2, is_lowest ? y - 6 : y + 12};
 }
 
-Buttons buttons_of(const engine::ColourImage& picture) {
-  const auto [x, y] = middle_of_vermillion(picture, false);
-  const int left = picture.width() - x;
-  const int middle = picture.width() / 2;
-  return {{left, y}, {middle, y}, {x, y}, {left, y + 54}, {middle, y + 54}, {x, y + 54}};
+/// The middle of an action's button, below that of the comfort stop if it is in the second row.
+std::pair<int, int> button_of(const engine::ColourImage& picture, What what) {
+  constexpr int kColumns = 4;
+  constexpr int kMargin = 20;
+  constexpr int kGap = 10;
+  constexpr int kRow = 44 + kGap;
+  const int width = (picture.width() - 2 * kMargin - (kColumns - 1) * kGap) / kColumns;
+  const int index = static_cast<int>(what);
+  const int first_row = middle_of_vermillion(picture, false).second;
+  return {kMargin + width / 2 + index % kColumns * (width + kGap),
+          first_row + index / kColumns * kRow};
 }
 
 bool is(const std::optional<session::ExperimenterRequest>& request, Kind kind,
@@ -152,39 +155,95 @@ bool is(const std::optional<session::ExperimenterRequest>& request, Kind kind,
   return request && request->kind == kind && request->text == text && request->code == code;
 }
 
+/// What an action changes: what the session is told, and what the experimenter is asked.
+std::string effect_of(app::ExperimenterDesk& desk, What what, const std::function<void()>& act) {
+  desk.discard();
+  desk.show(status("paused"));  // the end of a pause ends what was asked before
+  if (what != What::resume) desk.show(status());
+  const std::string need = what == What::at_reset ? "put the arm at its place" : "";
+  static_cast<void>(desk.attend(need));
+  act();
+  std::string effect = std::to_string(static_cast<int>(desk.attend(need)));
+  while (const auto request = desk.request()) {
+    effect += " " + std::to_string(static_cast<int>(request->kind));
+  }
+  return effect + desk.view().question.text;
+}
+
+TEST_CASE("terminal and window offer every action, to the same effect") {
+  Room room;
+  std::string keys;
+  app::ExperimenterTerminal terminal;
+  terminal.key = [&]() -> std::optional<char> {
+    return keys.empty() ? std::nullopt : std::optional(std::exchange(keys, "").front());
+  };
+  terminal.write = [](const std::string&) {};
+  const app::TerminalFace face(room.desk, terminal);
+  room.run([&] {
+    room.desk.show(status());
+    const engine::ColourImage picture = room.window.console_picture();
+    std::set<std::string> effects;
+    for (const auto& [what, key, label] : app::kExperimenterActions) {
+      INFO(label);
+      const std::string effect =
+          effect_of(room.desk, what, [&, what = what] { room.desk.act(what); });
+      CHECK(effect_of(room.desk, what, [&, key = key] { keys = key; }) == effect);
+      CHECK(effect_of(room.desk, what, [&, what = what] {
+              static_cast<void>(room.window.console_picture());
+              room.click(button_of(picture, what));
+            }) == effect);
+      effects.insert(effect);
+    }
+    CHECK(effects.size() == app::kExperimenterActions.size());
+  });
+}
+
+TEST_CASE("the window answers the day sheet and spoken answers") {
+  Room room;
+  room.run([&] {
+    const std::vector<session::DaySheetItem> sheet{{"no-a", "A is there"}};
+    CHECK_FALSE(room.desk.day_sheet(sheet));
+    const engine::ColourImage picture = room.window.console_picture();
+    const auto [x, y] = button_of(picture, What::deviation);
+    constexpr int kFirstChoiceBelow = 90;
+    room.click({50, y + kFirstChoiceBelow});
+    CHECK(room.desk.day_sheet(sheet) == std::vector{session::Tick::done});
+  });
+}
+
 TEST_CASE("the console's buttons request what they say") {
   Room room;
   room.run([&] {
-    room.console.show(status());
-    const Buttons buttons = buttons_of(room.window.console_picture());
-    room.click(buttons.pause);
+    room.desk.show(status());
+    const engine::ColourImage picture = room.window.console_picture();
+    room.click(button_of(picture, What::pause));
     CHECK(is(room.request(), Kind::pause));
     room.type("d o o r Return");
     CHECK(is(room.request(), Kind::note, "pause: door"));
-    room.console.show(status("paused"));
+    room.desk.show(status("paused"));
     room.settle();
-    room.click(buttons.resume);
+    room.click(button_of(picture, What::resume));
     CHECK(is(room.request(), Kind::resume));
-    room.console.show(status());
-    room.click(buttons.comfort_stop);
+    room.desk.show(status());
+    room.click(button_of(picture, What::comfort_stop));
     CHECK(is(room.request(), Kind::comfort_stop));
-    room.click(buttons.note);
+    room.click(button_of(picture, What::note));
     room.type("h o t space 2 BackSpace 3 Return");
     CHECK(is(room.request(), Kind::note, "hot 3"));
-    room.click(buttons.deviation);
-    room.type("n o minus c u r t a i n Tab f e l l Return");
+    room.click(button_of(picture, What::deviation));
+    room.type("n o minus c u r t a i n Return f e l l Return");
     CHECK(is(room.request(), Kind::deviation, "fell", "no-curtain"));
-    CHECK_FALSE(room.console.request());
+    CHECK_FALSE(room.desk.request());
   });
 }
 
 TEST_CASE("the console lies below the participant's window where there is no room beside it") {
   Room room("1280x1200", {0, 720});
   room.run([&] {
-    room.console.show(status());
+    room.desk.show(status());
     const engine::ColourImage picture = room.window.console_picture();
     CHECK(picture.height() == 480);
-    room.click(buttons_of(picture).pause);
+    room.click(button_of(picture, What::pause));
     CHECK(is(room.request(), Kind::pause));
   });
 }
@@ -192,12 +251,14 @@ TEST_CASE("the console lies below the participant's window where there is no roo
 TEST_CASE("the console asks again before a session is aborted, and Enter does not do it") {
   Room room;
   room.run([&] {
-    room.console.show(status());
-    const Buttons buttons = buttons_of(room.window.console_picture());
-    room.click(buttons.abort);
+    room.desk.show(status());
+    const engine::ColourImage picture = room.window.console_picture();
+    room.click(button_of(picture, What::abort));
     room.type("i l l Return");
-    CHECK_FALSE(room.console.request());
+    CHECK_FALSE(room.desk.request());
     room.click(middle_of_vermillion(room.window.console_picture(), true));
+    CHECK_FALSE(room.desk.request());
+    room.type("i l l Return");
     CHECK(is(room.request(), Kind::abort, "ill"));
   });
 }
@@ -205,12 +266,12 @@ TEST_CASE("the console asks again before a session is aborted, and Enter does no
 TEST_CASE("keys over the console are the participant's, except while text is written") {
   Room room;
   room.run([&] {
-    room.console.show(status());
-    const Buttons buttons = buttons_of(room.window.console_picture());
+    room.desk.show(status());
+    const engine::ColourImage picture = room.window.console_picture();
     const session::AnswerStep answer{.trial = 7, .of = 25};
     CHECK_FALSE(room.window.attend(answer));
     CHECK(room.window.wait_until_shown(kPatience));
-    room.click(buttons.note);
+    room.click(button_of(picture, What::note));
     room.type("1 2 Return");
     CHECK(is(room.request(), Kind::note, "12"));
     for (int i = 0; i < 20; ++i) CHECK_FALSE(room.window.attend(answer));
@@ -226,9 +287,9 @@ TEST_CASE("keys over the console are the participant's, except while text is wri
 TEST_CASE("while a plane is on the space bar is a comfort stop even where a note is written") {
   Room room;
   room.run([&] {
-    room.console.show(status("exploring"));
-    const Buttons buttons = buttons_of(room.window.console_picture());
-    room.click(buttons.note);
+    room.desk.show(status("exploring"));
+    const engine::ColourImage picture = room.window.console_picture();
+    room.click(button_of(picture, What::note));
     room.type("h o t");
     room.window.show_exploring({0.2, 256, 256});
     CHECK(room.window.wait_until_shown(kPatience));
@@ -242,7 +303,7 @@ TEST_CASE("while a plane is on the space bar is a comfort stop even where a note
       std::this_thread::sleep_for(milliseconds(1));
     }
     CHECK(servo.comfort_stop_asked());
-    room.click(buttons.comfort_stop);
+    room.click(button_of(picture, What::comfort_stop));
     CHECK(is(room.request(), Kind::comfort_stop));
   });
 }
@@ -251,7 +312,7 @@ TEST_CASE("the console is the same to the last byte, whatever the participant se
   Room room;
   room.run([&] {
     std::optional<engine::ColourImage> first;
-    room.console.show(status());
+    room.desk.show(status());
     for (const int position : {0, 1}) {
       CHECK_FALSE(room.window.attend(session::FeedbackStep{0, position}));
       CHECK(room.window.wait_until_shown(kPatience));
@@ -267,11 +328,11 @@ TEST_CASE("the console shows the participant's stop until it is settled") {
   room.run([&] {
     session::SessionStatus plain = stopped();
     plain.participant_stopped = false;
-    room.console.show(plain);
+    room.desk.show(plain);
     const engine::ColourImage before = room.window.console_picture();
-    room.console.show(stopped());
+    room.desk.show(stopped());
     CHECK(room.window.console_picture() != before);
-    room.console.show(plain);
+    room.desk.show(plain);
     CHECK(room.window.console_picture() == before);
   });
 }
@@ -281,12 +342,12 @@ TEST_CASE("the console marks the levels of the hand at the plane, each another w
   Room room;
   room.run([&] {
     session::SessionStatus shown = status("exploring");
-    room.console.show(shown);
+    room.desk.show(shown);
     std::vector<engine::ColourImage> pictures = {room.window.console_picture()};
     for (const HandLevel force : {HandLevel::low, HandLevel::right, HandLevel::high}) {
       for (const HandLevel speed : {HandLevel::low, HandLevel::right, HandLevel::high}) {
         shown.hand = session::HandLevels{force, speed};
-        room.console.show(shown);
+        room.desk.show(shown);
         pictures.push_back(room.window.console_picture());
       }
     }
@@ -298,9 +359,8 @@ TEST_CASE("the console marks the levels of the hand at the plane, each another w
 
 TEST_CASE("a missing monitor of the console is named") {
   const auto screen = VirtualScreen::open();
-  session::Experimenter nobody;
-  app::ConsoleExperimenter console(nobody);
-  app::ParticipantWindowOptions wanted = options(console);
+  app::ExperimenterDesk desk(true);
+  app::ParticipantWindowOptions wanted = options(desk);
   wanted.console_monitor = 2;
   CHECK_THROWS_WITH(app::ParticipantWindow(wanted),
                     holds_text("no monitor 2") && holds_text("has 1"));
@@ -318,24 +378,29 @@ TEST_CASE("screenshots of every state of the console, for TOUCHTRIAL_SCREENSHOTS
   Room room;
   room.run([&] {
     keep(room.window.console_picture(), "console-empty");
-    room.console.show(status());
+    room.desk.show(status());
     keep(room.window.console_picture(), "console");
-    const Buttons buttons = buttons_of(room.window.console_picture());
+    const engine::ColourImage picture = room.window.console_picture();
     session::SessionStatus felt = status("exploring");
     felt.hand = session::HandLevels{session::HandLevel::right, session::HandLevel::low};
-    room.console.show(felt);
-    room.click(buttons.note);
+    room.desk.show(felt);
+    room.click(button_of(picture, What::note));
     room.type("R o o m space i s space h o t");
     keep(room.window.console_picture(), "console-note");
     room.type("Return");
-    room.click(buttons.deviation);
+    room.click(button_of(picture, What::deviation));
     keep(room.window.console_picture(), "console-deviation");
-    room.click(buttons.abort);
+    room.click(button_of(picture, What::abort));
     keep(room.window.console_picture(), "console-abort");
-    room.console.show(stopped());
+    room.desk.discard();
+    static_cast<void>(room.desk.attend("put the arm at its place"));
+    keep(room.window.console_picture(), "console-waiting");
+    static_cast<void>(room.desk.day_sheet({{"no-curtain", "The curtain hides hand and device"}}));
+    keep(room.window.console_picture(), "console-day-sheet");
+    room.desk.show(stopped());
     keep(room.window.console_picture(), "console-stopped");
     room.window.show_exploring({0.2, 256, 256});
-    room.console.show(felt);
+    room.desk.show(felt);
     keep(room.window.console_picture(), "console-exploring");
     room.screen->resize_window(kConsoleTitle, 1280, 720);
     room.settle();

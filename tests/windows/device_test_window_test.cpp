@@ -42,6 +42,7 @@ TEST_CASE("device test in a window that a signal ends exits as a shell expects")
     INFO(program.output());
     REQUIRE(program.listen(std::chrono::milliseconds(20)));
   }
+  REQUIRE(program.says("watch  "));  // the servo runs
   program.send_signal(signal);
   const int code = program.finish();
   const std::string& output = program.output();

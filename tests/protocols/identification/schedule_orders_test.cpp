@@ -210,7 +210,8 @@ TEST_CASE("roved gains are uniform below the pack's, and tell nothing of class a
   std::map<int, int> by_gain;
   std::map<std::tuple<int, int, bool>, int> by_stimulus_and_half;
   for (int enrolment = 1; enrolment <= 200; ++enrolment) {
-    for (const design::Presentation& shown : schedule_of(study, enrolment).presentations) {
+    const auto presentations = schedule_of(study, enrolment).presentations;
+    for (const design::Presentation& shown : presentations) {
       if (shown.kind == design::PresentationKind::catch_trial) {
         CHECK(shown.gain_db == 0.0);
         continue;
