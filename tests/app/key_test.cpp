@@ -100,18 +100,10 @@ TEST_CASE("key check names the station whose file does not hold") {
 
 TEST_CASE("key check counts the sessions of a database that the key opens") {
   const KeyedStudy study;
-  REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
-  REQUIRE(study
-              .run({"withdraw", study.in("a.db"), "--participant", "P002", "--reason", "asked",
-                    "--erase", "--yes"})
-              .exit_code == 0);
-  REQUIRE(study
-              .run({"withdraw", study.in("a.db"), "--participant", "P003", "--reason", "asked",
-                    "--keep-data", "--yes"})
-              .exit_code == 0);
-  const ProgramResult checked = study.key({"check", study.in("a.db")});
-  INFO(checked.output << checked.errors);
-  CHECK(checked.exit_code == 0);
+  succeeded(study.simulate("a.db", {"--keep-blind"}));
+  study.done("withdraw @a.db --participant P002 --reason asked --erase --yes");
+  study.done("withdraw @a.db --participant P003 --reason asked --keep-data --yes");
+  const ProgramResult checked = study.done("key check @a.db");
   CHECK_THAT(checked.output,
              holds_text("opens 3 sessions (1 of people who withdrew and left their data) and 4 "
                         "safety records; 1 erased, which nothing opens"));
@@ -119,12 +111,11 @@ TEST_CASE("key check counts the sessions of a database that the key opens") {
     SQLite::Database database(study.in("a.db"), SQLite::OPEN_READWRITE);
     database.exec("UPDATE safety_keys SET wrapped = zeroblob(length(wrapped)) WHERE session = 1");
   }
-  const ProgramResult torn = study.key({"check", study.in("a.db"), "--json"});
+  const ProgramResult torn = study.type("key check @a.db --json");
   CHECK(torn.exit_code == 3);
   CHECK(json::parse(torn.output).at("safety") == 3);
   CHECK_THAT(torn.output, holds_text("session 1: the safety key does not open"));
-  check_key_refused(study.key({"check", study.in("a.db"), "--key", study.in("cloths.key")}), 3,
-                    {"is not the key of"});
+  check_refused(study.type("key check @a.db --key @cloths.key"), 3, {"is not the key of"});
 }
 
 TEST_CASE("a key that was lost is made again from its printed sheet") {
