@@ -146,7 +146,7 @@ class FocusWatch {
   [[nodiscard]] std::string alert() const {
     constexpr std::chrono::seconds kAlarming{1};
     if (window_.out_of_reach() < kAlarming) return "";
-    return "another window has the keyboard: the participant cannot stop; click on their window";
+    return "another window has the keyboard; click on the participant's window";
   }
 
  private:
