@@ -536,7 +536,7 @@ int conclude_session(const RunOptions& options, int session, const session::Sess
     trouble = one_line(options.database.string()) + " was changed while the session ran";
   }
   if (!trouble.empty()) {
-    throw StoreError(fmt::format("{}, and lacks session {} of participant {}: {}", trouble, session,
+    throw StoreError(fmt::format("{}, and does not hold session {} of participant {} to its end; {}", trouble, session,
                                  options.participant, rescue(options.database, store)));
   }
   const bool is_complete =
