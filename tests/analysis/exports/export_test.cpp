@@ -147,7 +147,7 @@ TEST_CASE("Before unblinding an export has no word of what was presented or answ
   }
   const std::vector<CsvRow> rows = rows_of(out / "trials.csv");
   REQUIRE(rows.size() == 48);
-  CHECK(rows[0].size() == 19);
+  CHECK(rows[0].size() == 20);
   for (const char* column : {"confidence", "reaction_time_s", "from_contact_s", "presented_at_s",
                              "first_contact_s", "samples"}) {
     INFO(column);
