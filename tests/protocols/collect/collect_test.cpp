@@ -4,6 +4,7 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 using namespace touchtrial;
 using namespace touchtrial::collect;
@@ -242,16 +243,19 @@ TEST_CASE("a place that was taken again at another station is no clash, whatever
 
 TEST_CASE("two stations that each replaced one of a pair are merged, whoever came first") {
   Lab lab;
-  const auto replace = [](StudyStore& store, int session, const char* by) {
-    store.exclude(session, kUtc + minutes(50), "fell asleep");
-    store.replace(session, by, kUtc + minutes(50), "excluded");
+  const auto merged_replaced = [&](const fs::path& a, const fs::path& b) {
+    for (const auto& [path, session, by] : {std::tuple(a, 1, "A03"), {b, 2, "B03"}}) {
+      Lab::at(path, [&](StudyStore& store) {
+        store.exclude(session, kUtc + minutes(50), "fell asleep");
+        store.replace(session, by, kUtc + minutes(50), "excluded");
+      });
+    }
+    return merged(lab, {a, b});
   };
   SECTION("by enrolment number") {
     const fs::path a = lab.station("A.db", {{"A01", 1, minutes(10)}, {"A02", 2, minutes(30)}});
     const fs::path b = lab.station("B.db", {{"B01", 1, minutes(20)}, {"B02", 2, minutes(40)}});
-    Lab::at(a, [&](StudyStore& store) { replace(store, 1, "A03"); });
-    Lab::at(b, [&](StudyStore& store) { replace(store, 2, "B03"); });
-    const StudyStore store = merged(lab, {a, b});
+    const StudyStore store = merged_replaced(a, b);
     CHECK(participants_in(store) == Names{"A01", "A02", "B01", "B02"});
     CHECK(store.sessions().at(0).replaced_by == "A03");
     CHECK(store.sessions().at(3).replaced_by == "B03");
@@ -263,9 +267,7 @@ TEST_CASE("two stations that each replaced one of a pair are merged, whoever cam
   SECTION("by participant id") {
     const fs::path a = lab.station("A.db", {{"P1", 1, minutes(10)}, {"P2", 2, minutes(30)}});
     const fs::path b = lab.station("B.db", {{"P1", 5, minutes(20)}, {"P2", 6, minutes(40)}});
-    Lab::at(a, [&](StudyStore& store) { replace(store, 1, "A03"); });
-    Lab::at(b, [&](StudyStore& store) { replace(store, 2, "B03"); });
-    const StudyStore store = merged(lab, {a, b});
+    const StudyStore store = merged_replaced(a, b);
     CHECK(participants_in(store) == Names{"P1", "P2", "P1", "P2"});
     CHECK(store.session_of("P1").value().enrolment == 5);
     CHECK(store.session_of("P2").value().enrolment == 2);
@@ -276,9 +278,7 @@ TEST_CASE("two stations that each replaced one of a pair are merged, whoever cam
     simulated.simulated = true;
     const fs::path a = lab.station("A.db", {{"A01", 1, {}}, {"A02", 2, {}}}, simulated);
     const fs::path b = lab.station("B.db", {{"B01", 1, {}}, {"B02", 2, {}}}, simulated);
-    Lab::at(a, [&](StudyStore& store) { replace(store, 1, "A03"); });
-    Lab::at(b, [&](StudyStore& store) { replace(store, 2, "B03"); });
-    const StudyStore store = merged(lab, {a, b});
+    const StudyStore store = merged_replaced(a, b);
     CHECK(store.sessions().size() == 4);
     CHECK_FALSE(store.first_fault());
     merge({b, a}, lab.file("again.db"));
@@ -304,23 +304,16 @@ TEST_CASE("the successor of one of a pair collides with the other again") {
                      b.string() + " and by session 3 of " + a.string()));
 }
 
-TEST_CASE("the collected study is closed when every station's is") {
+TEST_CASE("the collected study is closed, and then unblinded, when every station's is") {
   Lab lab;
   const auto [a, b] = lab.two_stations();
   Lab::at(a, [](StudyStore& store) { store.close_study(kUtc + minutes(100)); });
-  CHECK_FALSE(merged(lab, {a, b}, "one.db").state().closed);
+  CHECK_FALSE(merged(lab, {a, b}, "open.db").state().closed);
   Lab::at(b, [](StudyStore& store) { store.close_study(kUtc + minutes(90)); });
-  const StudyStore store = merged(lab, {a, b}, "both.db");
-  CHECK(store.state().closed);
-  CHECK_FALSE(store.state().unblinded);
-  CHECK(store.last_event(0).value().at == kUtc + minutes(100));
-}
-
-TEST_CASE("the collected study is unblinded when every station's is") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  for (const fs::path& path : {a, b}) {
-    Lab::at(path, [](StudyStore& store) { store.close_study(kUtc); });
+  {
+    const StudyStore store = merged(lab, {a, b}, "closed.db");
+    CHECK(store.state().closed);
+    CHECK(store.last_event(0).value().at == kUtc + minutes(100));
   }
   Lab::at(a, [](StudyStore& store) { store.unblind(kUtc, "done", false); });
   CHECK_FALSE(merged(lab, {a, b}, "one.db").state().unblinded);

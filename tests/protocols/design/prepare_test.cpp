@@ -20,6 +20,21 @@ namespace touchtrial {
 
 using nlohmann::json;
 
+namespace {
+
+/// The field that the engine makes of an image and a method is the one in the pack.
+void check_field(const Laboratory& laboratory, const engine::ExtractionOptions& method,
+                 std::uint64_t image, const std::string& code) {
+  const GreyImage grey = engine::read_grey_image(laboratory.image(image));
+  const auto texture = engine::extract_texture<double>(grey, method).texture;
+  const engine::TextureField expected =
+      engine::make_texture_field(texture, laboratory.key().study.rendering);
+  const engine::MappedField field = engine::Pack(laboratory.pack()).map(code);
+  CHECK(std::ranges::equal(field.view().heights, expected.view().heights));
+}
+
+}  // namespace
+
 TEST_CASE("packs and keys lie beside the study file, or where one says") {
   CHECK(design::default_pack_place("dir/x.json").pack == "dir/x.pack");
   CHECK(design::default_pack_place("dir/x.json").key == "dir/x.key");
@@ -65,11 +80,7 @@ TEST_CASE("a field is what the engine makes of the image") {
   const Laboratory laboratory;
   static_cast<void>(laboratory.prepare());
   const design::StudyKey key = laboratory.key();
-  const GreyImage image = engine::read_grey_image(laboratory.image(1));
-  const auto texture = engine::extract_texture<double>(image, key.study.methods[0]).texture;
-  const engine::TextureField expected = engine::make_texture_field(texture, key.study.rendering);
-  const engine::MappedField field = engine::Pack(laboratory.pack()).map(key.stimuli[1].code);
-  CHECK(std::ranges::equal(field.view().heights, expected.view().heights));
+  check_field(laboratory, key.study.methods[0], 1, key.stimuli[1].code);
 }
 
 TEST_CASE("a second prepare builds nothing and writes nothing") {
@@ -238,17 +249,14 @@ TEST_CASE("the pack of another key is not overwritten, unless it is simulated") 
   CHECK(laboratory.files().size() == 3 + 2);
 }
 
-TEST_CASE("a missing image is named by its place in the study and its path") {
+TEST_CASE("an image that is missing or cannot be decoded is named by its place in the study") {
   Laboratory laboratory;
   laboratory.document["classes"][2]["images"].push_back("absent.png");
   const auto what = message_of<StudyError>([&] { return laboratory.prepare(); });
   CHECK(what.find("study.json: /classes/2/images/1: ") == 0);
   CHECK(what.find((laboratory.folder.path() / "absent.png").string()) != std::string::npos);
-}
-
-TEST_CASE("an image that cannot be decoded is named by its place in the study") {
-  const Laboratory laboratory;
   replace_file(laboratory.image(1), std::string("not an image"));
+  laboratory.document["classes"].erase(2);
   CHECK(refuses<StudyError>([&] { return laboratory.prepare(); },
                             "study.json: /classes/1/images/0: "));
 }
@@ -311,14 +319,10 @@ TEST_CASE("a comparison prepares every method, and equalised, all have the same 
   CHECK(report.stimuli[0].gains.tangential_n != report.stimuli[1].gains.tangential_n);
 }
 
-TEST_CASE("there is no warning of the reference grey where it has no effect") {
+TEST_CASE("settings that are probably mistakes cause a warning where they have an effect") {
   Laboratory laboratory;
   laboratory.document["rendering"] = {{"model", "surface"}, {"reference_grey", 0}};
   CHECK(laboratory.prepare().warnings.empty());
-}
-
-TEST_CASE("settings that are probably mistakes cause a warning") {
-  Laboratory laboratory;
   laboratory.document["rendering"] = {{"gains", {{"tangential_n", 5}, {"normal_n", 5}}},
                                       {"equalise", "rms"},
                                       {"reference_grey", 0}};
@@ -378,12 +382,7 @@ TEST_CASE("the field of a flat image is what an extraction would give") {
     laboratory.document["methods"] = {{{"name", method}}};
     static_cast<void>(laboratory.prepare());
     const design::StudyKey key = laboratory.key();
-    const auto texture = engine::extract_texture<double>(
-                             engine::read_grey_image(laboratory.image(0)), key.study.methods[0])
-                             .texture;
-    const engine::TextureField expected = engine::make_texture_field(texture, key.study.rendering);
-    const engine::MappedField field = engine::Pack(laboratory.pack()).map(key.stimuli[0].code);
-    CHECK(std::ranges::equal(field.view().heights, expected.view().heights));
+    check_field(laboratory, key.study.methods[0], 0, key.stimuli[0].code);
   }
 }
 
@@ -396,13 +395,8 @@ TEST_CASE("a method's control is made of its texture, and differs by image") {
                                     {{"name", "adaptive"}, {"control", "phase-scrambled"}}};
   static_cast<void>(laboratory.prepare());
   const design::StudyKey key = laboratory.key();
-  const GreyImage image = engine::read_grey_image(laboratory.image(0));
-  const engine::ExtractionOptions control = design::method_of(key.study, {0, 0, 1});
-  const auto texture = engine::extract_texture<double>(image, control).texture;
-  const engine::TextureField expected = engine::make_texture_field(texture, key.study.rendering);
+  check_field(laboratory, design::method_of(key.study, {0, 0, 1}), 0, key.code_of({0, 0, 1}));
   const engine::Pack pack(laboratory.pack());
-  const engine::MappedField field = pack.map(key.code_of({0, 0, 1}));
-  CHECK(std::ranges::equal(field.view().heights, expected.view().heights));
   CHECK(pack.entry(key.code_of({0, 0, 1})).checksum != pack.entry(key.code_of({2, 0, 1})).checksum);
   CHECK(pack.entry(key.code_of({0, 0, 0})).checksum == pack.entry(key.code_of({2, 0, 0})).checksum);
   const design::PrepareReport again = laboratory.prepare();
@@ -428,22 +422,17 @@ TEST_CASE("large images, which are prepared one at a time, give the pack of smal
   CHECK(report.stimuli[0].statistics.tangential_rms_n > 0.0);
 }
 
-TEST_CASE("statistics are computed only if they are asked for") {
-  const Laboratory laboratory;
-  const design::PrepareReport report =
-      design::prepare_pack(laboratory.key(), laboratory.pack(), {}, {.statistics = false});
-  CHECK(report.stimuli[0].statistics.tangential_rms_n == 0.0);
-}
-
-TEST_CASE("progress counts every stimulus once") {
+TEST_CASE("progress counts every stimulus once, and statistics are computed only if asked for") {
   const Laboratory laboratory;
   std::vector<int> counts;
   int total = 0;
-  static_cast<void>(
-      design::prepare_pack(laboratory.key(), laboratory.pack(), [&](int done, int of) {
-        counts.push_back(done);
-        total = of;
-      }));
+  const auto progress = [&](int done, int of) {
+    counts.push_back(done);
+    total = of;
+  };
+  const design::PrepareReport report =
+      design::prepare_pack(laboratory.key(), laboratory.pack(), progress, {.statistics = false});
+  CHECK(report.stimuli[0].statistics.tangential_rms_n == 0.0);
   CHECK(counts == std::vector<int>{1, 2, 3});
   CHECK(total == 3);
 }

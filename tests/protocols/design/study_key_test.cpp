@@ -7,7 +7,6 @@
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
-#include <fstream>
 #include <set>
 
 #include <sys/stat.h>
@@ -29,12 +28,6 @@ std::string code_of_image(const design::StudyKey& key, const std::string& image,
     if (wanted && stimulus.method == method) return code;
   }
   return "no stimulus";
-}
-
-/// Without waiting for the disk, for tests that write often.
-void overwrite(const std::filesystem::path& path, const Bytes& content) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << text_of(content);
 }
 
 bool is_hex(const std::string& text, std::size_t digits) {
@@ -151,33 +144,6 @@ TEST_CASE("a key moved together with its study and pack finds them at the new pl
   const design::StudyKey moved = design::load_study_key(folder.path() / "new" / "small.key");
   CHECK(moved.pack_folder == std::filesystem::canonical(folder.path()) / "new" / "small.pack");
   CHECK(moved.study.folder == std::filesystem::canonical(folder.path()) / "new");
-}
-
-TEST_CASE("any altered byte of a key file is found") {
-  const TempFolder folder;
-  const auto path = folder.path() / "small.key";
-  design::save_study_key(path, key_for(minimal_study()));
-  const Bytes content = read_file(path);
-  for (std::size_t i = 0; i < content.size(); ++i) {
-    Bytes altered = content;
-    altered[i] = static_cast<std::uint8_t>(altered[i] ^ 1U);
-    overwrite(path, altered);
-    INFO("byte " << i);
-    CHECK_THROWS_AS(design::load_study_key(path), FileError);
-  }
-}
-
-TEST_CASE("a key file that is cut or extended is refused") {
-  const TempFolder folder;
-  const auto path = folder.path() / "small.key";
-  design::save_study_key(path, key_for(minimal_study()));
-  const std::string content = text_of(read_file(path));
-  for (const std::string& damaged :
-       {content.substr(0, content.size() / 2), content.substr(0, content.size() - 1),
-        content + "\n", std::string(), std::string("[[[[")}) {
-    replace_file(path, damaged, FileMode::owner_only);
-    CHECK_THROWS_AS(design::load_study_key(path), FileError);
-  }
 }
 
 TEST_CASE("a file that is no key, and a key of another version, are told apart from damage") {

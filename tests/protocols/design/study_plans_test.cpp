@@ -68,69 +68,64 @@ TEST_CASE("a key gives the plans back as they were sealed") {
   CHECK(design::study_seal(loaded) == design::study_seal(key));
 }
 
-TEST_CASE("nobody practises with what is in the study, nor with one texture under two names") {
-  json document = planned_study();
-  document["practice"]["classes"][1]["label"] = "c2";
-  CHECK(refused(document, "/practice/classes/1/label: \"c2\" is a class of the study"));
-  document["practice"]["classes"][1]["label"] = "C2";
-  CHECK(refused(document, "/practice/classes/1/label: \"C2\" is a class of the study"));
-  document = planned_study();
-  document["practice"]["classes"][0]["images"] = {"x/../c1_0.png"};
-  CHECK(refused(document, "/practice/classes/0/images/0: \"x/../c1_0.png\" is an image of the"));
-  document["practice"]["classes"][0]["images"] = {"velvet.png"};
-  CHECK(refused(document, "/practice/classes/1/images/0: \"velvet.png\" is the image of another"));
+TEST_CASE("what nobody can practise, read or be asked is refused at its place") {
+  struct Refused {
+    const char* place;
+    json value;  ///< null: the place is erased
+    const char* words;
+  };
+  const std::string long_text(4001, 'x');
+  const std::vector<Refused> all = {
+      {"/practice/classes/1/label", "c2",
+       "/practice/classes/1/label: \"c2\" is a class of the study"},
+      {"/practice/classes/1/label", "C2",
+       "/practice/classes/1/label: \"C2\" is a class of the study"},
+      {"/practice/classes/0/images",
+       {"x/../c1_0.png"},
+       "/practice/classes/0/images/0: \"x/../c1_0.png\" is an image of the"},
+      {"/practice/classes/0/images",
+       {"velvet.png"},
+       "/practice/classes/1/images/0: \"velvet.png\" is the image of another"},
+      {"/practice", {}, "/trials/practice: is 5, but the study has no textures to practise"},
+      {"/practice/criterion", 6,
+       "/practice/criterion: is 6, more than the practice trials of a round, 5"},
+      {"/session/handednes", true,
+       "/session/handednes: is not a known key; did you mean \"handedness\"?"},
+      {"/session/sight", "curtains", "did you mean \"curtain\"?"},
+      {"/registration/hypotesis", "", "did you mean \"hypothesis\"?"},
+      {"/session/language", "de", "/session/instructions/de: is missing, the study's language"},
+      {"/session/instructions/en/0", "", "is empty; write a page"},
+      {"/session/instructions/en/0", "a\tb", "control character"},
+      {"/session/instructions/en/0", long_text, "has 4001 bytes"},
+      {"/session/day_sheet", {"a", "a"}, "/session/day_sheet/1: \"a\" is there"},
+      {"/session/day_sheet", {"a\nb"}, "control character"},
+      {"/session/confidence", 1, "/session/confidence: is 1, must be 0"},
+      {"/session/closing_questions/0/id", "a b", "must have 1 to 64"},
+      {"/session/closing_questions/0/text/en", "", "is empty"},
+      {"/registration/exclusions", long_text, "at most 4000"}};
+  for (const auto& [place, value, words] : all) {
+    json document = planned_study();
+    const json::json_pointer at(place);
+    if (value.is_null()) {
+      document[at.parent_pointer()].erase(at.back());
+    } else {
+      document[at] = value;
+    }
+    INFO(place << " = " << value.dump());
+    CHECK(refused(document, words));
+  }
 }
 
-TEST_CASE("practice without textures, or with a criterion out of reach, is refused") {
+TEST_CASE("a criterion without practice, and a language without texts of the study, are accepted") {
   json document = planned_study();
-  document.erase("practice");
-  CHECK(refused(document, "/trials/practice: is 5, but the study has no textures to practise"));
-  document = planned_study();
   document["practice"]["criterion"] = 6;
-  CHECK(
-      refused(document, "/practice/criterion: is 6, more than the practice trials of a round, 5"));
   document["trials"]["practice"] = 0;
   CHECK(parsed(document).practice.criterion == 6);
-}
-
-TEST_CASE("misspelt keys of the plans are refused with the nearest") {
-  json document = planned_study();
-  document["session"]["handednes"] = true;
-  CHECK(refused(document, "/session/handednes: is not a known key; did you mean \"handedness\"?"));
-  document = planned_study();
-  document["session"]["sight"] = "curtains";
-  CHECK(refused(document, "did you mean \"curtain\"?"));
-  document = planned_study();
-  document["registration"]["hypotesis"] = "";
-  CHECK(refused(document, "did you mean \"hypothesis\"?"));
-}
-
-TEST_CASE("a text that the study's language lacks is refused") {
-  json document = planned_study();
   document["session"]["language"] = "de";
-  CHECK(refused(document, "/session/instructions/de: is missing, the study's language"));
   document["session"].erase("instructions");
   CHECK(refused(document, "/session/closing_questions/0/text/de: is missing"));
   document["session"].erase("closing_questions");
   CHECK(parsed(document).session.language == "de");
-}
-
-TEST_CASE("texts that a screen or a table could not hold are refused") {
-  json document = planned_study();
-  const auto with = [&](const std::string& place, const json& value) {
-    json changed = document;
-    changed[json::json_pointer(place)] = value;
-    return changed;
-  };
-  CHECK(refused(with("/session/instructions/en/0", ""), "is empty; write a page"));
-  CHECK(refused(with("/session/instructions/en/0", "a\tb"), "control character"));
-  CHECK(refused(with("/session/instructions/en/0", std::string(4001, 'x')), "has 4001 bytes"));
-  CHECK(refused(with("/session/day_sheet", {"a", "a"}), "/session/day_sheet/1: \"a\" is there"));
-  CHECK(refused(with("/session/day_sheet", {"a\nb"}), "control character"));
-  CHECK(refused(with("/session/confidence", 1), "/session/confidence: is 1, must be 0"));
-  CHECK(refused(with("/session/closing_questions/0/id", "a b"), "must have 1 to 64"));
-  CHECK(refused(with("/session/closing_questions/0/text/en", ""), "is empty"));
-  CHECK(refused(with("/registration/exclusions", std::string(4001, 'x')), "at most 4000"));
 }
 
 TEST_CASE("bounds belong to questions for a number, and leave one between them") {

@@ -9,6 +9,8 @@
 #include "support/temp_folder.hpp"
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -132,39 +134,96 @@ TEST_CASE("a classification presents its first method alone, a comparison all") 
   CHECK(parsed(document).scored_trials() == 4 * 5);
 }
 
-TEST_CASE("a misspelt key is refused with its place and the nearest known one") {
-  json document = minimal_study();
-  document["rendering"]["pich_mm"] = 0.2;
-  CHECK(refusal(document) ==
-        "study.json: /rendering/pich_mm: is not a known key; did you mean \"pitch_mm\"?");
-  document = minimal_study();
-  document["methods"][0]["Radius"] = 2;
-  CHECK(refusal(document) ==
-        "study.json: /methods/0/Radius: is not a known key; did you mean \"radius\"?");
+TEST_CASE("what a study cannot be is refused at its place, with what helps") {
+  const json pair = comparison_of(2);
+  struct Refused {
+    json study;
+    const char* place;
+    json value;  ///< null: the place is erased
+    const char* words;
+  };
+  const std::vector<Refused> all = {
+      {minimal_study(), "/rendering/pich_mm", 0.2,
+       "/rendering/pich_mm: is not a known key; did you mean \"pitch_mm\"?"},
+      {minimal_study(), "/methods/0/Radius", 2,
+       "/methods/0/Radius: is not a known key; did you mean \"radius\"?"},
+      {minimal_study(), "/classes/1/colour~1depth~0", 1,
+       "/classes/1/colour~1depth~0: is not a known key; known here: label, images"},
+      {minimal_study(), "/trials/order", "shufled",
+       "/trials/order: \"shufled\" is not known to this version; did you mean \"shuffled\"? "
+       "possible: \"shuffled\", \"de-bruijn\", \"uniform\", \"williams\""},
+      {minimal_study(), "/protocol", {}, "/protocol: is missing; add it"},
+      {minimal_study(), "/classes/0/images", {}, "/classes/0/images: is missing; add it"},
+      {minimal_study(), "/methods/0/lambda", 0.01,
+       "/methods/0/lambda: belongs to the method tv-gabor, not to adaptive; remove it"},
+      {minimal_study(),
+       "/methods/0",
+       {{"name", "tv-gabor"}, {"radius", 2}},
+       "belongs to the methods adaptive, fixed and median, not to tv-gabor"},
+      {minimal_study(),
+       "/rendering",
+       {{"model", "surface"}, {"gains", {{"normal_n", 0.01}}}},
+       "/rendering/gains/normal_n: is not a known key"},
+      {minimal_study(),
+       "/rendering",
+       {{"model", "paper"}, {"gains", {{"height_mm", 0.01}}}},
+       "/rendering/gains/height_mm: is not a known key"},
+      {minimal_study(),
+       "/rendering",
+       {{"model", "surface"}, {"gains", json::object()}},
+       "/rendering/gains/height_mm: "},
+      {minimal_study(),
+       "/rendering",
+       {{"model", "surface"}, {"friction", -0.1}},
+       "/rendering/friction: "},
+      {minimal_study(), "/rendering/friction", 0.3,
+       "/rendering/friction: must be 0: the rendering model paper"},
+      {minimal_study(), "/blinding", "single",
+       "/blinding: \"single\" is not known to this version"},
+      {minimal_study(), "/protocol", "comparison",
+       "/methods: has 1 entry; the protocol comparison needs at least 2"},
+      {pair,
+       "/methods/1",
+       {{"name", "adaptive"}, {"radius", 3}},
+       "/methods/1: \"adaptive\" is there twice; list it once, or give one of the two another "
+       "label"},
+      {pair,
+       "/methods/1",
+       {{"name", "adaptive"}, {"label", "Adaptive"}},
+       "/methods/1: \"Adaptive\" and \"adaptive\" differ by capitals"},
+      {minimal_study(),
+       "/classes/0/images",
+       {"a.png", "b.png", "a.png"},
+       "/classes/0/images/2: \"a.png\" is there twice"},
+      {minimal_study(), "/classes/0/images", {""}, "/classes/0/images/0: is empty"},
+      {study_of(64), "/trials/repeats", 1000,
+       "/trials/repeats: makes 64000 trials for a participant"},
+      {comparison_of(6, 1000), "/seed", 1, "/classes: has 6000 images for 2 methods"}};
+  for (auto [study, place, value, words] : all) {
+    const json::json_pointer at(place);
+    if (value.is_null()) {
+      study[at.parent_pointer()].erase(at.back());
+    } else {
+      study[at] = value;
+    }
+    INFO(place << " = " << value.dump());
+    CHECK_THAT(refusal(study), holds_text("study.json: ") && holds_text(words));
+  }
 }
 
-TEST_CASE("a key that resembles none is refused with those that exist") {
-  json document = minimal_study();
-  document["classes"][1]["colour/depth~"] = 1;
-  CHECK(refusal(document) ==
-        "study.json: /classes/1/colour~1depth~0: is not a known key; known here: label, images");
-}
-
-TEST_CASE("a misspelt value is refused with the nearest and all possible ones") {
-  json document = minimal_study();
-  document["trials"]["order"] = "shufled";
-  CHECK(refusal(document) ==
-        "study.json: /trials/order: \"shufled\" is not known to this version; did you mean "
-        "\"shuffled\"? possible: \"shuffled\", \"de-bruijn\", \"uniform\", \"williams\"");
-}
-
-TEST_CASE("a missing key is named by its place") {
-  json document = minimal_study();
-  document.erase("protocol");
-  CHECK(refusal(document) == "study.json: /protocol: is missing; add it");
-  document = minimal_study();
-  document["classes"][0].erase("images");
-  CHECK(refusal(document) == "study.json: /classes/0/images: is missing; add it");
+TEST_CASE("malformed or absurdly nested JSON is refused with line and column, unharmed") {
+  const std::vector<std::pair<std::string, const char*>> texts = {
+      {"{\n  \"study\": tru\n}", "study.json: line 2, column 15: "},
+      {"", "study.json: line 1, column 1: "},
+      {"{\"a\": 1,}", "study.json: line 1, column 9: "},
+      {"{} no", "line 1, column 5: "},
+      {"{\"a\": \"\xff\"}", "ill-formed UTF-8"},
+      {"[]", "study.json: /: must be an object, not a list"},
+      {std::string(1'000'000, '['), "is nested too deeply"}};
+  for (const auto& [text, words] : texts) {
+    INFO(text.substr(0, 40));
+    CHECK_THAT(refusal_of_text(text), holds_text(words));
+  }
 }
 
 TEST_CASE("every method is read with its options, and written again as it was read") {
@@ -223,16 +282,6 @@ TEST_CASE("a method and its control, or two settings of one method, are told apa
   contains(refusal(document), "/methods/2/label: \"a b\" must have 1 to 64 of the characters");
 }
 
-TEST_CASE("a key that belongs to another method is refused with the reason") {
-  json document = minimal_study();
-  document["methods"][0]["lambda"] = 0.01;
-  CHECK(refusal(document) ==
-        "study.json: /methods/0/lambda: belongs to the method tv-gabor, not to adaptive; remove "
-        "it");
-  document["methods"] = {{{"name", "tv-gabor"}, {"radius", 2}}};
-  contains(refusal(document), "belongs to the methods adaptive, fixed and median, not to tv-gabor");
-}
-
 TEST_CASE("a study with the surface model has its own gains and friction") {
   json document = minimal_study();
   document["rendering"] = {
@@ -243,18 +292,6 @@ TEST_CASE("a study with the surface model has its own gains and friction") {
   CHECK(parsed(document).rendering == expected);
   document["rendering"]["gains"] = "budget";
   CHECK_FALSE(parsed(document).rendering.gains);
-}
-
-TEST_CASE("the gains of one model are refused for the other, with their place") {
-  json document = minimal_study();
-  document["rendering"] = {{"model", "surface"}, {"gains", {{"normal_n", 0.01}}}};
-  contains(refusal(document), "/rendering/gains/normal_n: is not a known key");
-  document["rendering"] = {{"model", "paper"}, {"gains", {{"height_mm", 0.01}}}};
-  contains(refusal(document), "/rendering/gains/height_mm: is not a known key");
-  document["rendering"] = {{"model", "surface"}, {"gains", json::object()}};
-  contains(refusal(document), "/rendering/gains/height_mm: ");
-  document["rendering"] = {{"model", "surface"}, {"friction", -0.1}};
-  contains(refusal(document), "/rendering/friction: ");
 }
 
 TEST_CASE("a touchdown ramp is read as it was written, and refused beside the surface model") {
@@ -269,35 +306,6 @@ TEST_CASE("a touchdown ramp is read as it was written, and refused beside the su
   contains(refusal(document), "/rendering/touchdown_ramp_n: ");
   document["rendering"] = {{"model", "surface"}, {"touchdown_ramp_n", 0.25}};
   contains(refusal(document), "/rendering/touchdown_ramp_n: must be 0");
-}
-
-TEST_CASE("what this version cannot do is refused with a plain message") {
-  json document = minimal_study();
-  document["rendering"]["friction"] = 0.3;
-  contains(refusal(document), "/rendering/friction: must be 0: the rendering model paper");
-  document = minimal_study();
-  document["blinding"] = "single";
-  contains(refusal(document), "/blinding: \"single\" is not known to this version");
-}
-
-TEST_CASE("a comparison of one method is refused") {
-  json document = minimal_study();
-  document["protocol"] = "comparison";
-  contains(refusal(document), "/methods: has 1 entry; the protocol comparison needs at least 2");
-}
-
-TEST_CASE("a method listed twice is refused") {
-  json document = comparison_of(2);
-  document["methods"][1] = {{"name", "adaptive"}, {"radius", 3}};
-  CHECK(refusal(document) ==
-        "study.json: /methods/1: \"adaptive\" is there twice; list it once, or "
-        "give one of the two another label");
-}
-
-TEST_CASE("labels of methods that some file systems could not tell apart are refused") {
-  json document = comparison_of(2);
-  document["methods"][1] = {{"name", "adaptive"}, {"label", "Adaptive"}};
-  contains(refusal(document), "/methods/1: \"Adaptive\" and \"adaptive\" differ by capitals");
 }
 
 TEST_CASE("a study sets its validity rule and the touch before an answer") {
@@ -332,14 +340,6 @@ TEST_CASE("labels that tables could not tell apart or print are refused") {
             .empty());
 }
 
-TEST_CASE("an image listed twice in a class, or without a name, is refused") {
-  json document = minimal_study();
-  document["classes"][0]["images"] = {"a.png", "b.png", "a.png"};
-  contains(refusal(document), "/classes/0/images/2: \"a.png\" is there twice");
-  document["classes"][0]["images"] = {""};
-  contains(refusal(document), "/classes/0/images/0: is empty");
-}
-
 TEST_CASE("a name that would not do as a file name is refused") {
   json document = minimal_study();
   for (const char* name : {"", "a b", "../x", "a/b", "\xc3\xa9"}) {
@@ -362,13 +362,6 @@ TEST_CASE("the order de-bruijn needs as many repeats as classes, no lead-in and 
   document["trials"]["lead_in"] = 0;
   document["trials"]["blocks"] = "mixed";
   contains(refusal(document), "/trials/blocks: must be \"by-method\"");
-}
-
-TEST_CASE("studies beyond what a participant or a disk can take are refused") {
-  json document = study_of(64);
-  document["trials"]["repeats"] = 1000;
-  contains(refusal(document), "/trials/repeats: makes 64000 trials for a participant");
-  contains(refusal(comparison_of(6, 1000)), "/classes: has 6000 images for 2 methods");
 }
 
 TEST_CASE("whole numbers may be written with a decimal point, others may not be rounded") {
@@ -402,20 +395,6 @@ TEST_CASE("a key that occurs twice is refused wherever it is") {
         "study.json: /study: is there twice; keep one of the two");
   CHECK(refusal_of_text(R"({"classes":[{},{"label":"a","label":"b"}]})") ==
         "study.json: /classes/1/label: is there twice; keep one of the two");
-}
-
-TEST_CASE("malformed JSON is refused with line and column") {
-  contains(refusal_of_text("{\n  \"study\": tru\n}"), "study.json: line 2, column 15: ");
-  contains(refusal_of_text(""), "study.json: line 1, column 1: ");
-  contains(refusal_of_text("{\"a\": 1,}"), "study.json: line 1, column 9: ");
-  contains(refusal_of_text("{} no"), "line 1, column 5: ");
-  contains(refusal_of_text("{\"a\": \"\xff\"}"), "ill-formed UTF-8");
-  contains(refusal_of_text("[]"), "study.json: /: must be an object, not a list");
-}
-
-TEST_CASE("absurd nesting is refused without harm") {
-  const std::string text = std::string(1'000'000, '[');
-  contains(refusal_of_text(text), "is nested too deeply");
 }
 
 TEST_CASE("hostile keys and values stay on one line of bounded length") {

@@ -230,21 +230,17 @@ TEST_CASE("credible intervals hold their share of a known distribution") {
 
 TEST_CASE("impossible grids are refused") {
   const std::vector<double> levels = decibels(-40, 0);
-  const ParameterGrid good{Shape::weibull, {-20.0, -10.0}, {3.0}, 0.5, {0.02}};
-  ParameterGrid bad = good;
-  bad.slopes = {};
-  CHECK_THROWS_AS(Posterior(levels, bad), std::invalid_argument);
-  bad = good;
-  bad.thresholds = {-10.0, -10.0};
-  CHECK_THROWS_AS(Posterior(levels, bad), std::invalid_argument);
-  bad = good;
-  bad.threshold_prior = {0.0, 0.0};
-  CHECK_THROWS_AS(Posterior(levels, bad), std::invalid_argument);
-  bad = good;
-  bad.lapses = {0.6};
-  CHECK_THROWS_AS(Posterior(levels, bad), std::invalid_argument);
-  bad = good;
-  bad.thresholds = decibels(0, 9999);
-  bad.slopes = decibels(1, 100);
-  CHECK_THROWS_AS(Posterior(levels, bad), std::invalid_argument);
+  const auto refused = [&](void (*change)(ParameterGrid&)) {
+    ParameterGrid bad{Shape::weibull, {-20.0, -10.0}, {3.0}, 0.5, {0.02}};
+    change(bad);
+    CHECK_THROWS_AS(Posterior(levels, bad), std::invalid_argument);
+  };
+  refused([](ParameterGrid& bad) { bad.slopes = {}; });
+  refused([](ParameterGrid& bad) { bad.thresholds = {-10.0, -10.0}; });
+  refused([](ParameterGrid& bad) { bad.threshold_prior = {0.0, 0.0}; });
+  refused([](ParameterGrid& bad) { bad.lapses = {0.6}; });
+  refused([](ParameterGrid& bad) {
+    bad.thresholds = decibels(0, 9999);
+    bad.slopes = decibels(1, 100);
+  });
 }

@@ -198,20 +198,16 @@ TEST_CASE("another secret deals another order") {
 
 TEST_CASE("impossible tracks are refused") {
   RandomStream random(1, "test");
-  TrackSettings bad = usual_track("quest", 10);
-  CHECK_THROWS_AS(make_procedure(bad, random), std::invalid_argument);
-  bad = usual_track("up-down", 10);
-  bad.levels = {3.0, 2.0};
-  CHECK_THROWS_AS(make_procedure(bad, random), std::invalid_argument);
-  bad = usual_track("up-down", 10);
-  bad.up_down.first_level = 41;
-  CHECK_THROWS_AS(make_procedure(bad, random), std::invalid_argument);
-  bad = usual_track("up-down", 10);
-  bad.up_down.steps_down = {0};
-  CHECK_THROWS_AS(make_procedure(bad, random), std::invalid_argument);
-  bad = usual_track("weighted-up-down", 10);
-  bad.up_down.correct_for_down = 2;
-  CHECK_THROWS_AS(make_procedure(bad, random), std::invalid_argument);
+  const auto refused = [&](const std::string& procedure, void (*change)(TrackSettings&)) {
+    TrackSettings bad = usual_track(procedure, 10);
+    change(bad);
+    CHECK_THROWS_AS(make_procedure(bad, random), std::invalid_argument);
+  };
+  refused("quest", [](TrackSettings&) {});
+  refused("up-down", [](TrackSettings& bad) { bad.levels = {3.0, 2.0}; });
+  refused("up-down", [](TrackSettings& bad) { bad.up_down.first_level = 41; });
+  refused("up-down", [](TrackSettings& bad) { bad.up_down.steps_down = {0}; });
+  refused("weighted-up-down", [](TrackSettings& bad) { bad.up_down.correct_for_down = 2; });
   CHECK_THROWS_AS(Block({}, some_secret(1)), std::invalid_argument);
   BlockSettings many;
   many.tracks.assign(9, usual_track("up-down", 10));

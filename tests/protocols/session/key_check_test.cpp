@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace touchtrial {
@@ -71,26 +72,21 @@ TEST_CASE("a station's file that differs from the key in anything is refused") {
   const TinyStudy study;
   using Key = design::StationKey;
   CHECK(fault_of(study, [](Key&) {}) == "nothing");
-  CHECK_THAT(fault_of(study, [](Key& key) { key.study_id = "0123"; }), holds_text("another study"));
-  CHECK_THAT(fault_of(study, [](Key& key) { key.seal[0] ^= 1U; }), holds_text("a change of the"));
-  CHECK_THAT(fault_of(study, [](Key& key) { key.configuration += " "; }),
-             holds_text("a change of the study"));
-  CHECK_THAT(fault_of(study, [](Key& key) { std::swap(key.stimuli[0], key.stimuli[1]); }),
-             holds_text("other codes"));
-  CHECK_THAT(fault_of(study, [](Key& key) { key.catch_code = key.stimuli[0].code; }),
-             holds_text("other codes"));
-  CHECK_THAT(fault_of(study, [](Key& key) { key.investigator_box[5] ^= 1U; }),
-             holds_text("another investigator"));
-  CHECK_THAT(fault_of(study, [](Key& key) { key.investigator_signature[5] ^= 1U; }),
-             holds_text("another investigator"));
-  CHECK_THAT(fault_of(study, [](Key& key) { key.station.name = "other"; }),
-             holds_text("a station that the key does not know"));
-  CHECK_THAT(fault_of(study, [](Key& key) { key.station.secret[0] ^= 1U; }),
-             holds_text("another secret"));
-  CHECK_THAT(fault_of(study, [](Key& key) { key.station.ranges.front().first = 2; }),
-             holds_text("other enrolment numbers"));
-  CHECK_THAT(fault_of(study, [](Key& key) { key.certificate[63] ^= 1U; }),
-             holds_text("not signed with this key"));
+  const std::vector<std::pair<void (*)(Key&), const char*>> changes = {
+      {[](Key& key) { key.study_id = "0123"; }, "another study"},
+      {[](Key& key) { key.seal[0] ^= 1U; }, "a change of the"},
+      {[](Key& key) { key.configuration += " "; }, "a change of the study"},
+      {[](Key& key) { std::swap(key.stimuli[0], key.stimuli[1]); }, "other codes"},
+      {[](Key& key) { key.catch_code = key.stimuli[0].code; }, "other codes"},
+      {[](Key& key) { key.investigator_box[5] ^= 1U; }, "another investigator"},
+      {[](Key& key) { key.investigator_signature[5] ^= 1U; }, "another investigator"},
+      {[](Key& key) { key.station.name = "other"; }, "a station that the key does not know"},
+      {[](Key& key) { key.station.secret[0] ^= 1U; }, "another secret"},
+      {[](Key& key) { key.station.ranges.front().first = 2; }, "other enrolment numbers"},
+      {[](Key& key) { key.certificate[63] ^= 1U; }, "not signed with this key"}};
+  for (const auto& [change, fault] : changes) {
+    CHECK_THAT(fault_of(study, change), holds_text(fault));
+  }
 }
 
 TEST_CASE("another study's pack, and a pack with an altered field, are refused") {

@@ -16,19 +16,23 @@
 namespace touchtrial {
 namespace {
 
-/// Quick explorations: 2 s, with the training that they need.
-simulation::SubjectModel quick_subject() {
+/// Quick explorations, with the training that they need.
+simulation::SubjectModel quick_subject(double explore_s = 2.0) {
   simulation::SubjectModel subject;
-  subject.explore_s = 2.0;
+  subject.explore_s = explore_s;
   subject.training_passes = 6;
   return subject;
 }
 
+store::StudyStore empty_store(TinyStudy& study) {
+  return store::StudyStore::create(study.next_database(),
+                                   session::commitment_of(study.key(), study.pack(), true, false),
+                                   {}, study.key().signer());
+}
+
 store::StudyStore simulated(TinyStudy& study, const simulation::SubjectModel& subject,
                             const simulation::SimulationOptions& options) {
-  store::StudyStore store = store::StudyStore::create(
-      study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {},
-      study.key().signer());
+  store::StudyStore store = empty_store(study);
   static_cast<void>(simulation::simulate_study(study.key(), study.pack(), subject, options, store));
   return store;
 }
@@ -57,8 +61,7 @@ TEST_CASE("an ideal subject tells almost all textures apart, and every trial is 
 
 TEST_CASE("on smooth planes every subject is at chance") {
   TinyStudy study({.smooth = true});
-  simulation::SubjectModel subject = quick_subject();
-  subject.explore_s = 1.2;
+  simulation::SubjectModel subject = quick_subject(1.2);
   subject.feature_noise = GENERATE(0.0, 0.4);
   const store::StudyStore store =
       simulated(study, subject, {.participants = 20, .seed = 11, .jobs = 2});
@@ -130,8 +133,7 @@ TEST_CASE("answers do not depend on codes") {
 }
 
 TEST_CASE("the database is the same to the byte whatever the number of jobs") {
-  simulation::SubjectModel subject = quick_subject();
-  subject.explore_s = 1.0;
+  simulation::SubjectModel subject = quick_subject(1.0);
   TinyStudy study;
   const store::StudyStore alone =
       simulated(study, subject, {.participants = 5, .seed = 8, .jobs = 1});
@@ -147,8 +149,7 @@ TEST_CASE("the database is the same to the byte whatever the number of jobs") {
 }
 
 TEST_CASE("another seed gives other participants, and the same schedule") {
-  simulation::SubjectModel subject = quick_subject();
-  subject.explore_s = 1.0;
+  simulation::SubjectModel subject = quick_subject(1.0);
   subject.feature_noise = 2.0;
   TinyStudy study;
   const store::StudyStore one = simulated(study, subject, {.participants = 1, .seed = 1});
@@ -198,8 +199,7 @@ int within_limits(const store::StudyStore& store, const design::StudyKey& key) {
 }
 
 TEST_CASE("a force limit that some textures reach does not show in clear which ones do") {
-  simulation::SubjectModel subject = quick_subject();
-  subject.explore_s = 6.0;
+  simulation::SubjectModel subject = quick_subject(6.0);
   subject.training_passes = 1;
   const std::string tight = R"({"max_force_n": 0.84})";
   TinyStudy textured({.rendering = tight});
@@ -218,8 +218,7 @@ TEST_CASE("a force limit that some textures reach does not show in clear which o
 }
 
 TEST_CASE("participants who are added later are the same as if simulated at once") {
-  simulation::SubjectModel subject = quick_subject();
-  subject.explore_s = 1.0;
+  simulation::SubjectModel subject = quick_subject(1.0);
   subject.feature_noise = 1.0;
   TinyStudy study;
   const store::StudyStore at_once = simulated(study, subject, {.participants = 3, .seed = 4});
@@ -264,8 +263,7 @@ TEST_CASE("an exploration beyond the limit times out, and the study says whether
 
 TEST_CASE("breaks are taken where the study wants them") {
   TinyStudy study({.trials = R"({"repeats": 2, "break_every": 4})"});
-  simulation::SubjectModel subject = quick_subject();
-  subject.explore_s = 1.0;
+  simulation::SubjectModel subject = quick_subject(1.0);
   const store::StudyStore store = simulated(study, subject, {.participants = 1});
   int breaks = 0;
   store.for_each(store::EventKind::break_taken, [&](const store::Event&) { ++breaks; });
@@ -274,8 +272,7 @@ TEST_CASE("breaks are taken where the study wants them") {
 
 TEST_CASE("the measures of a simulated trial follow from the subject's strokes and push") {
   TinyStudy study({.trials = R"({"repeats": 1})"});
-  simulation::SubjectModel subject = quick_subject();
-  subject.explore_s = 8.0;
+  simulation::SubjectModel subject = quick_subject(8.0);
   const store::StudyStore store = simulated(study, subject, {.participants = 1});
   const auto key =
       store::unwrap_participant_key(study.key().box(), 1, store.wrapped_key(1).value());
@@ -291,27 +288,20 @@ TEST_CASE("the measures of a simulated trial follow from the subject's strokes a
   for (const store::TrialRow& row : store.trials()) CHECK(row.valid);
 }
 
-TEST_CASE("short explorations are simulated and marked as invalid trials") {
-  TinyStudy study({.trials = R"({"repeats": 1})"});
+TEST_CASE("short explorations are invalid trials, unless the study's rule says otherwise") {
+  const bool own_rule = GENERATE(false, true);
+  TinyStudy study({.trials = own_rule ? R"({"repeats": 1, "validity": {"exploring_s": 0,
+                                            "contact_s": 0, "path_mm": 0, "least_median_n": 0,
+                                            "largest_median_n": 100, "saturated_share": 1}})"
+                                      : R"({"repeats": 1})"});
   const store::StudyStore store = simulated(study, quick_subject(), {.participants = 1});
-  for (const store::TrialRow& row : store.trials()) CHECK_FALSE(row.valid);
-}
-
-TEST_CASE("trials are judged by the validity rule that the study sets") {
-  TinyStudy study({.trials = R"({"repeats": 1, "validity": {"exploring_s": 0, "contact_s": 0,
-                                 "path_mm": 0, "least_median_n": 0, "largest_median_n": 100,
-                                 "saturated_share": 1}})"});
-  const store::StudyStore store = simulated(study, quick_subject(), {.participants = 1});
-  for (const store::TrialRow& row : store.trials()) CHECK(row.valid);
+  for (const store::TrialRow& row : store.trials()) CHECK(row.valid == own_rule);
 }
 
 TEST_CASE("progress counts sessions") {
   TinyStudy study({.trials = R"({"repeats": 1})"});
-  simulation::SubjectModel subject = quick_subject();
-  subject.explore_s = 1.0;
-  store::StudyStore store = store::StudyStore::create(
-      study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {},
-      study.key().signer());
+  simulation::SubjectModel subject = quick_subject(1.0);
+  store::StudyStore store = empty_store(study);
   std::vector<std::pair<int, int>> seen;
   simulation::simulate_study(study.key(), study.pack(), subject, {.participants = 3, .jobs = 2},
                              store, [&](int done, int of) { seen.emplace_back(done, of); });
@@ -320,9 +310,7 @@ TEST_CASE("progress counts sessions") {
 
 TEST_CASE("a simulation refuses options and subjects that do not fit") {
   TinyStudy study;
-  store::StudyStore store = store::StudyStore::create(
-      study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {},
-      study.key().signer());
+  store::StudyStore store = empty_store(study);
   const auto simulate = [&](const simulation::SubjectModel& subject,
                             const simulation::SimulationOptions& options) {
     return simulation::simulate_study(study.key(), study.pack(), subject, options, store);

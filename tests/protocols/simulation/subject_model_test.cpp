@@ -128,95 +128,60 @@ TEST_CASE("the subject files that come with the program are accepted") {
   CHECK(simulation::load_subject_model(folder / "swapped.json").label_swap.size() == 1);
 }
 
-TEST_CASE("the schema of subject files and the reader know the same keys and bounds") {
-  const json schema =
-      json::parse(text_of(read_file(kRoot / "config" / "schema" / "subject.schema.json")));
-  REQUIRE(schema.at("additionalProperties") == false);
-  const std::string known = refusal({{"no such key at all", 1}});
+/// Checks that the reader knows the keys of an object of the schema, and takes their bounds alone.
+/// \param part  its name; empty: the file itself
+/// \param room  beside a key, so that each bound is met alone
+/// \return how many keys have bounds
+int check_against_reader(const json& object, const std::string& part, const json& room = {}) {
+  const auto refused = [&](const json& keys) {
+    return refusal(part.empty() ? keys : json{{part, keys}});
+  };
+  const std::string known = refused({{"no such key at all", 1}});
   int bounded = 0;
-  for (const auto& item : schema.at("properties").items()) {
-    const std::string& key = item.key();
-    CHECK_THAT(known, holds_text(key));
-    if (!item.value().contains("minimum")) continue;
-    ++bounded;
-    const double low = item.value().at("minimum");
-    const double high = item.value().at("maximum");
-    // The other speed makes room, so that each bound is met alone.
-    const auto with = [&](double number) {
-      json subject = {{"slowest_mm_s", 1}, {"fastest_mm_s", 1000}};
-      subject[key] = number;
-      return refusal(subject);
-    };
-    CHECK(with(low).empty());
-    CHECK(with(high).empty());
-    CHECK_THAT(with(low - 0.001), holds_text("/" + key));
-    CHECK_THAT(with(high + 0.001), holds_text("/" + key));
-  }
-  CHECK(bounded == 14);
-  for (const json& example : schema.at("examples")) CHECK(refusal(example).empty());
-}
-
-TEST_CASE("the schema and the reader know the same keys and bounds of a bias") {
-  const json schema =
-      json::parse(text_of(read_file(kRoot / "config" / "schema" / "subject.schema.json")));
-  const json& bias = schema.at("properties").at("bias").at("properties");
-  const std::string known = refusal({{"bias", {{"no such key at all", 1}}}});
-  int bounded = 0;
-  for (const auto& item : bias.items()) {
+  for (const auto& item : object.at("properties").items()) {
     CHECK_THAT(known, holds_text(item.key()));
     if (!item.value().contains("minimum")) continue;
     ++bounded;
-    const auto with = [&](double number) { return refusal({{"bias", {{item.key(), number}}}}); };
-    const double low = item.value().at("minimum");
-    const double high = item.value().at("maximum");
-    CHECK(with(low).empty());
-    CHECK(with(high).empty());
-    CHECK_THAT(with(low - 0.001), holds_text("/bias/" + item.key()));
-    CHECK_THAT(with(high + 0.001), holds_text("/bias/" + item.key()));
-  }
-  CHECK(bounded == 3);
-}
-
-TEST_CASE("the schema and the reader know the same keys, bounds and defaults of changes") {
-  const json schema =
-      json::parse(text_of(read_file(kRoot / "config" / "schema" / "subject.schema.json")));
-  const std::pair<std::string, int> named =
-      GENERATE(std::pair("learning", 4), std::pair("serial", 4), std::pair("fatigue", 3),
-               std::pair("thought", 6));
-  const std::string part = named.first;
-  const json& known = schema.at("properties").at(part);
-  REQUIRE(known.at("additionalProperties") == false);
-  const std::string refused = refusal({{part, {{"no such key at all", 1}}}});
-  const json defaults =
-      json::parse(simulation::subject_model_json(parsed({{part, json::object()}}))).at(part);
-  int bounded = 0;
-  for (const auto& item : known.at("properties").items()) {
-    CHECK_THAT(refused, holds_text(item.key()));
-    ++bounded;
-    // The other times make room, so that each bound is met alone.
     const auto with = [&](double number) {
-      json changes = {{item.key(), number}};
-      if (part == "thought") {
-        for (const auto& [key, room] : {std::pair("easy_s", 0.01),
-                                        {"hard_s", 60.0},
-                                        {"shift_s", 0.0},
-                                        {"longest_s", 600.0}}) {
-          if (item.key() != key) changes[key] = room;
-        }
-      }
-      return refusal({{part, changes}});
+      json keys = room;
+      keys[item.key()] = number;
+      return refused(keys);
     };
     const double low = item.value().at("minimum");
     const double high = item.value().at("maximum");
-    const std::string place = "/" + part + "/" + item.key();
+    const std::string place = (part.empty() ? "/" : "/" + part + "/") + item.key();
     CHECK(with(low).empty());
     CHECK(with(high).empty());
     CHECK_THAT(with(low - 0.001), holds_text(place));
     CHECK_THAT(with(high + 0.001), holds_text(place));
-    CHECK(defaults.at(item.key()) == item.value().at("default"));
   }
-  CHECK(bounded == named.second);
-  CHECK(defaults.size() == known.at("properties").size());
+  return bounded;
+}
+
+TEST_CASE("the schema of subject files and the reader know the same keys, bounds and defaults") {
+  const json schema =
+      json::parse(text_of(read_file(kRoot / "config" / "schema" / "subject.schema.json")));
+  const json& parts = schema.at("properties");
+  REQUIRE(schema.at("additionalProperties") == false);
+  CHECK(check_against_reader(schema, "", {{"slowest_mm_s", 1}, {"fastest_mm_s", 1000}}) == 14);
+  CHECK(check_against_reader(parts.at("bias"), "bias") == 3);
+  for (const json& example : schema.at("examples")) CHECK(refusal(example).empty());
+  const json room = {{"easy_s", 0.01}, {"hard_s", 60.0}, {"shift_s", 0.0}, {"longest_s", 600.0}};
+  for (const auto& [part, keys] : {std::pair<std::string, int>("learning", 4),
+                                   {"serial", 4},
+                                   {"fatigue", 3},
+                                   {"thought", 6}}) {
+    INFO(part);
+    const json& known = parts.at(part);
+    REQUIRE(known.at("additionalProperties") == false);
+    CHECK(check_against_reader(known, part, part == "thought" ? room : json()) == keys);
+    const json defaults =
+        json::parse(simulation::subject_model_json(parsed({{part, json::object()}}))).at(part);
+    CHECK(defaults.size() == known.at("properties").size());
+    for (const auto& item : known.at("properties").items()) {
+      CHECK(defaults.at(item.key()) == item.value().at("default"));
+    }
+  }
 }
 
 TEST_CASE("times to think that contradict one another are refused") {

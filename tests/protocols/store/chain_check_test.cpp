@@ -50,74 +50,77 @@ std::string next_number(const std::string& table, const std::string& column,
 
 const std::string kFourth = "session = 1 AND sequence = 5";  // trial 1's trace-stored
 
+struct Tampering {
+  std::string sql;
+  std::string fault;  ///< what fault_after gives
+};
+
+void require_named(const std::vector<Tampering>& tamperings) {
+  for (const auto& [sql, fault] : tamperings) {
+    INFO(sql);
+    REQUIRE(fault_after(sql) == fault);
+  }
+}
+
+const std::string kHash = "the hash of the event does not match its content";
+
 }  // namespace
 
 TEST_CASE("an altered event is named, whichever of its members was altered") {
-  const std::string hash = "the hash of the event does not match its content";
-  REQUIRE(fault_after(next_number("events", "at_ns", kFourth)) == "1/5 " + hash);
-  REQUIRE(fault_after(flipped_blob("events", "sealed", kFourth)) == "1/5 " + hash);
-  REQUIRE(fault_after(flipped_blob("events", "hash", kFourth)) == "1/5 " + hash);
-  REQUIRE(fault_after("UPDATE events SET body = replace(body, 'true', 'false') WHERE " + kFourth) ==
-          "1/5 " + hash);
-  REQUIRE(fault_after("UPDATE events SET kind = 'noted' WHERE " + kFourth) == "1/5 " + hash);
-  REQUIRE(fault_after(flipped_blob("events", "previous", kFourth)) ==
-          "1/5 previous does not match the hash of the event before");
-  REQUIRE(fault_after(flipped_text("events", "kind", kFourth)) ==
-          "1/5 unknown kind of event 'Xrace-stored'");
-  REQUIRE(fault_after("UPDATE events SET hash = x'00' WHERE " + kFourth) ==
-          "1/5 a hash of the event is not 32 bytes long");
-  REQUIRE(fault_after("UPDATE events SET sequence = 900 WHERE " + kFourth) ==
-          "1/5 sequence gap: event 5 is missing");
-  REQUIRE(fault_after("UPDATE events SET session = 3 WHERE " + kFourth) ==
-          "1/5 sequence gap: event 5 is missing");
+  require_named({
+      {next_number("events", "at_ns", kFourth), "1/5 " + kHash},
+      {flipped_blob("events", "sealed", kFourth), "1/5 " + kHash},
+      {flipped_blob("events", "hash", kFourth), "1/5 " + kHash},
+      {"UPDATE events SET body = replace(body, 'true', 'false') WHERE " + kFourth, "1/5 " + kHash},
+      {"UPDATE events SET kind = 'noted' WHERE " + kFourth, "1/5 " + kHash},
+      {flipped_blob("events", "previous", kFourth),
+       "1/5 previous does not match the hash of the event before"},
+      {flipped_text("events", "kind", kFourth), "1/5 unknown kind of event 'Xrace-stored'"},
+      {"UPDATE events SET hash = x'00' WHERE " + kFourth,
+       "1/5 a hash of the event is not 32 bytes long"},
+      {"UPDATE events SET sequence = 900 WHERE " + kFourth, "1/5 sequence gap: event 5 is missing"},
+      {"UPDATE events SET session = 3 WHERE " + kFourth, "1/5 sequence gap: event 5 is missing"},
+  });
 }
 
 TEST_CASE("an altered event of the file's chain is named") {
-  const std::string hash = "the hash of the event does not match its content";
   for (int sequence = 0; sequence < 5; ++sequence) {
     const std::string where = "session = 0 AND sequence = " + std::to_string(sequence);
-    const std::string place = "0/" + std::to_string(sequence) + " ";
-    REQUIRE(fault_after(next_number("events", "at_ns", where)) == place + hash);
-    REQUIRE(fault_after(flipped_text("events", "body", where)) == place + hash);
+    const std::string fault = "0/" + std::to_string(sequence) + " " + kHash;
+    require_named({{next_number("events", "at_ns", where), fault},
+                   {flipped_text("events", "body", where), fault}});
   }
-  REQUIRE(fault_after("DELETE FROM events WHERE session = 0 AND sequence = 0") ==
-          "0/0 sequence gap: event 0 is missing");
-  REQUIRE(fault_after("DELETE FROM events WHERE session = 0") == "0/0 the file's chain is empty");
 }
 
-TEST_CASE("deleted, swapped and moved events are named") {
-  REQUIRE(fault_after("DELETE FROM events WHERE session = 2 AND sequence = 7") ==
-          "2/7 sequence gap: event 7 is missing");
-  REQUIRE(fault_after("DELETE FROM events WHERE session = 2 AND sequence = 0") ==
-          "2/0 sequence gap: event 0 is missing");
-  REQUIRE(fault_after("UPDATE events SET sequence = -1 WHERE session = 1 AND sequence = 3;"
-                      "UPDATE events SET sequence = 3 WHERE session = 1 AND sequence = 4;"
-                      "UPDATE events SET sequence = 4 WHERE session = 1 AND sequence = -1") ==
-          "1/3 previous does not match the hash of the event before");
-  REQUIRE(fault_after("UPDATE events SET session = 9 WHERE session = 2") ==
-          "0/3 session 2 has no events");
-  REQUIRE(fault_after("DELETE FROM events WHERE session = 1") == "0/1 session 1 has no events");
-  REQUIRE(fault_after("INSERT INTO events SELECT 9, sequence, kind, at_ns, body, sealed, previous, "
-                      "hash, signature, NULL FROM events WHERE session = 1") ==
-          "9/0 the file's chain knows no such session");
-  REQUIRE(
-      fault_after("INSERT INTO events SELECT -1, sequence, kind, at_ns, body, sealed, previous, "
-                  "hash, signature, NULL FROM events WHERE session = 1") ==
-      "-1/0 the event belongs to another chain");
-}
-
-TEST_CASE("a session cut short is held against the file's chain") {
-  REQUIRE(fault_after("DELETE FROM events WHERE session = 2 AND kind = 'closed'") ==
-          "2/13 session 2 ends at event 13, the file's chain says 14");
-  REQUIRE(fault_after("DELETE FROM events WHERE session = 2 AND sequence > 9") ==
-          "2/9 session 2 ends at event 9, the file's chain says 14");
-}
-
-TEST_CASE("the end of a session missing from the end of the file's chain is noticed") {
-  REQUIRE(fault_after("DELETE FROM events WHERE session = 0 AND sequence = 4") ==
-          "2/14 the session is closed, but not on the file's chain");
-  REQUIRE(fault_after("DELETE FROM events WHERE session = 0 AND sequence >= 3") ==
-          "2/0 the file's chain knows no such session");
+TEST_CASE("deleted, swapped and moved events are named, and cut chains held against the file's") {
+  const std::string copy_as =
+      ", sequence, kind, at_ns, body, sealed, previous, hash, signature, NULL FROM events WHERE "
+      "session = 1";
+  require_named({
+      {"DELETE FROM events WHERE session = 0 AND sequence = 0",
+       "0/0 sequence gap: event 0 is missing"},
+      {"DELETE FROM events WHERE session = 0", "0/0 the file's chain is empty"},
+      {"DELETE FROM events WHERE session = 2 AND sequence = 7",
+       "2/7 sequence gap: event 7 is missing"},
+      {"DELETE FROM events WHERE session = 2 AND sequence = 0",
+       "2/0 sequence gap: event 0 is missing"},
+      {"UPDATE events SET sequence = -1 WHERE session = 1 AND sequence = 3;"
+       "UPDATE events SET sequence = 3 WHERE session = 1 AND sequence = 4;"
+       "UPDATE events SET sequence = 4 WHERE session = 1 AND sequence = -1",
+       "1/3 previous does not match the hash of the event before"},
+      {"UPDATE events SET session = 9 WHERE session = 2", "0/3 session 2 has no events"},
+      {"DELETE FROM events WHERE session = 1", "0/1 session 1 has no events"},
+      {"INSERT INTO events SELECT 9" + copy_as, "9/0 the file's chain knows no such session"},
+      {"INSERT INTO events SELECT -1" + copy_as, "-1/0 the event belongs to another chain"},
+      {"DELETE FROM events WHERE session = 2 AND kind = 'closed'",
+       "2/13 session 2 ends at event 13, the file's chain says 14"},
+      {"DELETE FROM events WHERE session = 2 AND sequence > 9",
+       "2/9 session 2 ends at event 9, the file's chain says 14"},
+      {"DELETE FROM events WHERE session = 0 AND sequence = 4",
+       "2/14 the session is closed, but not on the file's chain"},
+      {"DELETE FROM events WHERE session = 0 AND sequence >= 3",
+       "2/0 the file's chain knows no such session"},
+  });
 }
 
 TEST_CASE("another session in the place of a stored one is noticed") {
@@ -139,31 +142,27 @@ TEST_CASE("another session in the place of a stored one is noticed") {
   REQUIRE(fault->what == "the session's first event is not the one on the file's chain");
 }
 
-TEST_CASE("an altered, missing or added trace is named by its trial") {
-  REQUIRE(fault_after(flipped_blob("traces", "box", "session = 2 AND trial = 2")) ==
-          "2/9 trace of trial 2 was altered");
-  REQUIRE(fault_after("DELETE FROM traces WHERE session = 1 AND trial = 3") ==
-          "1/13 trace of trial 3 is missing");
-  REQUIRE(fault_after("DELETE FROM traces WHERE session = 2") == "2/5 trace of trial 1 is missing");
-  REQUIRE(fault_after("UPDATE traces SET trial = 7 WHERE session = 1 AND trial = 2") ==
-          "1/9 trace of trial 2 is missing");
-  REQUIRE(fault_after("INSERT INTO traces VALUES(2, 9, x'00')") ==
-          "2/0 trace of trial 9 has no event");
-  REQUIRE(fault_after("UPDATE traces SET session = 5 WHERE session = 2 AND trial = 3") ==
-          "2/13 trace of trial 3 is missing");
-}
-
-TEST_CASE("an altered, missing or added key is named by its session") {
-  REQUIRE(fault_after(flipped_blob("participant_keys", "wrapped", "session = 2")) ==
-          "2/0 the participant's key was altered");
-  REQUIRE(fault_after("DELETE FROM participant_keys WHERE session = 1") ==
-          "1/0 the participant's key is missing without a withdrawal");
-  REQUIRE(fault_after("INSERT INTO participant_keys VALUES(8, x'00')") ==
-          "8/0 a participant's key has no session");
-  for (const char* session : {"1", "8"}) {
-    REQUIRE(fault_after("INSERT INTO station_keys VALUES(" + std::string(session) + ", x'00')") ==
-            std::string(session) + "/0 the station holds the key of a session that is not open");
-  }
+TEST_CASE("an altered, missing or added trace or key is named by its trial or session") {
+  require_named({
+      {flipped_blob("traces", "box", "session = 2 AND trial = 2"),
+       "2/9 trace of trial 2 was altered"},
+      {"DELETE FROM traces WHERE session = 1 AND trial = 3", "1/13 trace of trial 3 is missing"},
+      {"DELETE FROM traces WHERE session = 2", "2/5 trace of trial 1 is missing"},
+      {"UPDATE traces SET trial = 7 WHERE session = 1 AND trial = 2",
+       "1/9 trace of trial 2 is missing"},
+      {"INSERT INTO traces VALUES(2, 9, x'00')", "2/0 trace of trial 9 has no event"},
+      {"UPDATE traces SET session = 5 WHERE session = 2 AND trial = 3",
+       "2/13 trace of trial 3 is missing"},
+      {flipped_blob("participant_keys", "wrapped", "session = 2"),
+       "2/0 the participant's key was altered"},
+      {"DELETE FROM participant_keys WHERE session = 1",
+       "1/0 the participant's key is missing without a withdrawal"},
+      {"INSERT INTO participant_keys VALUES(8, x'00')", "8/0 a participant's key has no session"},
+      {"INSERT INTO station_keys VALUES(1, x'00')",
+       "1/0 the station holds the key of a session that is not open"},
+      {"INSERT INTO station_keys VALUES(8, x'00')",
+       "8/0 the station holds the key of a session that is not open"},
+  });
   StoredFixture study(1);
   study.store->withdraw(1, kUtc, "asked to");
   tamper(study, "INSERT INTO participant_keys VALUES(1, x'00')");

@@ -1,9 +1,9 @@
+#include "core/files.hpp"
 #include "protocols/store/schema.hpp"
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
 
 #include <fstream>
-#include <sstream>
 #include <vector>
 
 #include <sys/stat.h>
@@ -16,13 +16,6 @@ namespace {
 
 using Access = StudyStore::Access;
 
-std::string content_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 void write(const std::filesystem::path& path, const std::string& content) {
   std::ofstream(path, std::ios::binary) << content;
 }
@@ -30,11 +23,11 @@ void write(const std::filesystem::path& path, const std::string& content) {
 /// The message with which a file is refused. The file must be unchanged, with no new file beside
 /// it.
 std::string refusal_untouched(const std::filesystem::path& path, Access access) {
-  const std::string before = content_of(path);
+  const std::string before = text_of(read_file(path));
   const std::string line = refusal_of([&] { return StudyStore::open(path, access); });
   REQUIRE(contains(line, path.string()));
   REQUIRE_FALSE(contains(line, "\n"));
-  REQUIRE(content_of(path) == before);
+  REQUIRE(text_of(read_file(path)) == before);
   REQUIRE_FALSE(std::filesystem::exists(path.string() + "-wal"));
   REQUIRE_FALSE(std::filesystem::exists(path.string() + "-journal"));
   return line;
@@ -68,13 +61,13 @@ TEST_CASE("a database that was closed is one file") {
 TEST_CASE("reading leaves the file as it is and nothing beside it") {
   StoredFixture study(1);
   study.store.reset();
-  const std::string before = content_of(study.path);
+  const std::string before = text_of(read_file(study.path));
   {
     const StudyStore reader = StudyStore::open(study.path, Access::read_only);
     REQUIRE(reader.trials().size() == 3);
     REQUIRE_FALSE(reader.first_fault());
   }
-  REQUIRE(content_of(study.path) == before);
+  REQUIRE(text_of(read_file(study.path)) == before);
   REQUIRE_FALSE(std::filesystem::exists(study.path.string() + "-wal"));
   REQUIRE_FALSE(std::filesystem::exists(study.path.string() + "-shm"));
 }
@@ -115,7 +108,7 @@ TEST_CASE("an existing file is never overwritten") {
   REQUIRE(contains(
       refusal_of([&] { return StudyStore::create(path, commitment(), kUtc, investigator()); }),
       "exists already"));
-  REQUIRE(content_of(path) == "precious");
+  REQUIRE(text_of(read_file(path)) == "precious");
 }
 
 TEST_CASE("a database that cannot be made leaves nothing behind") {
@@ -169,7 +162,7 @@ TEST_CASE("a database of another version is refused untouched") {
 TEST_CASE("a truncated database is refused untouched, wherever it was cut") {
   StoredFixture study(2);
   study.store.reset();
-  const std::string whole = content_of(study.path);
+  const std::string whole = text_of(read_file(study.path));
   for (const std::size_t size : {whole.size() - 1, whole.size() - 8192, whole.size() / 2,
                                  std::size_t{8192}, std::size_t{100}}) {
     write(study.path, whole.substr(0, size));
@@ -183,7 +176,7 @@ TEST_CASE("garbage in a database is noticed, or hits unused bytes") {
   StoredFixture study(2);
   const auto trials = study.store->trials();
   study.store.reset();
-  const std::string whole = content_of(study.path);
+  const std::string whole = text_of(read_file(study.path));
   RandomStream random(9, "garbage");
   int noticed = 0;
   for (int i = 0; i < 200; ++i) {

@@ -75,34 +75,28 @@ std::set<std::string> fail_everywhere(const Fault& fault, int& unnoticed) {
 
 }  // namespace
 
-TEST_CASE("an event whose write fails is refused, and stored when the disk is well again") {
-  int unnoticed = 0;
-  const std::set<std::string> lines = fail_everywhere({.kind = Kind::error, .at = 1}, unnoticed);
-  REQUIRE(unnoticed == 0);
-  REQUIRE(lines.size() == 1);
-  REQUIRE(contains(*lines.begin(), "reading or writing failed (disk I/O error); check the disk"));
-}
-
-TEST_CASE("an event that was half written is refused, and stored when the disk is well again") {
-  int unnoticed = 0;
-  fail_everywhere({.kind = Kind::short_write, .at = 1}, unnoticed);
-  REQUIRE(unnoticed == 0);
-}
-
-TEST_CASE("a full disk refuses events until there is room, and says so") {
-  int unnoticed = 0;
-  const std::set<std::string> lines = fail_everywhere(
-      {.kind = Kind::full, .at = 1, .only = DiskOperation::write, .lasts = true}, unnoticed);
-  REQUIRE(unnoticed == 0);
-  REQUIRE(lines == std::set<std::string>{"cannot grow; free space on its disk"});
-}
-
-TEST_CASE("a sync that fails never acknowledges, and loses nothing that is stored again") {
-  int unnoticed = 0;
-  const std::set<std::string> lines = fail_everywhere(
-      {.kind = Kind::error, .at = 1, .only = DiskOperation::sync, .lasts = false}, unnoticed);
-  REQUIRE(unnoticed == 0);
-  REQUIRE(lines.size() == 1);
+TEST_CASE("an event that a failing disk refused is stored when the disk is well again") {
+  struct Failure {
+    Fault fault;
+    const char* line;  ///< empty: any
+  };
+  const std::string broken = "reading or writing failed (disk I/O error); check the disk";
+  const std::vector<Failure> failures = {
+      {{.kind = Kind::error, .at = 1}, broken.c_str()},
+      {{.kind = Kind::short_write, .at = 1}, ""},
+      {{.kind = Kind::full, .at = 1, .only = DiskOperation::write, .lasts = true},
+       "cannot grow; free space on its disk"},
+      {{.kind = Kind::error, .at = 1, .only = DiskOperation::sync, .lasts = false},
+       broken.c_str()}};
+  for (const auto& [fault, line] : failures) {
+    int unnoticed = 0;
+    const std::set<std::string> lines = fail_everywhere(fault, unnoticed);
+    INFO("kind " << static_cast<int>(fault.kind));
+    REQUIRE(unnoticed == 0);
+    if (*line == '\0') continue;
+    REQUIRE(lines.size() == 1);
+    REQUIRE(contains(*lines.begin(), line));
+  }
 }
 
 TEST_CASE("every event that is acknowledged was synced on its own") {

@@ -90,6 +90,26 @@ struct WrittenHead {
   HeadFile file{folder.path() / "study.db.head"};
 };
 
+/// A database's place, and a second folder for its head file.
+struct TwoDisks {
+  TwoDisks() { std::filesystem::create_directory(disk); }
+
+  TempFolder folder;
+  std::filesystem::path database = folder.path() / "study.db";
+  std::filesystem::path disk = folder.path() / "disk";
+};
+
+/// Two databases of one name whose second head files share a folder.
+struct TwoDatabases : TwoDisks {
+  TwoDatabases() {
+    std::filesystem::create_directory(folder.path() / "one");
+    std::filesystem::create_directory(folder.path() / "two");
+  }
+
+  std::filesystem::path one = folder.path() / "one" / "study.db";
+  std::filesystem::path two = folder.path() / "two" / "study.db";
+};
+
 /// A record after `writes` writes of a WrittenHead.
 HeadRecord after(std::int64_t writes) {
   HeadRecord record = some_record();
@@ -446,10 +466,8 @@ TEST_CASE("a record notes longer chains and more answers, and forgets none") {
 }
 
 TEST_CASE("two head files are both written, and found again by the one beside the database") {
-  const TempFolder folder;
-  const std::filesystem::path database = folder.path() / "study.db";
-  const std::filesystem::path disk = folder.path() / "disk";
-  std::filesystem::create_directory(disk);
+  const TwoDisks at;
+  const auto& [folder, database, disk] = at;
   {
     const HeadFiles files(database, known_signers(), disk);
     REQUIRE(files.paths() == std::vector{folder.path() / "study.db.head", disk / "study.db.head"});
@@ -469,10 +487,8 @@ TEST_CASE("two head files are both written, and found again by the one beside th
 }
 
 TEST_CASE("the second head file gives away that the first was rolled back") {
-  const TempFolder folder;
-  const std::filesystem::path disk = folder.path() / "disk";
-  std::filesystem::create_directory(disk);
-  const HeadFiles files(folder.path() / "study.db", known_signers(), disk);
+  const TwoDisks at;
+  const HeadFiles files(at.database, known_signers(), at.disk);
   files.update(station_signer(), becomes(some_record()));
   const std::string old = text_of(read_file(files.paths()[0]));
   for (int i = 0; i < 6; ++i) files.update(station_signer(), count_one_more);
@@ -484,12 +500,9 @@ TEST_CASE("the second head file gives away that the first was rolled back") {
 }
 
 TEST_CASE("a second head file that is missing is made with the record of the first") {
-  const TempFolder folder;
-  const std::filesystem::path disk = folder.path() / "disk";
-  std::filesystem::create_directory(disk);
-  const std::filesystem::path database = folder.path() / "study.db";
-  HeadFiles(database, known_signers(), "").update(station_signer(), becomes(some_record()));
-  const HeadFiles files(database, known_signers(), disk);
+  const TwoDisks at;
+  HeadFiles(at.database, known_signers(), "").update(station_signer(), becomes(some_record()));
+  const HeadFiles files(at.database, known_signers(), at.disk);
   REQUIRE(files.read().size() == 1);
   files.update(station_signer(), count_one_more);
   const std::vector<HeadReading> readings = files.read();
@@ -524,46 +537,38 @@ TEST_CASE("a second folder that cannot be reached is named, before a session and
 }
 
 TEST_CASE("two databases do not share a second head file") {
-  const TempFolder folder;
-  const std::filesystem::path disk = folder.path() / "disk";
-  for (const char* const name : {"disk", "one", "two"}) {
-    std::filesystem::create_directory(folder.path() / name);
-  }
-  const HeadFiles one(folder.path() / "one" / "study.db", known_signers(), disk);
-  const HeadFiles two(folder.path() / "two" / "study.db", known_signers(), disk);
+  const TwoDatabases at;
+  const HeadFiles one(at.one, known_signers(), at.disk);
+  const HeadFiles two(at.two, known_signers(), at.disk);
   one.update(station_signer(), becomes(some_record()));
   HeadRecord record = some_record();
   record.database = digest_of("another first event");
-  HeadFiles(folder.path() / "two" / "study.db", known_signers(), "")
-      .update(station_signer(), becomes(record));
+  HeadFiles(at.two, known_signers(), "").update(station_signer(), becomes(record));
   REQUIRE(contains(refusal_of([&] { two.update(station_signer(), count_one_more); }),
                    "belongs to another database"));
   REQUIRE(one.read().at(1).record.acknowledged == 75);
 }
 
 TEST_CASE("one disk with heads of two studies whose databases have one name says whose it has") {
-  const TempFolder folder;
-  const std::filesystem::path disk = folder.path() / "disk";
-  for (const char* const name : {"disk", "one", "two"}) {
-    std::filesystem::create_directory(folder.path() / name);
-  }
+  const TwoDatabases at;
   HeadRecord record = some_record();
   record.station = "attic";
-  const HeadFiles one(folder.path() / "one" / "study.db", known_signers(), disk);
+  const HeadFiles one(at.one, known_signers(), at.disk);
   one.update(station_signer(), becomes(record));
-  const std::string before = text_of(read_file(disk / "study.db.head"));
+  const std::filesystem::path shared = at.disk / "study.db.head";
+  const std::string before = text_of(read_file(shared));
   const Signer other(digest_of("another study's station"));
-  const HeadFiles two(folder.path() / "two" / "study.db", {other.public_half()}, disk);
+  const HeadFiles two(at.two, {other.public_half()}, at.disk);
   const std::string whose = std::string("it says that it is of station attic of study ") +
                             commitment().study_id + ": if this database is of another study";
   for (const std::string& line : {unreadable([&] { static_cast<void>(two.read()); }),
                                   refusal_of([&] { two.update(other, becomes(some_record())); })}) {
     INFO(line);
-    REQUIRE(contains(line, (disk / "study.db.head").string()));
+    REQUIRE(contains(line, shared.string()));
     REQUIRE(contains(line, whose));
     REQUIRE(contains(line, "name a folder of its own with `run --heads`"));
   }
-  REQUIRE(text_of(read_file(disk / "study.db.head")) == before);
+  REQUIRE(text_of(read_file(shared)) == before);
 }
 
 TEST_CASE("a record of a database has its chains' ends, its open sessions and all answers") {

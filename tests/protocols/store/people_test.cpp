@@ -263,16 +263,19 @@ TEST_CASE("who withdraws may let the data be used, and have them erased later, b
   REQUIRE_FALSE(store.first_fault());
 }
 
-TEST_CASE("an open session whose participant withdraws cannot go on, even if the data are kept") {
+TEST_CASE("of an open session whose participant withdraws only the end is recorded") {
+  const Kept kept = GENERATE(Kept::data, Kept::safety_record);
   StoredFixture study;
   StudyStore& store = *study.store;
   const auto sink = store.begin_session(1, wrapped_key_of(1), {}, Bytes{1, 2});
   SessionRecorder recorder(1, participant_key(1), *sink);
   recorder.opened(nanoseconds(0), opening(1), "{}");
-  store.withdraw(1, kUtc, "moves away", Kept::data);
+  store.withdraw(1, kUtc, "moves away", kept);
   REQUIRE_FALSE(store.kept_key(1));
+  REQUIRE_FALSE(store.first_fault());
   REQUIRE(contains(refusal_of([&] { (void)store.continue_session(1); }), "has withdrawn"));
-  REQUIRE(contains(refusal_of([&] { recorder.presented(seconds(1), 1, 0); }), "has withdrawn"));
+  REQUIRE(contains(refusal_of([&] { recorder.presented(seconds(1), 1, 0); }),
+                   "participant P1 has withdrawn; end session 1"));
   recorder.stopped(seconds(2), {.code = "", .text = "moves away"});
   recorder.closed(seconds(2), false);
   REQUIRE_FALSE(store.first_fault());

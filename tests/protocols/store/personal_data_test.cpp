@@ -1,10 +1,8 @@
 #include "protocols/store/personal_data.hpp"
 
+#include "core/files.hpp"
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
-
-#include <fstream>
-#include <iterator>
 
 #include <sys/stat.h>
 
@@ -27,11 +25,6 @@ unsigned mode_of(const std::filesystem::path& path) {
   struct stat status {};
   REQUIRE(::stat(path.c_str(), &status) == 0);
   return status.st_mode & 0777U;
-}
-
-std::string content_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 }  // namespace
@@ -63,7 +56,7 @@ TEST_CASE("every consent is kept, and removed without a trace in the file") {
     data.put(other);
     REQUIRE(data.find("P06")->contact == "six@example.org");
   }
-  REQUIRE(contains(content_of(path), "seven@example.org"));
+  REQUIRE(contains(text_of(read_file(path)), "seven@example.org"));
   {
     PersonalData data(path);
     REQUIRE(data.remove("P07"));
@@ -72,8 +65,8 @@ TEST_CASE("every consent is kept, and removed without a trace in the file") {
     REQUIRE(data.all().size() == 2);
     REQUIRE(data.remove("P06"));
   }
-  REQUIRE_FALSE(contains(content_of(path), "seven@example.org"));
-  REQUIRE_FALSE(contains(content_of(path), "six@example.org"));
+  REQUIRE_FALSE(contains(text_of(read_file(path)), "seven@example.org"));
+  REQUIRE_FALSE(contains(text_of(read_file(path)), "six@example.org"));
 }
 
 TEST_CASE("only their owner can read personal data whatever the umask, else they are refused") {

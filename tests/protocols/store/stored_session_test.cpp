@@ -88,16 +88,6 @@ TEST_CASE("a station keeps the key of a session while it is open, and no longer"
   }
 }
 
-TEST_CASE("a withdrawal during a session destroys the station's copy of its key too") {
-  StoredFixture study;
-  const auto sink = study.store->begin_session(1, wrapped_key_of(1), clock_at(kUtc), Bytes{1, 2});
-  SessionRecorder recorder(1, participant_key(1), *sink);
-  recorder.opened(nanoseconds(0), opening(1), "{}");
-  study.store->withdraw(1, kUtc, "asked to");
-  REQUIRE_FALSE(study.store->kept_key(1));
-  REQUIRE_FALSE(study.store->first_fault());
-}
-
 TEST_CASE("every accepted event is in the file at once, for other programs too") {
   StoredFixture study;
   const auto sink = study.store->begin_session(1, wrapped_key_of(1));
@@ -113,23 +103,6 @@ TEST_CASE("every accepted event is in the file at once, for other programs too")
   REQUIRE(reader.trials().at(0).state == TrialState::answered);
   REQUIRE(opened_trials(reader, 1).at(0).position == 3);
   REQUIRE_FALSE(reader.first_fault());
-}
-
-TEST_CASE("a session that breaks off stays open and is no fault") {
-  StoredFixture study;
-  {
-    const auto sink = study.store->begin_session(1, wrapped_key_of(1));
-    SessionRecorder recorder(1, participant_key(1), *sink);
-    recorder.opened(nanoseconds(0), opening(1), "{}");
-    recorder.presented(seconds(1), 1, 0);
-  }
-  study.store.reset();
-  study.store = writable(study.path);
-  REQUIRE(study.store->sessions().at(0).state == SessionState::open);
-  REQUIRE(study.store->next_session() == 2);
-  REQUIRE_FALSE(study.store->first_fault());
-  add(*study.store, 2);
-  REQUIRE_FALSE(study.store->first_fault());
 }
 
 TEST_CASE("a refused event leaves no mark, and the session goes on") {
@@ -200,6 +173,9 @@ TEST_CASE("a session that broke off goes on where it ended, and is one chain") {
   StoredFixture study;
   break_off(*study.store);
   reopen(study);
+  REQUIRE(study.store->sessions().at(0).state == SessionState::open);
+  REQUIRE(study.store->next_session() == 2);
+  REQUIRE_FALSE(study.store->first_fault());
   const auto sink = study.store->continue_session(1);
   SessionRecorder recorder = recorder_after_last(*study.store, *sink);
   REQUIRE(recorder.length() == 4);
@@ -259,22 +235,6 @@ TEST_CASE(
   REQUIRE(contains(refusal_of([&] { a.answered(seconds(6), answer_to(2)); }),
                    "session 1 was continued by another program"));
   REQUIRE(opened_trials(*study.store, 1).at(1).answered_at == seconds(5));
-  REQUIRE_FALSE(study.store->first_fault());
-}
-
-TEST_CASE("after a withdrawal during the session only its end is recorded") {
-  StoredFixture study;
-  const auto sink = study.store->begin_session(1, wrapped_key_of(1));
-  SessionRecorder recorder(1, participant_key(1), *sink);
-  recorder.opened(nanoseconds(0), opening(1), "{}");
-  recorder.presented(seconds(1), 1, 0);
-  study.store->withdraw(1, kUtc, "asked to");
-  REQUIRE(contains(refusal_of([&] { recorder.answered(seconds(2), answer_to(1)); }),
-                   "participant P1 has withdrawn; end session 1"));
-  REQUIRE(contains(refusal_of([&] { (void)study.store->continue_session(1); }),
-                   "the participant has withdrawn"));
-  recorder.remarked(seconds(2), EventKind::stopped, "withdrawn");
-  recorder.closed(seconds(3), false);
   REQUIRE_FALSE(study.store->first_fault());
 }
 

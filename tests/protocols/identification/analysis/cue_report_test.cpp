@@ -16,6 +16,8 @@
 namespace touchtrial {
 namespace {
 
+using namespace analysis::identification;
+
 /// The same wave, stronger for each class and a little different in each trial.
 store::Trace stronger_by_class(const design::Presentation& shown) {
   const double strength_n = 0.05 * (1 << shown.stimulus.class_index);
@@ -44,12 +46,11 @@ class FeltStudy : public FakeStudy {
   }
 };
 
-analysis::identification::CueReport cues_of(
-    FakeStudy& study, const analysis::identification::CueOptions& options = {}) {
-  analysis::identification::CueOptions with_pack = options;
+CueReport cues_of(FakeStudy& study, const CueOptions& options = {}) {
+  CueOptions with_pack = options;
   with_pack.pack = study.pack_folder();
-  return analysis::identification::make_cues(
-      study.store(), study.key(), analysis::load_outcomes(study.store(), study.key()), with_pack);
+  return make_cues(study.store(), study.key(), analysis::load_outcomes(study.store(), study.key()),
+                   with_pack);
 }
 
 /// Changes the file as somebody would who may write to it.
@@ -68,9 +69,9 @@ bool any_holds(const std::vector<std::string>& texts, const std::string& part) {
 
 TEST_CASE("strength, and not shape, distinguishes traces of stronger waves") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right());
-  const analysis::identification::CueReport report = cues_of(study);
+  const CueReport report = cues_of(study);
   REQUIRE(report.methods.size() == 1);
-  const analysis::identification::MethodCues& cues = report.methods[0];
+  const MethodCues& cues = report.methods[0];
   CHECK(cues.trials == 36);
   CHECK(cues.fewest_of_a_class == 4);
   CHECK(cues.participants == std::vector<std::string>{"P01", "P02", "P03"});
@@ -85,7 +86,7 @@ TEST_CASE("strength, and not shape, distinguishes traces of stronger waves") {
 
 TEST_CASE("shape, and not strength, distinguishes traces of shorter waves") {
   FeltStudy study(shorter_by_class, FakeStudy::always_right());
-  const analysis::identification::MethodCues cues = cues_of(study).methods.at(0);
+  const MethodCues cues = cues_of(study).methods.at(0);
   CHECK(cues.observers.at(1).mean.mean == 1.0);
   CHECK(cues.observers.at(2).mean.mean == 1.0);
   CHECK(cues.observers.at(0).mean.mean.value() < 0.7);
@@ -97,7 +98,7 @@ TEST_CASE("participants who swap two labels achieve a third of what is available
     return own < 2 ? 1 - own : own;
   };
   FeltStudy study(stronger_by_class, swapped);
-  const analysis::identification::MethodCues cues = cues_of(study).methods.at(0);
+  const MethodCues cues = cues_of(study).methods.at(0);
   CHECK(cues.human_mean.mean.value() == Approx(1.0 / 3.0));
   CHECK(cues.observers.at(0).mean.mean == 1.0);
   CHECK(cues.observers.at(0).efficiency.value.value() == Approx(1.0 / 3.0));
@@ -108,10 +109,9 @@ TEST_CASE("participants who swap two labels achieve a third of what is available
 TEST_CASE("a trial without its trace is left out, counted and mentioned") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right());
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
-  CHECK(analysis::identification::traces_to_read(outcomes) == 36);
+  CHECK(traces_to_read(outcomes) == 36);
   alter(study, "DELETE FROM traces WHERE session = 2 AND trial IN (3, 4)");
-  const analysis::identification::CueReport report =
-      analysis::identification::make_cues(study.store(), study.key(), outcomes);
+  const CueReport report = make_cues(study.store(), study.key(), outcomes);
   CHECK(report.methods.at(0).without_trace == 2);
   CHECK(report.methods.at(0).trials == 34);
   CHECK(report.methods.at(0).participant_trials == std::vector<int>{12, 10, 12});
@@ -122,28 +122,28 @@ TEST_CASE("an altered trace is named, and no number is shown") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right());
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   alter(study, "UPDATE traces SET box = zeroblob(length(box)) WHERE session = 2 AND trial >= 7");
-  REQUIRE_THROWS_WITH(analysis::identification::make_cues(study.store(), study.key(), outcomes),
+  REQUIRE_THROWS_WITH(make_cues(study.store(), study.key(), outcomes),
                       holds_text("session 2, trial 7: the trace does not open"));
 }
 
 TEST_CASE("without pack and images the plane is as large as hands reached, with a warning") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right(), 3, false);
-  const analysis::identification::CueReport report = cues_of(study);
-  CHECK(report.plane_source == analysis::identification::kPlaneFromTraces);
+  const CueReport report = cues_of(study);
+  CHECK(report.plane_source == kPlaneFromTraces);
   CHECK(any_holds(report.warnings, "Neither the study's pack nor its images"));
   CHECK(report.methods.at(0).observers.at(0).mean.mean == 1.0);
 }
 
 TEST_CASE("cues do not depend on the number of threads") {
   FeltStudy study(stronger_by_class, FakeStudy::confusing(0, 2));
-  const std::string one = analysis::identification::cues_object(cues_of(study, {.jobs = 1})).dump();
-  CHECK(analysis::identification::cues_object(cues_of(study, {.jobs = 2})).dump() == one);
-  CHECK(analysis::identification::cues_object(cues_of(study)).dump() == one);
+  const std::string one = cues_object(cues_of(study, {.jobs = 1})).dump();
+  CHECK(cues_object(cues_of(study, {.jobs = 2})).dump() == one);
+  CHECK(cues_object(cues_of(study)).dump() == one);
 }
 
 TEST_CASE("the report warns of few participants, and has no intervals for one") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right(), 1);
-  const analysis::identification::CueReport report = cues_of(study);
+  const CueReport report = cues_of(study);
   CHECK(any_holds(report.warnings, "1 participant cannot decide which cue was used"));
   CHECK_FALSE(report.methods.at(0).observers.at(0).efficiency.interval);
   CHECK_FALSE(report.methods.at(0).match.value().told_apart);
@@ -151,8 +151,8 @@ TEST_CASE("the report warns of few participants, and has no intervals for one") 
 
 TEST_CASE("touches too short to feel anything leave every observer at chance") {
   FeltStudy study({}, FakeStudy::always_right());
-  const analysis::identification::CueReport report = cues_of(study);
-  for (const analysis::identification::ObserverFigures& one : report.methods.at(0).observers) {
+  const CueReport report = cues_of(study);
+  for (const ObserverFigures& one : report.methods.at(0).observers) {
     CHECK(one.mean.mean.value() == Approx(1.0 / 3.0));
     CHECK_FALSE(one.corrected_efficiency.value);
   }
@@ -161,17 +161,17 @@ TEST_CASE("touches too short to feel anything leave every observer at chance") {
 
 TEST_CASE("a study without counted trials has no numbers and says so") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right(), 0);
-  const analysis::identification::CueReport report = cues_of(study);
+  const CueReport report = cues_of(study);
   CHECK(report.methods.at(0).trials == 0);
   CHECK(report.methods.at(0).observers.empty());
   CHECK_FALSE(report.methods.at(0).match);
   CHECK(any_holds(report.warnings, "no trial can be judged"));
-  CHECK(analysis::identification::cues_object(report)["methods"][0]["match"].is_null());
+  CHECK(cues_object(report)["methods"][0]["match"].is_null());
 }
 
 TEST_CASE("cues in JSON are stamped, and tell how each number is computed") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right());
-  const auto object = analysis::identification::cues_object(cues_of(study));
+  const auto object = cues_object(cues_of(study));
   CHECK(object["stamp"] == "SIMULATED");
   const auto& method = object["methods"][0];
   CHECK(method["observers"][0]["cue"] == "rms");

@@ -7,17 +7,17 @@
 namespace touchtrial {
 namespace {
 
-analysis::identification::MethodReport fake_method(const FakeReportOptions& options,
-                                                   std::size_t number) {
+using namespace analysis::identification;
+
+MethodReport fake_method(const FakeReportOptions& options, std::size_t number) {
   const auto classes = static_cast<int>(options.classes.size());
   RandomStream random(7, "fake report", number);
-  analysis::identification::MethodReport method;
+  MethodReport method;
   method.method = options.methods[number];
   method.confusion = analysis::ConfusionMatrix(classes);
   const int places = classes * options.repeats;
   std::vector<analysis::Proportion> by_place(static_cast<std::size_t>(places));
-  std::vector<analysis::identification::ReactionTimes> reaction(static_cast<std::size_t>(classes) +
-                                                                1);
+  std::vector<ReactionTimes> reaction(static_cast<std::size_t>(classes) + 1);
   std::vector<double> accuracies;
   for (int p = 0; p < options.participants; ++p) {
     const double skill = 0.55 + 0.4 * random.uniform() - 0.1 * static_cast<double>(number);
@@ -39,7 +39,7 @@ analysis::identification::MethodReport fake_method(const FakeReportOptions& opti
             3.0 + presented + 9.0 * random.uniform() * random.uniform());
       }
     }
-    analysis::identification::ParticipantAccuracy one;
+    ParticipantAccuracy one;
     one.participant = "P" + std::to_string(p + 1);
     one.accuracy = own.accuracy();
     accuracies.push_back(one.accuracy.share().value_or(0.0));
@@ -53,12 +53,12 @@ analysis::identification::MethodReport fake_method(const FakeReportOptions& opti
   }
   method.overall = method.confusion.accuracy();
   method.mean = analysis::participant_mean(accuracies);
-  for (analysis::identification::ReactionTimes& times : reaction) {
+  for (ReactionTimes& times : reaction) {
     std::sort(times.seconds.begin(), times.seconds.end());
     times.from_plane_on = analysis::quartiles(times.seconds);
   }
   method.reaction = std::move(reaction);
-  analysis::identification::Breakdown trials{analysis::identification::BreakdownKind::trial, {}};
+  Breakdown trials{BreakdownKind::trial, {}};
   for (int place = 0; place < places && options.participants > 0; ++place) {
     const analysis::Proportion at = by_place[static_cast<std::size_t>(place)];
     trials.groups.push_back({std::to_string(place + 1), at, analysis::wilson_interval(at)});
@@ -67,15 +67,14 @@ analysis::identification::MethodReport fake_method(const FakeReportOptions& opti
   return method;
 }
 
-analysis::identification::MethodPair fake_pair(const analysis::identification::StudyReport& report,
-                                               int first, int second) {
+MethodPair fake_pair(const StudyReport& report, int first, int second) {
   const auto& a = report.methods[static_cast<std::size_t>(first)].per_participant;
   const auto& b = report.methods[static_cast<std::size_t>(second)].per_participant;
   std::vector<analysis::PairedAccuracy> paired;
   for (std::size_t i = 0; i < a.size(); ++i) {
     paired.push_back({a[i].accuracy.share().value_or(0.0), b[i].accuracy.share().value_or(0.0)});
   }
-  analysis::identification::MethodPair pair;
+  MethodPair pair;
   pair.first = first;
   pair.second = second;
   pair.overall = analysis::compare_methods(paired);
@@ -84,8 +83,8 @@ analysis::identification::MethodPair fake_pair(const analysis::identification::S
 
 }  // namespace
 
-analysis::identification::StudyReport fake_report(const FakeReportOptions& options) {
-  analysis::identification::StudyReport report;
+StudyReport fake_report(const FakeReportOptions& options) {
+  StudyReport report;
   report.study = "fake";
   report.simulated = true;
   report.participants = options.participants;
@@ -112,18 +111,18 @@ analysis::identification::StudyReport fake_report(const FakeReportOptions& optio
   return report;
 }
 
-analysis::identification::CueReport fake_cues(const FakeReportOptions& options) {
-  analysis::identification::CueReport cues;
+CueReport fake_cues(const FakeReportOptions& options) {
+  CueReport cues;
   cues.simulated = true;
   cues.classes = options.classes;
   cues.chance = 1.0 / static_cast<double>(options.classes.size());
   for (std::size_t m = 0; m < options.methods.size(); ++m) {
     RandomStream random(8, "fake cues", m);
-    analysis::identification::MethodCues method;
+    MethodCues method;
     method.method = options.methods[m];
-    for (std::size_t c = 0; c < analysis::identification::kCues.size(); ++c) {
-      analysis::identification::ObserverFigures observer;
-      observer.cue = analysis::identification::kCues[c];
+    for (std::size_t c = 0; c < kCues.size(); ++c) {
+      ObserverFigures observer;
+      observer.cue = kCues[c];
       for (int p = 0; p < options.participants; ++p) {
         observer.accuracy.push_back(
             std::min(1.0, 0.5 + 0.2 * static_cast<double>(c) + 0.2 * random.uniform()));

@@ -8,6 +8,8 @@
 namespace touchtrial {
 namespace {
 
+using namespace analysis::identification;
+
 engine::FeltFeatures features_of(Difference difference, int class_index) {
   engine::FeltFeatures felt{};
   felt.fill(-3.0);
@@ -26,11 +28,10 @@ engine::FeltFeatures features_of(Difference difference, int class_index) {
 
 }  // namespace
 
-std::vector<analysis::identification::ObservedTrial> felt_trials(Difference difference, int classes,
-                                                                 int repeats, double noise,
-                                                                 std::uint64_t index) {
+std::vector<ObservedTrial> felt_trials(Difference difference, int classes, int repeats,
+                                       double noise, std::uint64_t index) {
   RandomStream random(7, "felt_fixtures", index);
-  std::vector<analysis::identification::ObservedTrial> trials;
+  std::vector<ObservedTrial> trials;
   for (int i = 0; i < classes * repeats; ++i) {
     const int class_index = i % classes;
     trials.push_back({class_index, 0, features_of(difference, class_index)});

@@ -8,20 +8,21 @@
 namespace touchtrial {
 namespace {
 
-analysis::identification::StudyReport report_of(FakeStudy& study) {
+using namespace analysis::identification;
+
+StudyReport report_of(FakeStudy& study) {
   study.close_and_unblind();
-  return analysis::identification::make_report(analysis::load_outcomes(study.store(), study.key()));
+  return make_report(analysis::load_outcomes(study.store(), study.key()));
 }
 
 /// One participant with these answers.
-analysis::identification::StudyReport report_of_one(const FakeAnswers& answers,
-                                                    const FakeOptions& options = {}) {
+StudyReport report_of_one(const FakeAnswers& answers, const FakeOptions& options = {}) {
   FakeStudy study(design::identification::classification(), options);
   study.add({.participant = "P01", .answers = answers});
   return report_of(study);
 }
 
-int warnings_with(const analysis::identification::StudyReport& report, const std::string& part) {
+int warnings_with(const StudyReport& report, const std::string& part) {
   return static_cast<int>(std::ranges::count_if(
       report.warnings, [&](const std::string& warning) { return contains(warning, part); }));
 }
@@ -34,27 +35,22 @@ std::optional<int> swapping(const design::Presentation& shown) {
 
 }  // namespace
 
-TEST_CASE("Swapped labels are suspected of a participant who is right under another naming") {
-  const analysis::identification::StudyReport swapped = report_of_one(swapping);
+TEST_CASE(
+    "What one participant's answers and the study's order hide is reported, and nothing else") {
+  const StudyReport swapped = report_of_one(swapping);
+  const StudyReport right = report_of_one(FakeStudy::always_right());
+  const StudyReport without_cloth = report_of_one(FakeStudy::confusing(1, 0));
+  const StudyReport drawn = report_of_one(swapping, {.trials = R"({"order": "uniform"})"});
   CHECK(warnings_with(swapped, "labels may have been swapped by P01 (33.3%, but 100.0%") == 1);
-  CHECK(warnings_with(report_of_one(FakeStudy::always_right()), "swapped") == 0);
-}
-
-TEST_CASE("A class that is never answered is reported") {
-  const analysis::identification::StudyReport report = report_of_one(FakeStudy::confusing(1, 0));
-  CHECK(warnings_with(report, "cloth was never answered") == 1);
-  CHECK_FALSE(report.methods[0].choice.has_value());
-  CHECK(warnings_with(report_of_one(FakeStudy::always_right()), "never answered") == 0);
-}
-
-TEST_CASE("What a perfect score hides is reported") {
-  CHECK(warnings_with(report_of_one(FakeStudy::always_right()), "d' has a lower bound alone") == 1);
-  CHECK(warnings_with(report_of_one(swapping), "lower bound") == 0);
-}
-
-TEST_CASE("Classes with five trials or fewer have uninformative intervals") {
-  const analysis::identification::StudyReport report = report_of_one(swapping);
-  CHECK(warnings_with(report, "bark, cloth, straw rests on 5 trials or fewer") == 1);
+  CHECK(warnings_with(right, "swapped") == 0);
+  CHECK(warnings_with(without_cloth, "cloth was never answered") == 1);
+  CHECK_FALSE(without_cloth.methods[0].choice.has_value());
+  CHECK(warnings_with(right, "never answered") == 0);
+  CHECK(warnings_with(right, "d' has a lower bound alone") == 1);
+  CHECK(warnings_with(swapped, "lower bound") == 0);
+  CHECK(warnings_with(swapped, "bark, cloth, straw rests on 5 trials or fewer") == 1);
+  CHECK(warnings_with(drawn, "Classes were drawn independently") == 1);
+  CHECK(warnings_with(swapped, "Classes were drawn independently") == 0);
 }
 
 TEST_CASE("Classes of more than five pooled trials are not warned of") {
@@ -68,20 +64,14 @@ TEST_CASE("The headline is repeated without invalid trials") {
   FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.add({.participant = "P02", .enrolment = 2, .answers = swapping, .valid = false});
-  const analysis::identification::StudyReport report = report_of(study);
+  const StudyReport report = report_of(study);
   CHECK(warnings_with(report,
                       "adaptive: without 12 trials not valid by the study's rule the mean over "
                       "participants is 100.0% in place of 66.7%.") == 1);
 }
 
-TEST_CASE("Classes that are drawn independently are reported") {
-  CHECK(warnings_with(report_of_one(swapping, {.trials = R"({"order": "uniform"})"}),
-                      "Classes were drawn independently") == 1);
-  CHECK(warnings_with(report_of_one(swapping), "Classes were drawn independently") == 0);
-}
-
 TEST_CASE("A Monte Carlo p that cannot be smaller is reported") {
-  const analysis::identification::StudyReport report =
+  const StudyReport report =
       report_of_one(FakeStudy::always_right(), {.trials = R"({"max_run": 2, "repeats": 6})"});
   REQUIRE(report.methods[0].chance.has_value());
   CHECK_FALSE(report.methods[0].chance->exact);
@@ -99,7 +89,7 @@ TEST_CASE("One who swaps labels among many is suspected, and guessers are not") 
                  return std::optional((shown.trial * 7 + i) % 3);
                }});
   }
-  const analysis::identification::StudyReport report = report_of(study);
+  const StudyReport report = report_of(study);
   CHECK(warnings_with(report,
                       "labels may have been swapped by P01 (33.3%, but 100.0% under the "
                       "best exchange); accuracy") == 1);

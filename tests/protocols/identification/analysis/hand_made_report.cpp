@@ -7,6 +7,8 @@
 namespace touchtrial {
 namespace {
 
+using namespace analysis::identification;
+
 /// With one missing response to each class.
 analysis::ConfusionMatrix confusion_of(const std::vector<std::vector<int>>& counts) {
   analysis::ConfusionMatrix confusion = confusion_of_counts(counts);
@@ -14,16 +16,16 @@ analysis::ConfusionMatrix confusion_of(const std::vector<std::vector<int>>& coun
   return confusion;
 }
 
-analysis::identification::ReactionTimes times_of(double median) {
-  analysis::identification::ReactionTimes times;
+ReactionTimes times_of(double median) {
+  ReactionTimes times;
   times.from_plane_on = {12, median - 1.0, median, median + 2.0};
   times.from_contact = {12, median - 1.5, median - 0.5, median + 1.5};
   return times;
 }
 
-void add_participants(analysis::identification::MethodReport& method) {
+void add_participants(MethodReport& method) {
   for (int i = 1; i <= 6; ++i) {
-    analysis::identification::ParticipantAccuracy one{"P0" + std::to_string(i), {12, 6 + i}};
+    ParticipantAccuracy one{"P0" + std::to_string(i), {12, 6 + i}};
     one.matching = {{12, 12}, {1, 0, 2}};
     one.consistency = 0.5;
     method.per_participant.push_back(one);
@@ -49,9 +51,8 @@ analysis::ChoiceModel choice_of() {
   return model;
 }
 
-analysis::identification::MethodReport method_of(const std::string& name,
-                                                 const std::vector<std::vector<int>>& counts) {
-  analysis::identification::MethodReport method;
+MethodReport method_of(const std::string& name, const std::vector<std::vector<int>>& counts) {
+  MethodReport method;
   method.method = name;
   method.confusion = confusion_of(counts);
   method.overall = method.confusion.accuracy();
@@ -70,23 +71,22 @@ analysis::identification::MethodReport method_of(const std::string& name,
   method.choice = choice_of();
   add_participants(method);
   for (const double median : {4.0, 5.5, 6.25, 5.0}) method.reaction.push_back(times_of(median));
-  method.breakdowns = {{analysis::identification::BreakdownKind::trial,
-                        {{"1", {6, 4}, {0.3, 0.9}}, {"2", {6, 5}, {0.4, 1}}}}};
-  method.unbiased = std::vector<analysis::identification::UnbiasedHits>(
-      4, {{6, 0.62, {0.5, 0.74}, 0.114}, 0.131});
+  method.breakdowns = {
+      {BreakdownKind::trial, {{"1", {6, 4}, {0.3, 0.9}}, {"2", {6, 5}, {0.4, 1}}}}};
+  method.unbiased = std::vector<UnbiasedHits>(4, {{6, 0.62, {0.5, 0.74}, 0.114}, 0.131});
   method.order = analysis::OrderEffects{
       {6, 0.0123, {-0.002, 0.0266}, 0.0136}, 0.082, {18, 9, 6.25, 0.31}, {17, 4, 6.0, 0.5}, 1999};
-  method.confidence = analysis::identification::ConfidenceReport{
+  method.confidence = ConfidenceReport{
       {{1, {30, 18}, {6, 0.6, {0.4, 0.8}, 0.19}}, {2, {42, 39}, {5, 0.93, {0.8, 1.0}, 0.1}}},
       {5, 0.71, {0.6, 0.82}, 0.09},
       1};
-  method.robustness = {{analysis::identification::TrialSubset::counted, {75, 57}, method.mean},
-                       {analysis::identification::TrialSubset::answered, {72, 57}, method.mean}};
+  method.robustness = {{TrialSubset::counted, {75, 57}, method.mean},
+                       {TrialSubset::answered, {72, 57}, method.mean}};
   return method;
 }
 
-analysis::identification::MethodPair pair_of() {
-  analysis::identification::MethodPair pair;
+MethodPair pair_of() {
+  MethodPair pair;
   pair.overall = {6, -0.083, {-0.2, 0.034}, 0.125, -0.42, analysis::Interval{-0.16, -0.01}};
   pair.odds_ratio = analysis::OddsRatio{0.66, {0.31, 1.4}, analysis::Interval{0.25, 1.7}};
   for (int i = 0; i < 3; ++i) {
@@ -95,18 +95,18 @@ analysis::identification::MethodPair pair_of() {
   return pair;
 }
 
-analysis::identification::CueReport cues_of(const std::vector<std::string>& classes) {
-  analysis::identification::CueReport cues;
+CueReport cues_of(const std::vector<std::string>& classes) {
+  CueReport cues;
   cues.chance = 1.0 / 3.0;
   cues.classes = classes;
-  analysis::identification::MethodCues method;
+  MethodCues method;
   method.method = "adaptive";
   method.trials = 70;
   method.without_trace = 5;
   method.participants = {"P01", "P02"};
   method.human_mean = {2, 0.7, {0.5, 0.9}};
-  for (const analysis::identification::Cue cue : analysis::identification::kCues) {
-    analysis::identification::ObserverFigures observer;
+  for (const Cue cue : kCues) {
+    ObserverFigures observer;
     observer.cue = cue;
     observer.mean = {2, 0.9, {0.8, 1.0}};
     observer.efficiency = {0.78, analysis::Interval{0.6, 0.95}};
@@ -115,10 +115,8 @@ analysis::identification::CueReport cues_of(const std::vector<std::string>& clas
     observer.matched_divergence = {0.045, analysis::Interval{0.03, 0.06}};
     method.observers.push_back(observer);
   }
-  method.match = analysis::identification::CueMatch{analysis::identification::Cue::spectrum,
-                                                    analysis::identification::Cue::everything,
-                                                    {0.02, analysis::Interval{-0.01, 0.05}},
-                                                    false};
+  method.match =
+      CueMatch{Cue::spectrum, Cue::everything, {0.02, analysis::Interval{-0.01, 0.05}}, false};
   cues.methods.push_back(method);
   return cues;
 }
@@ -173,8 +171,8 @@ analysis::Collection collection_of() {
 
 }  // namespace
 
-analysis::identification::StudyReport hand_made_report(const std::string& label) {
-  analysis::identification::StudyReport report;
+StudyReport hand_made_report(const std::string& label) {
+  StudyReport report;
   report.study = "hand-made";
   report.protocol = "comparison";
   report.simulated = true;

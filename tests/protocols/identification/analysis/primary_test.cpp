@@ -17,8 +17,8 @@
 namespace touchtrial {
 namespace {
 
+using namespace analysis::identification;
 using analysis::Verdict;
-using analysis::identification::StudyReport;
 using std::chrono::seconds;
 
 constexpr const char* kRegistered =
@@ -43,17 +43,21 @@ void add_people(FakeStudy& study, int first, const std::vector<int>& right) {
 }
 
 StudyReport report_of(FakeStudy& study) {
-  return analysis::identification::make_report(analysis::load_outcomes(study.store(), study.key()));
+  return make_report(analysis::load_outcomes(study.store(), study.key()));
+}
+
+StudyReport final_report_of(FakeStudy& study) {
+  study.close_and_unblind();
+  return report_of(study);
 }
 
 /// What a look at the registered question alone is made of.
 StudyReport answer_of(FakeStudy& study) {
-  return analysis::identification::make_report(
-      analysis::load_for_question(study.store(), study.key()));
+  return make_report(analysis::load_for_question(study.store(), study.key()));
 }
 
 nlohmann::json json_of(const StudyReport& report) {
-  return nlohmann::json::parse(analysis::identification::report_json(report));
+  return nlohmann::json::parse(report_json(report));
 }
 
 const analysis::PrimaryChoice& choice_of(const StudyReport& report, const std::string& name) {
@@ -62,7 +66,7 @@ const analysis::PrimaryChoice& choice_of(const StudyReport& report, const std::s
 }
 
 std::string terminal_text(const StudyReport& report) {
-  return analysis::document_text(analysis::identification::study_document(report, {}));
+  return analysis::document_text(study_document(report, {}));
 }
 
 std::string on_one_line(const std::string& text) {
@@ -71,6 +75,34 @@ std::string on_one_line(const std::string& text) {
   for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
   return line;
 }
+
+/// A primary result by hand, of a study that collected the planned number and is closed.
+struct Judged {
+  explicit Judged(double null, int people = 20)
+      : course{.planned = people,
+               .completed = people,
+               .analysed = people,
+               .closed = true,
+               .has_registration = true} {
+    result.null = null;
+    at(0.6, {0.5, 0.7}, 0.001);
+  }
+  void at(double estimate, analysis::Interval interval, double p) {
+    result.choices = {{"registered", "", course.analysed, 500, estimate, interval}};
+    result.p = p;
+  }
+  [[nodiscard]] Verdict verdict() {
+    analysis::judge(result, course);
+    return result.verdict;
+  }
+  [[nodiscard]] Verdict verdict(double estimate, analysis::Interval interval, double p) {
+    at(estimate, interval, p);
+    return verdict();
+  }
+
+  analysis::PrimaryResult result;
+  analysis::StudyCourse course;
+};
 
 /// Two looks, three exclusions after them, and 14 of 20 participants.
 StudyReport looked_at(FakeStudy& study) {
@@ -82,8 +114,7 @@ StudyReport looked_at(FakeStudy& study) {
   for (const int session : {4, 5, 8}) {
     study.store().exclude(session, seconds(1'770'000'000), "guessed");
   }
-  study.close_and_unblind();
-  return report_of(study);
+  return final_report_of(study);
 }
 
 }  // namespace
@@ -138,8 +169,7 @@ TEST_CASE("the primary result is the t test of participants' accuracies against 
   FakeStudy study(design::identification::classification(),
                   {.registration = R"({"participants": 6, "estimand": "mean-accuracy"})"});
   add_people(study, 1, {8, 7, 6, 9, 5, 4});
-  study.close_and_unblind();
-  const StudyReport report = report_of(study);
+  const StudyReport report = final_report_of(study);
   const analysis::PrimaryResult& primary = *report.primary;
   const std::vector<double> shares = {8 / 12.0, 7 / 12.0, 6 / 12.0, 9 / 12.0, 5 / 12.0, 4 / 12.0};
   CHECK(primary.p == analysis::t_test_p(shares, 1.0 / 3.0, analysis::Sides::one));
@@ -155,8 +185,7 @@ TEST_CASE("the primary result is the t test of participants' accuracies against 
 TEST_CASE("a study file without the fields registers nothing") {
   FakeStudy study(design::identification::classification());
   add_people(study, 1, {8, 7, 6, 9, 5, 4});
-  study.close_and_unblind();
-  const nlohmann::json json = json_of(report_of(study));
+  const nlohmann::json json = json_of(final_report_of(study));
   CHECK(json["registered"].is_null());
   CHECK(json["primary"]["verdict"] == "not registered");
   CHECK(json["departures"].empty());
@@ -171,8 +200,7 @@ TEST_CASE("exclusions are held against the registered rules") {
   study.store().note(2, seconds(5), "asleep", "snored too");
   study.store().exclude(2, seconds(6), "asleep");
   study.store().exclude(3, seconds(6), "slow");
-  study.close_and_unblind();
-  const StudyReport report = report_of(study);
+  const StudyReport report = final_report_of(study);
   std::string all;
   for (const std::string& one : report.departures) all += one + "\n";
   CHECK_THAT(all, holds_text("1 session excluded for a reason that no registered rule states: P3 "
@@ -185,17 +213,11 @@ TEST_CASE("exclusions are held against the registered rules") {
 }
 
 TEST_CASE("an effect may be excluded, reached or open") {
-  using analysis::judge;
-  analysis::PrimaryResult result;
-  result.null = 0.2;
+  Judged judged(0.2);
+  analysis::PrimaryResult& result = judged.result;
   result.smallest_effect = 0.4;
-  const analysis::StudyCourse course{
-      .planned = 20, .completed = 20, .analysed = 20, .closed = true, .has_registration = true};
   const auto verdict = [&](double estimate, analysis::Interval interval, double p) {
-    result.choices = {{"registered", "", 20, 500, estimate, interval}};
-    result.p = p;
-    judge(result, course);
-    return result.verdict;
+    return judged.verdict(estimate, interval, p);
   };
   CHECK(verdict(0.6, {0.5, 0.7}, 0.001) == Verdict::supported);
   CHECK_THAT(result.because, holds_text("lies above 40.0%"));
@@ -215,15 +237,11 @@ TEST_CASE("an effect may be excluded, reached or open") {
 }
 
 TEST_CASE("an interval without width, or cut where possible values end, is said to be so") {
-  analysis::PrimaryResult result;
-  result.null = 0.2;
+  Judged judged(0.2, 2);
+  analysis::PrimaryResult& result = judged.result;
   result.smallest_effect = 0.4;
-  const analysis::StudyCourse course{
-      .planned = 2, .completed = 2, .analysed = 2, .closed = true, .has_registration = true};
   const auto because = [&](double estimate, analysis::Interval interval, double p) {
-    result.choices = {{"registered", "", 2, 50, estimate, interval}};
-    result.p = p;
-    judge(result, course);
+    static_cast<void>(judged.verdict(estimate, interval, p));
     return result.because;
   };
   CHECK_THAT(because(0.7, {0.0, 1.0}, 0.2),
@@ -241,22 +259,16 @@ TEST_CASE("an interval without width, or cut where possible values end, is said 
 }
 
 TEST_CASE("more participants than planned are said, and decide nothing after a look") {
-  analysis::PrimaryResult result;
-  result.null = 0.2;
-  result.choices = {{"registered", "", 25, 500, 0.6, analysis::Interval{0.5, 0.7}}};
-  result.p = 0.001;
-  analysis::StudyCourse course{
-      .planned = 20, .completed = 25, .analysed = 25, .closed = true, .has_registration = true};
-  judge(result, course);
-  CHECK(result.verdict == Verdict::supported);
-  CHECK_THAT(result.because, holds_text("25 participants completed, 5 more than planned"));
-  course.registered_looks = {10};
-  judge(result, course);
-  CHECK(result.verdict == Verdict::undecided);
-  CHECK_THAT(result.because, holds_text("5 participants more than the 20 planned were collected"));
-  result.p = 0.3;
-  judge(result, course);
-  CHECK(result.verdict == Verdict::not_supported);
+  Judged judged(0.2, 25);
+  judged.course.planned = 20;
+  CHECK(judged.verdict() == Verdict::supported);
+  CHECK_THAT(judged.result.because, holds_text("25 participants completed, 5 more than planned"));
+  judged.course.registered_looks = {10};
+  CHECK(judged.verdict() == Verdict::undecided);
+  CHECK_THAT(judged.result.because,
+             holds_text("5 participants more than the 20 planned were collected"));
+  judged.result.p = 0.3;
+  CHECK(judged.verdict() == Verdict::not_supported);
 }
 
 TEST_CASE("the first row speaks of late exclusions if there were any") {
@@ -266,8 +278,7 @@ TEST_CASE("the first row speaks of late exclusions if there were any") {
   FakeStudy plain(design::identification::classification(), {.registration = kRegistered});
   add_people(plain, 1, {8, 7, 9});
   plain.store().exclude(3, seconds(6), "ill");
-  plain.close_and_unblind();
-  CHECK(choice_of(report_of(plain), "registered").words == "as registered");
+  CHECK(choice_of(final_report_of(plain), "registered").words == "as registered");
 }
 
 TEST_CASE("a look far too early has a level, and an interval of it") {
@@ -283,28 +294,19 @@ TEST_CASE("a look far too early has a level, and an interval of it") {
 }
 
 TEST_CASE("p within its level decides nothing after an unregistered look or before the end") {
-  analysis::PrimaryResult result;
-  result.null = 0.2;
-  result.choices = {{"registered", "", 20, 500, 0.6, analysis::Interval{0.5, 0.7}}};
-  result.p = 0.001;
-  analysis::StudyCourse course{
-      .planned = 20, .completed = 20, .analysed = 20, .closed = true, .has_registration = true};
-  const auto verdict = [&] {
-    analysis::judge(result, course);
-    return result.verdict;
-  };
-  course.unregistered_looks = 1;
-  CHECK(verdict() == Verdict::undecided);
-  result.p = 0.3;
-  CHECK(verdict() == Verdict::not_supported);
-  result.p = 0.001;
-  course.unregistered_looks = 0;
-  course.closed = false;
-  CHECK(verdict() == Verdict::undecided);
-  course.at_registered_look = true;
-  CHECK(verdict() == Verdict::supported);
-  course.pilot = true;
-  CHECK(verdict() == Verdict::not_registered);
+  Judged judged(0.2);
+  judged.course.unregistered_looks = 1;
+  CHECK(judged.verdict() == Verdict::undecided);
+  judged.result.p = 0.3;
+  CHECK(judged.verdict() == Verdict::not_supported);
+  judged.result.p = 0.001;
+  judged.course.unregistered_looks = 0;
+  judged.course.closed = false;
+  CHECK(judged.verdict() == Verdict::undecided);
+  judged.course.at_registered_look = true;
+  CHECK(judged.verdict() == Verdict::supported);
+  judged.course.pilot = true;
+  CHECK(judged.verdict() == Verdict::not_registered);
 }
 
 TEST_CASE("a registered look has Lan and DeMets's level, and so has the end after it") {
@@ -315,8 +317,7 @@ TEST_CASE("a registered look has Lan and DeMets's level, and so has the end afte
   study.store().look_at_question(seconds(10), "as registered");
   CHECK(answer_of(study).primary->level == Approx(0.0055745966).epsilon(1e-5));
   add_people(study, 5, {5, 4, 6, 5});
-  study.close_and_unblind();
-  const StudyReport report = report_of(study);
+  const StudyReport report = final_report_of(study);
   CHECK(report.primary->level == Approx(0.0482457031).epsilon(1e-5));
   CHECK(report.departures.empty());
 }
@@ -333,10 +334,9 @@ TEST_CASE("a registered look may end collecting, and its interval has the level 
   CHECK_THAT(look.primary->because, holds_text("At the registered look at 4 participants"));
   analysis::Provenance provenance;
   provenance.state = study.store().state();
-  CHECK_THAT(analysis::document_text(analysis::identification::study_document(look, provenance)),
+  CHECK_THAT(analysis::document_text(study_document(look, provenance)),
              holds_text("INTERIM LOOK at the registered question"));
-  study.close_and_unblind();
-  const StudyReport report = report_of(study);
+  const StudyReport report = final_report_of(study);
   CHECK(report.primary->verdict == Verdict::supported);
   CHECK_THAT(report.primary->because, holds_text("too large on average"));
   CHECK(report.departures.empty());
@@ -346,8 +346,7 @@ TEST_CASE("without a registered number of participants a p within its level deci
   FakeStudy study(design::identification::classification(),
                   {.registration = R"({"estimand": "mean-accuracy"})"});
   add_people(study, 1, {11, 12, 11, 12});
-  study.close_and_unblind();
-  const StudyReport report = report_of(study);
+  const StudyReport report = final_report_of(study);
   CHECK(report.primary->p.value() < 0.001);
   CHECK(report.primary->verdict == Verdict::undecided);
   CHECK(report.departures == std::vector<std::string>{"No number of participants was registered."});
@@ -366,8 +365,7 @@ TEST_CASE("a registered difference is the first method less the second") {
                  return std::optional(wrong ? 1 : shown.stimulus.class_index);
                }});
   }
-  study.close_and_unblind();
-  const StudyReport report = report_of(study);
+  const StudyReport report = final_report_of(study);
   CHECK(report.primary->registered().estimate.value() == Approx(1.0 / 3.0));
   CHECK(report.primary->p == 0.125);
   CHECK(report.primary->verdict == Verdict::not_supported);
@@ -399,8 +397,7 @@ TEST_CASE("in blocks by method an effect of the period is not one of the methods
   FakeStudy study(design::identification::comparison(),
                   {.registration = R"({"participants": 8, "estimand": "difference"})"});
   add_learners(study, {1, 2, 3, 4, 5, 6, 7, 8});
-  study.close_and_unblind();
-  const StudyReport report = report_of(study);
+  const StudyReport report = final_report_of(study);
   const analysis::PrimaryResult& primary = *report.primary;
   REQUIRE(primary.crossover.has_value());
   CHECK(primary.crossover->first_first == 4);
@@ -436,8 +433,7 @@ TEST_CASE("with one order of methods alone nothing tells the method from the per
     }
   }
   add_learners(study, same_order);
-  study.close_and_unblind();
-  const StudyReport report = report_of(study);
+  const StudyReport report = final_report_of(study);
   CHECK(report.primary->verdict == Verdict::undecided);
   CHECK_FALSE(report.primary->p);
   CHECK_FALSE(report.primary->registered().estimate);
@@ -458,8 +454,7 @@ TEST_CASE("a study of mixed blocks, and a registered test, have no period-adjust
                   .enrolment = i,
                   .answers = FakeStudy::always_right()});
     }
-    study->close_and_unblind();
-    CHECK_FALSE(report_of(*study).primary->crossover);
+    CHECK_FALSE(final_report_of(*study).primary->crossover);
     CHECK(report_of(*study).primary->test == "sign flips over participants, two-sided");
   }
   CHECK_FALSE(contains(terminal_text(report_of(mixed)), "Methods came one after the other"));
@@ -468,19 +463,13 @@ TEST_CASE("a study of mixed blocks, and a registered test, have no period-adjust
 }
 
 TEST_CASE("as good by a margin is judged by the interval above minus the margin") {
-  analysis::PrimaryResult result;
+  Judged judged(-0.07);
+  analysis::PrimaryResult& result = judged.result;
   result.estimand = design::Estimand::difference;
-  result.null = -0.07;
   result.margin = 0.07;
   result.interval_level = 0.9;
-  const analysis::StudyCourse course{
-      .planned = 20, .completed = 20, .analysed = 20, .closed = true, .has_registration = true};
   const auto verdict = [&](analysis::Interval interval, double p) {
-    const double middle = 0.5 * (interval.low + interval.high);
-    result.choices = {{"registered", "", 20, 800, middle, interval}};
-    result.p = p;
-    judge(result, course);
-    return result.verdict;
+    return judged.verdict(0.5 * (interval.low + interval.high), interval, p);
   };
   CHECK(verdict({-0.05, 0.03}, 0.02) == Verdict::supported);
   CHECK_THAT(result.because, holds_text("The 90% interval lies above −7.0 points"));
@@ -500,8 +489,7 @@ TEST_CASE("a registered margin has the one-sided test and the 90 % interval") {
                   {.registration = R"({"participants": 8, "estimand": "difference",
                                        "methods": ["tv-gabor", "adaptive"], "margin": 0.2})"});
   add_learners(study, {1, 2, 3, 4, 5, 6, 7, 8});
-  study.close_and_unblind();
-  const StudyReport report = report_of(study);
+  const StudyReport report = final_report_of(study);
   const analysis::PrimaryResult& primary = *report.primary;
   CHECK(primary.null == -0.2);
   CHECK(primary.interval_level == Approx(0.9));

@@ -19,7 +19,8 @@
 namespace touchtrial {
 namespace {
 
-using analysis::identification::StudyReport;
+using namespace analysis::identification;
+
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
@@ -62,11 +63,11 @@ void add_people_and_texts(FakeStudy& study) {
 
 /// Everything that a report writes, except what gnuplot draws from the scripts.
 std::string everything(const StudyReport& report, const analysis::Provenance& provenance) {
-  const analysis::Document document = analysis::identification::study_document(report, provenance);
+  const analysis::Document document = study_document(report, provenance);
   std::string all = analysis::document_text(document) + analysis::page_html(document) +
                     analysis::tables_markdown(document) + analysis::tables_latex(document) +
-                    analysis::identification::report_json(report);
-  for (const analysis::Figure& figure : analysis::identification::report_figures(report)) {
+                    report_json(report);
+  for (const analysis::Figure& figure : report_figures(report)) {
     all += figure.id + figure.caption + figure.alt + figure.script;
   }
   return all;
@@ -85,12 +86,12 @@ TEST_CASE("a public report names nobody and holds nothing that a person wrote") 
   add_people_and_texts(study);
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   analysis::Provenance provenance = analysis::provenance_of(study.store(), "study.db");
-  const std::string whole = everything(analysis::identification::make_report(outcomes), provenance);
+  const std::string whole = everything(make_report(outcomes), provenance);
   CHECK(found_in(whole) >= 12);  // a report that hides nothing has most of them
 
   const analysis::Outcomes bare = analysis::without_identities(outcomes);
   provenance.state = bare.state;
-  const std::string text = everything(analysis::identification::make_report(bare), provenance);
+  const std::string text = everything(make_report(bare), provenance);
   for (const std::string& planted : kPlanted) {
     INFO(planted);
     CHECK_FALSE(contains(text, planted));
@@ -134,8 +135,7 @@ TEST_CASE("a public report has the numbers of the other one, by rank of accuracy
   add_people_and_texts(study);
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const auto json_of = [](const analysis::Outcomes& of) {
-    return nlohmann::json::parse(
-        analysis::identification::report_json(analysis::identification::make_report(of)));
+    return nlohmann::json::parse(report_json(make_report(of)));
   };
   nlohmann::json whole = json_of(outcomes);
   nlohmann::json open = json_of(analysis::without_identities(outcomes));

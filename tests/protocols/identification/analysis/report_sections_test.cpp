@@ -14,6 +14,8 @@
 namespace touchtrial {
 namespace {
 
+using namespace analysis::identification;
+
 constexpr int kBark = 0;
 constexpr int kCloth = 1;
 
@@ -32,13 +34,11 @@ HandMadeOutcomes five_trials() {
 
 using Groups = std::vector<std::pair<std::string, analysis::Proportion>>;
 
-Groups groups_of(const analysis::Outcomes& outcomes, analysis::identification::BreakdownKind kind,
-                 int method = 0) {
+Groups groups_of(const analysis::Outcomes& outcomes, BreakdownKind kind, int method = 0) {
   Groups groups;
-  for (const analysis::identification::Breakdown& one :
-       analysis::identification::breakdowns(outcomes, method)) {
+  for (const Breakdown& one : breakdowns(outcomes, method)) {
     if (one.kind != kind) continue;
-    for (const analysis::identification::GroupAccuracy& group : one.groups) {
+    for (const GroupAccuracy& group : one.groups) {
       CHECK(group.wilson == analysis::wilson_interval(group.accuracy));
       groups.emplace_back(group.group, group.accuracy);
     }
@@ -47,7 +47,7 @@ Groups groups_of(const analysis::Outcomes& outcomes, analysis::identification::B
 }
 
 /// Three participants; the first method always right, the second with bark alone, the third never.
-analysis::identification::StudyReport three_methods() {
+StudyReport three_methods() {
   HandMadeOutcomes made({"a", "b", "c"});
   for (int session = 1; session <= 3; ++session) {
     made.session();
@@ -61,17 +61,17 @@ analysis::identification::StudyReport three_methods() {
       }
     }
   }
-  return analysis::identification::make_report(made.outcomes);
+  return make_report(made.outcomes);
 }
 
 }  // namespace
 
 TEST_CASE("Accuracy is broken down by a trial's place") {
   const analysis::Outcomes outcomes = five_trials().outcomes;
-  CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::trial) ==
+  CHECK(groups_of(outcomes, BreakdownKind::trial) ==
         Groups{{"1", {1, 1}}, {"2", {1, 0}}, {"3", {1, 0}}, {"4", {1, 1}}});
-  CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::exemplar).empty());
-  CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::order_group).empty());
+  CHECK(groups_of(outcomes, BreakdownKind::exemplar).empty());
+  CHECK(groups_of(outcomes, BreakdownKind::order_group).empty());
 }
 
 TEST_CASE("A catch trial and a lead-in come before, but have no accuracy") {
@@ -84,14 +84,14 @@ TEST_CASE("A catch trial and a lead-in come before, but have no accuracy") {
   made.trial({.felt = kCloth, .answered = kBark});
   // The last of four trials alone is wrong after a texture, and after an answer: it names neither
   // cloth nor anything but that answer, bark.
-  const auto order = analysis::identification::order_of(made.outcomes, 0);
+  const auto order = order_of(made.outcomes, 0);
   REQUIRE(order.has_value());
   CHECK(order->class_before.wrong == 1);
   CHECK(order->class_before.same == 0);
   CHECK(order->answer_before.wrong == 1);
   CHECK(order->answer_before.same == 1);
   CHECK(order->draws == 1999);
-  CHECK(groups_of(made.outcomes, analysis::identification::BreakdownKind::trial) ==
+  CHECK(groups_of(made.outcomes, BreakdownKind::trial) ==
         Groups{{"1", {1, 1}}, {"2", {1, 0}}, {"3", {1, 0}}});
 }
 
@@ -102,14 +102,14 @@ TEST_CASE("Unbiased hit rates are of participants, and their mean of classes com
     made.trial({.session = session, .felt = kBark, .answered = kBark});
     made.trial({.session = session, .felt = kCloth, .answered = session == 1 ? kCloth : kBark});
   }
-  const auto report = analysis::identification::make_report(made.outcomes);
+  const auto report = make_report(made.outcomes);
   const auto& unbiased = report.methods[0].unbiased;
   REQUIRE(unbiased.size() == 3);
   CHECK(unbiased[kBark].rate.mean == 0.75);  // 1, and 1 of 1 presented times 1 of 2 answered
   CHECK(unbiased[kCloth].rate.mean == 0.5);
   CHECK(unbiased[2].rate.mean == 0.625);
   CHECK(unbiased[kBark].by_chance == 0.5);  // always right or wrong together; and always 1/2
-  const auto json = nlohmann::json::parse(analysis::identification::report_json(report));
+  const auto json = nlohmann::json::parse(report_json(report));
   CHECK(json["methods"][0]["unbiased_hits"]["mean"] == 0.625);
   CHECK(json["methods"][0]["unbiased_hits"]["classes"][kCloth]["mean"] == 0.5);
 }
@@ -126,9 +126,9 @@ TEST_CASE("Confidence is reported by rating and as type-2 areas, if the study as
   rated(1, kCloth, 1);
   rated(1, kBark, 1);
   rated(2, kBark, 3);
-  CHECK_FALSE(analysis::identification::confidence_of(made.outcomes, 0).has_value());
+  CHECK_FALSE(confidence_of(made.outcomes, 0).has_value());
   made.outcomes.design.session.confidence_levels = 3;
-  const auto report = analysis::identification::make_report(made.outcomes);
+  const auto report = make_report(made.outcomes);
   const auto& confidence = report.methods[0].confidence;
   REQUIRE(confidence.has_value());
   REQUIRE(confidence->ratings.size() == 3);
@@ -139,7 +139,7 @@ TEST_CASE("Confidence is reported by rating and as type-2 areas, if the study as
   CHECK(confidence->area.participants == 1);
   CHECK(confidence->area.mean == 0.75);
   CHECK(confidence->without_area == 1);
-  const auto json = nlohmann::json::parse(analysis::identification::report_json(report));
+  const auto json = nlohmann::json::parse(report_json(report));
   CHECK(json["methods"][0]["confidence"]["type_2_area"]["mean"] == 0.75);
   CHECK(json["methods"][0]["confidence"]["ratings"][2]["rating"] == 3);
 }
@@ -156,7 +156,7 @@ TEST_CASE("Stations are strata of the deciding question in a collected study") {
                   .answered = i < right_of[session - 1] ? kBark : kCloth});
     }
   }
-  const auto report = analysis::identification::make_report(made.outcomes);
+  const auto report = make_report(made.outcomes);
   REQUIRE(report.primary.has_value());
   REQUIRE(report.primary->stations.has_value());
   CHECK(report.primary->stations->strata == 2);
@@ -164,22 +164,22 @@ TEST_CASE("Stations are strata of the deciding question in a collected study") {
   // Narrower than over participants, because the stations differ.
   CHECK(report.primary->stations->interval->low > report.primary->registered().interval->low);
   CHECK_FALSE(report.primary->stations->random.has_value());
-  const auto json = nlohmann::json::parse(analysis::identification::report_json(report));
+  const auto json = nlohmann::json::parse(report_json(report));
   CHECK(json["primary"]["stations"]["stations"] == 2);
   CHECK(json["primary"]["stations"]["random"].is_null());
-  CHECK(contains(analysis::tables_markdown(analysis::identification::study_document(report, {})),
+  CHECK(contains(analysis::tables_markdown(study_document(report, {})),
                  "first row, 2 stations as fixed strata"));
   for (analysis::SessionOutcome& one : made.outcomes.sessions) one.row.station = 0;
-  CHECK_FALSE(analysis::identification::make_report(made.outcomes).primary->stations.has_value());
+  CHECK_FALSE(make_report(made.outcomes).primary->stations.has_value());
 }
 
 TEST_CASE("Images of a class are groups where a class has several") {
   HandMadeOutcomes made = five_trials();
   made.outcomes.exemplars[kBark] = {"oak.png", "pine.png"};
   made.outcomes.trials[2].stimulus.exemplar = 1;
-  CHECK(
-      groups_of(made.outcomes, analysis::identification::BreakdownKind::exemplar) ==
-      Groups{{"bark: oak.png", {1, 1}}, {"bark: pine.png", {1, 0}}, {"cloth: cloth.png", {2, 1}}});
+  CHECK(groups_of(made.outcomes, BreakdownKind::exemplar) == Groups{{"bark: oak.png", {1, 1}},
+                                                                    {"bark: pine.png", {1, 0}},
+                                                                    {"cloth: cloth.png", {2, 1}}});
 }
 
 TEST_CASE("Order groups are the orders in which methods came") {
@@ -194,12 +194,12 @@ TEST_CASE("Order groups are the orders in which methods came") {
                   .method = method});
     }
   }
-  CHECK(groups_of(made.outcomes, analysis::identification::BreakdownKind::order_group) ==
+  CHECK(groups_of(made.outcomes, BreakdownKind::order_group) ==
         Groups{{"a, then b", {2, 2}}, {"b, then a", {1, 0}}});
 }
 
 TEST_CASE("Reaction times are of answered trials, by class and all together") {
-  const auto times = analysis::identification::reaction_times(five_trials().outcomes, 0);
+  const auto times = reaction_times(five_trials().outcomes, 0);
   REQUIRE(times.size() == 3);
   CHECK(times[kBark].from_plane_on.n == 1);
   CHECK(times[kBark].from_plane_on.median == 1.0);
@@ -214,15 +214,15 @@ TEST_CASE("Reaction times are of answered trials, by class and all together") {
 }
 
 TEST_CASE("Robustness leaves out and puts back what its subsets say") {
-  const auto subsets = analysis::identification::robustness(five_trials().outcomes, 0);
+  const auto subsets = robustness(five_trials().outcomes, 0);
   REQUIRE(subsets.size() == 4);
-  CHECK(subsets[0].subset == analysis::identification::TrialSubset::counted);
+  CHECK(subsets[0].subset == TrialSubset::counted);
   CHECK(subsets[0].pooled == analysis::Proportion{4, 2});
-  CHECK(subsets[1].subset == analysis::identification::TrialSubset::answered);
+  CHECK(subsets[1].subset == TrialSubset::answered);
   CHECK(subsets[1].pooled == analysis::Proportion{3, 2});
-  CHECK(subsets[2].subset == analysis::identification::TrialSubset::valid);
+  CHECK(subsets[2].subset == TrialSubset::valid);
   CHECK(subsets[2].pooled == analysis::Proportion{3, 1});
-  CHECK(subsets[3].subset == analysis::identification::TrialSubset::with_excluded_sessions);
+  CHECK(subsets[3].subset == TrialSubset::with_excluded_sessions);
   CHECK(subsets[3].pooled == analysis::Proportion{5, 3});
   CHECK(subsets[3].mean.mean.value() == Approx(0.75));
 }
@@ -230,12 +230,11 @@ TEST_CASE("Robustness leaves out and puts back what its subsets say") {
 TEST_CASE("An excluded participant who started again is not put back twice") {
   HandMadeOutcomes made = five_trials();
   made.outcomes.sessions[1].row.replaced_by = "P2";
-  CHECK(analysis::identification::robustness(made.outcomes, 0)[3].pooled ==
-        analysis::Proportion{4, 2});
+  CHECK(robustness(made.outcomes, 0)[3].pooled == analysis::Proportion{4, 2});
 }
 
 TEST_CASE("With three methods, every pair is compared and adjusted, and all are compared at once") {
-  const analysis::identification::StudyReport report = three_methods();
+  const StudyReport report = three_methods();
   CHECK_FALSE(report.comparison.has_value());
   REQUIRE(report.pairs.size() == 3);
   const double differences[] = {0.5, 1.0, 0.5};
@@ -245,7 +244,7 @@ TEST_CASE("With three methods, every pair is compared and adjusted, and all are 
     CHECK(report.pairs[i].p_holm == 0.75);
     CHECK_FALSE(report.pairs[i].mcnemar_mid_p.has_value());  // two pairs a participant
   }
-  const analysis::identification::ClassComparison& bark = report.pairs[1].classes[kBark];
+  const ClassComparison& bark = report.pairs[1].classes[kBark];
   CHECK(bark.first == analysis::Proportion{3, 3});
   CHECK(bark.second == analysis::Proportion{3, 0});
   CHECK(bark.mcnemar_mid_p.value() == Approx(0.125));  // 2 / 8 less half of that
@@ -256,8 +255,8 @@ TEST_CASE("With three methods, every pair is compared and adjusted, and all are 
 }
 
 TEST_CASE("Three methods are shown in JSON and on the terminal") {
-  const analysis::identification::StudyReport report = three_methods();
-  const auto json = nlohmann::json::parse(analysis::identification::report_json(report));
+  const StudyReport report = three_methods();
+  const auto json = nlohmann::json::parse(report_json(report));
   CHECK_FALSE(json.contains("comparison"));
   CHECK(json["pairs"][1]["first"] == "a");
   CHECK(json["pairs"][1]["second"] == "c");
@@ -266,8 +265,7 @@ TEST_CASE("Three methods are shown in JSON and on the terminal") {
   for (const auto& key : json["pairs"][0]["references"]) {
     CHECK(json["references"].contains(key.get<std::string>()));
   }
-  const std::string text =
-      analysis::document_text(analysis::identification::study_document(report, {}));
+  const std::string text = analysis::document_text(study_document(report, {}));
   CHECK(contains(text, "a less c"));
   CHECK(contains(text, "Cochran's Q = 9.00 on 2 degrees of freedom"));
 }
@@ -275,8 +273,7 @@ TEST_CASE("Three methods are shown in JSON and on the terminal") {
 TEST_CASE("Numbers do not depend on the order in which trials are read") {
   HandMadeOutcomes made = five_trials();
   const auto figures = [&] {
-    auto json = nlohmann::json::parse(analysis::identification::report_json(
-        analysis::identification::make_report(made.outcomes)));
+    auto json = nlohmann::json::parse(report_json(make_report(made.outcomes)));
     // A mean over random deals, which depend on the order of trials.
     json["methods"][0]["information_transfer"].erase("null_mean");
     return json;
