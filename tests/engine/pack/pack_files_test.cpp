@@ -169,13 +169,6 @@ TEST_CASE("decode_field refuses a pitch that is not a finite number above zero")
   CHECK(refusal_of(with_value(file, 24, pitch_mm)).find("pitch") != std::string::npos);
 }
 
-TEST_CASE("decode_field names the file and a remedy on one line") {
-  const std::string message = refusal_of(Bytes(10));
-  CHECK(message.find(kFieldPath.string()) == 0);
-  CHECK(message.find("touchtrial prepare") != std::string::npos);
-  CHECK(message.find('\n') == std::string::npos);
-}
-
 const std::filesystem::path kManifestPath = "study.pack/pack.json";
 
 engine::PackEntry entry(const std::string& code, std::uint8_t byte, engine::Gains gains) {

@@ -1,6 +1,5 @@
 #include "engine/rendering/paper_model.hpp"
 
-#include "engine/force_field.hpp"
 #include "engine/reference/paper_reference.hpp"
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"
@@ -16,11 +15,6 @@ namespace {
 constexpr engine::Gains kGains{0.012, 0.01};
 constexpr Vec3 kStill{};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Vec3 centre_of(engine::FieldView field, int y, int x, double z_mm) {
-  const Vec2 at = field.geometry.to_mm(x, y);
-  return {at.x, at.y, z_mm};
-}
 
 TEST_CASE("PaperModel is a Hooke wall on a flat texture") {
   const engine::TextureField field = flat_field(20, 20);
@@ -51,20 +45,6 @@ TEST_CASE("PaperModel read literally steps at the surface and is nothing above i
   CHECK(model.force_n({0.9, 0.9, -1e-9}, kStill).z == Approx(1.28));
   CHECK(model.force_n({0.9, 0.9, 0.0}, kStill) == Vec3{});
   CHECK(model.force_n({0.9, 0.9, 0.1}, kStill) == Vec3{});
-}
-
-TEST_CASE("PaperModel damps in contact, never pulls and does not act in the air") {
-  const engine::TextureField field = random_field(20, 20, 1);
-  engine::RenderingOptions options;
-  options.damping_n_s_per_mm = 0.002;
-  const engine::PaperModel model(field.view(), options, {0.012, 0.0});
-  CHECK(model.force_n({2.0, 2.0, -1.0}, {0.0, 0.0, 50.0}).z == Approx(0.4 - 0.1));
-  CHECK(model.force_n({2.0, 2.0, -1.0}, {0.0, 0.0, -50.0}).z == Approx(0.4 + 0.1));
-  CHECK(model.force_n({2.0, 2.0, -1.0}, {0.0, 0.0, 200.0}) == Vec3{});
-  CHECK(model.force_n({2.0, 2.0, 0.1}, {0.0, 0.0, -500.0}) == Vec3{});
-  CHECK(model.force_n({-2.0, 2.0, -1.0}, {0.0, 0.0, 50.0}).z == Approx(0.4 - 0.1));
-  CHECK(model.force_n({-2.0, 2.0, -1.0}, {0.0, 0.0, 300.0}) == Vec3{});
-  CHECK(model.force_n({-2.0, 2.0, 0.1}, {0.0, 0.0, -500.0}) == Vec3{});
 }
 
 TEST_CASE("PaperModel agrees with its equations at every size, load, speed and ramp") {
