@@ -4,17 +4,10 @@
 #include "engine/extraction.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/extraction_reference.hpp"
-#include "engine/refusal.hpp"
 #include "support/catch.hpp"
-
-#include <limits>
-#include <string>
-#include <vector>
 
 namespace touchtrial {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 engine::ExtractionOptions options_of(engine::Method method) {
   engine::ExtractionOptions options;
@@ -79,15 +72,6 @@ TEST_CASE("the luminance texture's picture is the image") {
   CHECK(engine::texture_picture(texture) == image);
 }
 
-TEST_CASE("the cited extractors find nothing on a flat image") {
-  const GreyImage image = flat_image({9, 30}, 83);
-  for (const engine::Method method :
-       {engine::Method::gaussian, engine::Method::median, engine::Method::edge}) {
-    CHECK(largest_magnitude(engine::extract_texture<double>(image, options_of(method)).texture) ==
-          0.0);
-  }
-}
-
 TEST_CASE("a float texture of the cited extractors is the double one rounded") {
   const GreyImage image = cloth_image({31, 20});
   for (const engine::Method method : {engine::Method::gaussian, engine::Method::median,
@@ -110,29 +94,6 @@ TEST_CASE("the cited extractors give the enhanced image and no other by-product"
     CHECK(result.sub_band_ll.empty());
     CHECK(result.cartoon.empty());
   }
-}
-
-TEST_CASE("a parameter of a cited extractor that is out of range is refused by name") {
-  for (const double sigma : {kNan, 0.0, -1.0, 1001.0}) {
-    engine::ExtractionOptions options = options_of(engine::Method::gaussian);
-    options.sigma_px = sigma;
-    CHECK(refusal_of([&] {
-            engine::check_options(options);
-          }).starts_with("sigma: must be in (0, 1000]"));
-  }
-  for (const double threshold : {kNan, -0.1, 256.0}) {
-    engine::ExtractionOptions options = options_of(engine::Method::median);
-    options.threshold_grey = threshold;
-    CHECK(refusal_of([&] { engine::check_options(options); }).starts_with("threshold:"));
-  }
-  for (const double divisor : {kNan, 0.0, -4.0, 1e7}) {
-    engine::ExtractionOptions options = options_of(engine::Method::edge);
-    options.divisor = divisor;
-    CHECK(refusal_of([&] { engine::check_options(options); }).starts_with("divisor:"));
-  }
-  engine::ExtractionOptions options = options_of(engine::Method::median);
-  options.radius = 0;
-  CHECK(refusal_of([&] { engine::check_options(options); }).starts_with("radius:"));
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -86,25 +85,6 @@ TEMPLATE_TEST_CASE("the adaptive method keeps a flat image exactly flat", "", fl
   }
 }
 
-TEMPLATE_TEST_CASE("the adaptive texture of a negative is the negative texture", "", float,
-                   double) {
-  const GreyImage image = cloth_image({64, 63});
-  const auto positive = engine::extract_texture<TestType>(image, adaptive_options()).texture;
-  auto negative = engine::extract_texture<TestType>(negative_of(image), adaptive_options()).texture;
-  for (TestType& sample : negative.samples()) sample = -sample;
-  CHECK(largest_difference(negative, positive) < kFloatTolerance);
-}
-
-TEST_CASE("the adaptive texture does not depend on brightness") {
-  GreyImage dark = cloth_image({64, 63});
-  for (std::uint8_t& sample : dark.samples()) sample = static_cast<std::uint8_t>(sample / 2);
-  GreyImage bright = dark;
-  for (std::uint8_t& sample : bright.samples()) sample = static_cast<std::uint8_t>(sample + 100);
-  CHECK(largest_difference(engine::extract_texture<double>(bright, adaptive_options()).texture,
-                           engine::extract_texture<double>(dark, adaptive_options()).texture) <
-        1e-9);
-}
-
 TEST_CASE("the adaptive method gives its by-products in the image's shape") {
   const GreyImage image = cloth_image({9, 12});
   const auto result =
@@ -135,11 +115,6 @@ TEST_CASE("the fixed method uses one order for all pixels") {
         kDoubleTolerance);
   CHECK(result.csgv.empty());
   CHECK(result.sub_band_ll.empty());
-}
-
-TEMPLATE_TEST_CASE("the fixed method of order zero finds no texture", "", float, double) {
-  const auto result = engine::extract_texture<TestType>(noise_image({13, 12}), fixed_options(0.0));
-  CHECK(largest_magnitude(result.texture) == 0.0);
 }
 
 TEST_CASE("tv-gabor splits an image into cartoon and texture") {

@@ -29,29 +29,6 @@ TEST_CASE("tangential_force of a unit ramp is -4 inside and -2 on the edge colum
   }
 }
 
-TEST_CASE("tangential_force pushes from bright to dark") {
-  Plane<double> surface(3, 3);
-  surface.at(1, 0) = 100.0;  // bright on the left
-  const engine::ForceField<double> force = engine::tangential_force(surface, 3);
-  CHECK(force.x.at(1, 1) > 0.0);
-  CHECK(force.y.at(1, 1) == 0.0);
-}
-
-TEST_CASE("tangential_force of 3 x 3 neighbours is half of minus the Sobel gradient inside") {
-  const Plane<double> g = surface_of(noise_image({9, 11}));
-  const engine::ForceField<double> force = engine::tangential_force(g, 3);
-  for (int y = 1; y < 8; ++y) {
-    for (int x = 1; x < 10; ++x) {
-      const double sobel_x = g.at(y - 1, x + 1) + 2 * g.at(y, x + 1) + g.at(y + 1, x + 1) -
-                             g.at(y - 1, x - 1) - 2 * g.at(y, x - 1) - g.at(y + 1, x - 1);
-      const double sobel_y = g.at(y + 1, x - 1) + 2 * g.at(y + 1, x) + g.at(y + 1, x + 1) -
-                             g.at(y - 1, x - 1) - 2 * g.at(y - 1, x) - g.at(y - 1, x + 1);
-      CHECK(force.x.at(y, x) == Approx(-0.5 * sobel_x).margin(1e-12));
-      CHECK(force.y.at(y, x) == Approx(-0.5 * sobel_y).margin(1e-12));
-    }
-  }
-}
-
 TEST_CASE("tangential_force of a flat surface is exactly zero") {
   for (const int n : {3, 5, 9}) {
     const engine::ForceField<float> force = engine::tangential_force(Plane<float>(6, 5, 128.3F), n);

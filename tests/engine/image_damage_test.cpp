@@ -124,22 +124,24 @@ TEST_CASE("every truncated picture is refused, and the complete one is read") {
   }
 }
 
-TEST_CASE("a JPEG with a truncated scan is refused even if an end marker follows") {
-  CHECK_THAT(error_of(jpeg_with_short_scan()), holds_text("damaged"));
-}
-
-TEST_CASE("a PNG with a changed byte in its pixels is refused") {
-  Bytes file = png_file(colour_picture());
-  file[file.size() / 2] ^= 0x10U;
-  CHECK_THAT(error_of(file), holds_text("damaged"));
-}
-
-TEST_CASE("compressed TIFF strips that do not unpack are refused") {
-  const std::uint32_t bits = GENERATE(8U, 16U);
-  const std::uint32_t compression = GENERATE(5U, 8U);
-  const Bytes nonsense(30, 0x5A);
-  CHECK_THAT(error_of(Tiff(20, 20, nonsense).with(258, {bits}).with(259, {compression}).bytes()),
-             holds_text("damaged"));
+TEST_CASE("pictures that do not unpack are refused as damaged") {
+  Bytes changed = png_file(colour_picture());
+  changed[changed.size() / 2] ^= 0x10U;
+  Bytes long_run = packed_bmp();
+  long_run[54 + 16] = 6;
+  Tiff two_predictors(2, 1, hex("789ce3fa1fd50800045e01e5"));  // libtiff would ignore both
+  two_predictors.with(258, {8, 8}).with(277, {2}).with(338, {2}).with(259, {8}).with(317, {2, 2});
+  std::vector<Bytes> files = {jpeg_with_short_scan(), changed, long_run, two_predictors.bytes()};
+  for (const std::uint32_t bits : {8U, 16U}) {
+    for (const std::uint32_t compression : {5U, 8U}) {
+      const Bytes nonsense(30, 0x5A);
+      files.push_back(Tiff(20, 20, nonsense).with(258, {bits}).with(259, {compression}).bytes());
+    }
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    INFO("file " << i);
+    CHECK_THAT(error_of(files[i]), holds_text("damaged"));
+  }
 }
 
 TEST_CASE("a picture of no pixels is refused") {
@@ -261,19 +263,6 @@ TEST_CASE("damaged notes are harmless, damaged transparency and palettes are not
   // A palette cannot have one entry; libtiff alone would read the samples as grey levels.
   const Tiff palette = Tiff(2, 2, {1, 2, 3, 4}).with(262, {3}).with(320, {1});
   CHECK_THAT(error_of(palette.bytes()), holds_text("damaged"));
-}
-
-TEST_CASE("a description that libtiff would ignore is refused if it affects samples") {
-  // A predictor has one value, not two.
-  Tiff tiff(2, 1, hex("789ce3fa1fd50800045e01e5"));
-  tiff.with(258, {8, 8}).with(277, {2}).with(338, {2}).with(259, {8}).with(317, {2, 2});
-  CHECK_THAT(error_of(tiff.bytes()), holds_text("damaged"));
-}
-
-TEST_CASE("run lengths that exceed their row are refused") {
-  Bytes file = packed_bmp();
-  file[54 + 16] = 6;
-  CHECK_THAT(error_of(file), holds_text("damaged"));
 }
 
 TEST_CASE("a mutated picture is read or refused, whatever the mutation") {

@@ -40,22 +40,28 @@ Bytes sample_bytes(const Raster& raster, bool big) {
   return bytes;
 }
 
-Bytes png_file(const Raster& raster) {
-  const Bytes samples = sample_bytes(raster, true);
-  const std::size_t row_size = samples.size() / raster.height;
-  Bytes rows;
-  for (std::size_t y = 0; y < raster.height; ++y) {
-    rows.push_back(0);  // no filter
-    rows.insert(rows.end(), &samples[y * row_size], &samples[y * row_size] + row_size);
-  }
-  Bytes header = numbers({raster.width, raster.height}, 4, true);
-  const std::uint8_t colour = raster.channels == 1 ? 0 : 2;
-  append(header, {static_cast<std::uint8_t>(raster.bits), colour, 0, 0, 0});
+Bytes Png::bytes() const {
+  Bytes header = numbers({width, height}, 4, true);
+  append(header, {bits, colour, 0, 0, interlaced});
   Bytes file = hex("89504e470d0a1a0a");
   append(file, png_chunk("IHDR", header));
+  if (!palette.empty()) append(file, png_chunk("PLTE", palette));
+  if (!transparency.empty()) append(file, png_chunk("tRNS", transparency));
   append(file, png_chunk("IDAT", deflated(rows)));
   append(file, png_chunk("IEND", {}));
   return file;
+}
+
+Bytes png_file(const Raster& raster) {
+  const Bytes samples = sample_bytes(raster, true);
+  const std::size_t row_size = samples.size() / raster.height;
+  Png png{raster.width, raster.height, static_cast<std::uint8_t>(raster.bits), Png::kGrey, {}};
+  if (raster.channels != 1) png.colour = Png::kColour;
+  for (std::size_t y = 0; y < raster.height; ++y) {
+    png.rows.push_back(0);  // no filter
+    png.rows.insert(png.rows.end(), &samples[y * row_size], &samples[y * row_size] + row_size);
+  }
+  return png.bytes();
 }
 
 Bytes jpeg_file(const Raster& raster, bool progressive) {

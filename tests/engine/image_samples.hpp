@@ -122,6 +122,21 @@ struct Bmp {
   }
 };
 
+/// A PNG from zlib alone.
+struct Png {
+  enum : std::uint8_t { kGrey = 0, kColour = 2, kPalette = 3, kGreyAlpha = 4, kColourAlpha = 6 };
+  std::uint32_t width = 1;
+  std::uint32_t height = 1;
+  std::uint8_t bits = 8;
+  std::uint8_t colour = kGrey;
+  Bytes rows = {};  ///< each after the number of its filter, 0 for none
+  Bytes transparency = {};
+  Bytes palette = {};
+  std::uint8_t interlaced = 0;
+
+  [[nodiscard]] Bytes bytes() const;
+};
+
 inline Bytes text(std::string_view characters) {
   return {characters.begin(), characters.end()};
 }

@@ -68,18 +68,6 @@ TEST_CASE("d_prime at the ends of the scale is a bound, never infinite") {
   CHECK_FALSE((nothing.estimate || nothing.low || nothing.high));
 }
 
-TEST_CASE("d_prime undoes proportion_correct_of") {
-  for (const int m : {2, 3, 5, 10}) {
-    for (const int correct : {1, 300, 1000, 1900, 1999}) {
-      const analysis::DPrime result = analysis::d_prime({2000, correct}, m);
-      CHECK(analysis::proportion_correct_of(*result.estimate, m) ==
-            Approx(correct / 2000.0).margin(1e-9));
-      CHECK(*result.low < *result.estimate);
-      CHECK(*result.estimate < *result.high);
-    }
-  }
-}
-
 TEST_CASE("d_prime refuses impossible arguments") {
   CHECK_THROWS_AS(analysis::d_prime({25, 20}, 1), std::invalid_argument);
   CHECK_THROWS_AS(analysis::d_prime({25, 26}, 5), std::invalid_argument);

@@ -1,6 +1,5 @@
 #include "analysis/statistics/descriptive.hpp"
 
-#include "core/random.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
@@ -37,20 +36,6 @@ TEST_CASE("participant_mean keeps its interval within what is possible") {
   CHECK(analysis::participant_mean(wide).interval == analysis::Interval{0.0, 1.0});
   const std::vector<double> perfect{1.0, 1.0, 1.0};
   CHECK(analysis::participant_mean(perfect).interval == analysis::Interval{1.0, 1.0});
-}
-
-TEST_CASE("participant_mean's interval covers the true mean at its level") {
-  RandomStream random(7, "coverage");
-  int covered = 0;
-  const int studies = 2000;
-  for (int study = 0; study < studies; ++study) {
-    std::vector<double> shares(20);
-    for (double& share : shares) share = 0.5 + 0.1 * random.normal();
-    const analysis::Interval interval = analysis::participant_mean(shares).interval;
-    if (interval.low <= 0.5 && 0.5 <= interval.high) ++covered;
-  }
-  // Four standard errors of a proportion of .95 in 2000.
-  CHECK(std::abs(covered - 0.95 * studies) < 4.0 * std::sqrt(studies * 0.95 * 0.05));
 }
 
 TEST_CASE("participant_mean refuses values that are not finite") {

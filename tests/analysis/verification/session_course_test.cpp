@@ -6,7 +6,9 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <string>
+#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -24,7 +26,7 @@ class ToldSession {
                                         study.key().draw_of(1, design::Draws::rehearsal))) {}
 
   /// Opens with a schedule that may have been tampered with.
-  void open(const design::Schedule& schedule) {
+  ToldSession& open(const design::Schedule& schedule) {
     store::SessionOpening opening;
     opening.participant = "P01";
     opening.enrolment = 1;
@@ -33,31 +35,43 @@ class ToldSession {
     opening.device = "simulated";
     opening.simulated = true;
     recorder_.opened(at_, opening, design::schedule_to_json(schedule, study_.key()));
+    return *this;
   }
-  void open() { open(schedule_); }
-  void present(int trial) { recorder_.presented(later(), trial, 0); }
-  void answer(int trial) { recorder_.answered(later(), {trial, 0, std::nullopt, std::nullopt}); }
-  void show(int trial) {
-    present(trial);
-    answer(trial);
+  ToldSession& open() { return open(schedule_); }
+  ToldSession& present(int trial) {
+    recorder_.presented(later(), trial, 0);
+    return *this;
   }
+  ToldSession& answer(int trial) {
+    recorder_.answered(later(), {trial, 0, std::nullopt, std::nullopt});
+    return *this;
+  }
+  ToldSession& show(int trial) { return present(trial).answer(trial); }
   /// Records all trials from this one on, except one.
-  void show_from(int trial, int left_out = 0) {
+  ToldSession& show_from(int trial, int left_out = 0) {
     for (; trial <= count(); ++trial) {
       if (trial != left_out) show(trial);
     }
+    return *this;
   }
-  void interrupt(int trial) { recorder_.interrupted(later(), trial, "comfort stop"); }
-  void resume(const std::string& after, double away_s) {
+  ToldSession& interrupt(int trial) {
+    recorder_.interrupted(later(), trial, "comfort stop");
+    return *this;
+  }
+  ToldSession& resume(const std::string& after, double away_s) {
     recorder_.resumed(later(), {.after = after, .away_s = away_s});
+    return *this;
   }
-  void pause() { recorder_.paused(later(), {}); }
-
-  void restart_block() {
+  ToldSession& pause() {
+    recorder_.paused(later(), {});
+    return *this;
+  }
+  ToldSession& restart_block() {
     const design::StudyKey& key = study_.key();
     const auto again = design::restarted_block(key.study, key.draw_of(1, design::Draws::rehearsal),
                                                0, 0, count() + 1);
     recorder_.block_restarted(later(), 0, count() + 1, design::block_to_json(again, key));
+    return *this;
   }
 
   /// Closes the session as complete.
@@ -76,13 +90,6 @@ class ToldSession {
     }
     return schedule;
   }
-  /// The message with which the check of the schedule fails.
-  std::string fault() {
-    const analysis::Check check = verified();
-    CHECK(check.state == analysis::CheckState::failed);
-    return check.detail;
-  }
-
   [[nodiscard]] design::Schedule schedule() const { return schedule_; }
   [[nodiscard]] int count() const { return static_cast<int>(schedule_.presentations.size()); }
   [[nodiscard]] int catch_trial() const {
@@ -108,179 +115,96 @@ class ToldSession {
 const FakeOptions kCatching{.trials = R"({"catch": 2})"};
 const FakeOptions kLeavingOut{.trials = R"({"on_interruption": "leave-out"})"};
 
-/// A told session of a study with these options, opened as it should be.
+/// What a session tells, and what its check finds: words of a fault, or nothing.
 struct Told {
-  explicit Told(const FakeOptions& options = {})
-      : study(design::identification::classification(), options) {}
-  FakeStudy study;
-  ToldSession session{study};
+  FakeOptions options;
+  std::function<void(ToldSession&)> tell;
+  std::string fault;
 };
+
+void check_told(const std::vector<Told>& all) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    FakeStudy study(design::identification::classification(), all[i].options);
+    ToldSession session(study);
+    all[i].tell(session);
+    const analysis::Check check = session.verified();
+    INFO("session " << i << ": " << check.detail);
+    const bool passes = all[i].fault.empty();
+    CHECK(check.state == (passes ? analysis::CheckState::passed : analysis::CheckState::failed));
+    CHECK(contains(check.detail, all[i].fault));
+  }
+}
 
 }  // namespace
 
 TEST_CASE("verify_study accepts catch trials in their places, and nothing else there") {
-  {
-    Told told(kCatching);
-    told.session.open();
-    told.session.show_from(1);
-    const analysis::Check check = told.session.verified();
-    INFO(check.detail);
-    CHECK(check.state == analysis::CheckState::passed);
-    CHECK(contains(check.detail, "14 presentations where they were due"));
+  FakeStudy study(design::identification::classification(), kCatching);
+  ToldSession whole(study);
+  const analysis::Check check = whole.open().show_from(1).verified();
+  CHECK(check.state == analysis::CheckState::passed);
+  CHECK(contains(check.detail, "14 presentations where they were due"));
+  const int trial = whole.catch_trial();
+  design::Schedule tampered = whole.schedule();
+  for (design::Presentation& one : tampered.presentations) {
+    if (one.trial != trial) continue;
+    one.kind = design::PresentationKind::scored;
+    one.stimulus = tampered.presentations.front().stimulus;
   }
-  {
-    Told told(kCatching);
-    const int trial = told.session.catch_trial();
-    told.session.open();
-    for (int i = 1; i < trial; ++i) told.session.show(i);
-    told.session.show_from(trial + 1);
-    CHECK(contains(told.session.fault(), "was presented where trial " + std::to_string(trial)));
-  }
-  {
-    Told told(kCatching);
-    design::Schedule tampered = told.session.schedule();
-    for (design::Presentation& one : tampered.presentations) {
-      if (one.trial != told.session.catch_trial()) continue;
-      one.kind = design::PresentationKind::scored;
-      one.stimulus = tampered.presentations.front().stimulus;
-    }
-    told.session.open(tampered);
-    told.session.show_from(1);
-    CHECK(contains(told.session.fault(), "session 1: the schedule is not the one"));
-  }
+  check_told({{kCatching, [&](ToldSession& s) { s.open().show_from(1, trial); },
+               "was presented where trial " + std::to_string(trial)},
+              {kCatching, [&](ToldSession& s) { s.open(tampered).show_from(1); },
+               "session 1: the schedule is not the one"}});
 }
 
-TEST_CASE("verify_study checks the study's policy of repeating interrupted trials") {
-  {
-    Told told;
-    told.session.open();
-    told.session.show(1);
-    told.session.present(2);
-    told.session.interrupt(2);
-    told.session.show_from(3);
-    told.session.show(2);
-    CHECK(told.session.verified().state == analysis::CheckState::passed);
-  }
-  {
-    Told told;
-    told.session.open();
-    told.session.present(1);
-    told.session.interrupt(1);
-    told.session.show_from(2);
-    CHECK(contains(told.session.fault(),
-                   "session 1, trial 1: the session is complete, but this trial was still due"));
-  }
-  {
-    Told told;
-    told.session.open();
-    told.session.present(1);
-    told.session.interrupt(1);
-    told.session.show(1);
-    told.session.show_from(2);
-    CHECK(
-        contains(told.session.fault(), "session 1, trial 1: was presented where trial 2 was due"));
-  }
-}
-
-TEST_CASE("verify_study checks the study's policy of leaving out interrupted trials") {
-  {
-    Told told(kLeavingOut);
-    told.session.open();
-    told.session.present(1);
-    told.session.interrupt(1);
-    told.session.show_from(2);
-    CHECK(told.session.verified().state == analysis::CheckState::passed);
-  }
-  {
-    Told told(kLeavingOut);
-    told.session.open();
-    told.session.present(1);
-    told.session.interrupt(1);
-    told.session.show_from(2);
-    told.session.show(1);
-    CHECK(
-        contains(told.session.fault(), "session 1, trial 1: was presented after all that was due"));
-  }
-  {
-    Told told(kLeavingOut);
-    told.session.open();
-    told.session.show_from(1, 5);  // left out although it was not interrupted
-    CHECK(
-        contains(told.session.fault(), "session 1, trial 6: was presented where trial 5 was due"));
-  }
+TEST_CASE("verify_study checks the study's policy of interrupted trials") {
+  check_told({
+      {{},
+       [](ToldSession& s) { s.open().show(1).present(2).interrupt(2).show_from(3).show(2); },
+       ""},
+      {{},
+       [](ToldSession& s) { s.open().present(1).interrupt(1).show_from(2); },
+       "session 1, trial 1: the session is complete, but this trial was still due"},
+      {{},
+       [](ToldSession& s) { s.open().present(1).interrupt(1).show(1).show_from(2); },
+       "session 1, trial 1: was presented where trial 2 was due"},
+      {kLeavingOut, [](ToldSession& s) { s.open().present(1).interrupt(1).show_from(2); }, ""},
+      {kLeavingOut, [](ToldSession& s) { s.open().present(1).interrupt(1).show_from(2).show(1); },
+       "session 1, trial 1: was presented after all that was due"},
+      // Left out although it was not interrupted.
+      {kLeavingOut, [](ToldSession& s) { s.open().show_from(1, 5); },
+       "session 1, trial 6: was presented where trial 5 was due"},
+  });
 }
 
 TEST_CASE("verify_study accepts resumed sessions, and names events that cannot follow") {
-  {
-    Told told;
-    told.session.open();
-    told.session.show(1);
-    told.session.present(2);
-    told.session.resume("program-ended", 90.0);
-    told.session.interrupt(2);
-    told.session.pause();
-    told.session.resume("pause", 1.0);
-    told.session.show_from(3);
-    told.session.show(2);
-    const analysis::Check check = told.session.verified();
-    INFO(check.detail);
-    CHECK(check.state == analysis::CheckState::passed);
-  }
-  {
-    Told told;
-    told.session.open();
-    told.session.present(1);
-    told.session.resume("program-ended", 90.0);
-    told.session.answer(1);
-    told.session.show_from(2);
-    CHECK(contains(told.session.fault(),
-                   "session 1, trial 1: answered although the program had ended during it"));
-  }
-  {
-    Told told;
-    told.session.open();
-    told.session.show(1);
-    told.session.resume("program-ended", 25.0 * 3600.0);
-    told.session.show_from(2);
-    CHECK(
-        contains(told.session.fault(), "session 1, event 3: the session was resumed after 25.0 h"));
-  }
-  {
-    Told told;
-    told.session.open();
-    told.session.show(1);
-    told.session.resume("pause", 1.0);
-    told.session.show_from(2);
-    CHECK(contains(told.session.fault(), "the session was resumed, but not paused"));
-  }
-  {
-    Told told;
-    told.session.open();
-    told.session.pause();
-    told.session.show_from(1);
-    CHECK(contains(told.session.fault(),
-                   "session 1, trial 1: was presented while the session was paused"));
-  }
-}
-
-TEST_CASE(
-    "verify_study names presentations without an end, and blocks restarted without a reason") {
-  {
-    Told told;
-    told.session.open();
-    told.session.present(1);
-    told.session.show_from(2);
-    CHECK(contains(told.session.fault(),
-                   "session 1, trial 2: was presented while trial 1 was under way"));
-  }
-  {
-    Told told;
-    told.session.open();
-    told.session.show(1);
-    told.session.restart_block();
-    CHECK(contains(told.session.fault(),
-                   "session 1, event 3: block 0 was restarted, but nothing in it was interrupted"));
-  }
+  check_told({
+      {{},
+       [](ToldSession& s) {
+         s.open().show(1).present(2).resume("program-ended", 90.0).interrupt(2);
+         s.pause().resume("pause", 1.0).show_from(3).show(2);
+       },
+       ""},
+      {{},
+       [](ToldSession& s) {
+         s.open().present(1).resume("program-ended", 90.0).answer(1).show_from(2);
+       },
+       "session 1, trial 1: answered although the program had ended during it"},
+      {{},
+       [](ToldSession& s) { s.open().show(1).resume("program-ended", 25.0 * 3600.0).show_from(2); },
+       "session 1, event 3: the session was resumed after 25.0 h"},
+      {{},
+       [](ToldSession& s) { s.open().show(1).resume("pause", 1.0).show_from(2); },
+       "the session was resumed, but not paused"},
+      {{},
+       [](ToldSession& s) { s.open().pause().show_from(1); },
+       "session 1, trial 1: was presented while the session was paused"},
+      {{},
+       [](ToldSession& s) { s.open().present(1).show_from(2); },
+       "session 1, trial 2: was presented while trial 1 was under way"},
+      {{},
+       [](ToldSession& s) { s.open().show(1).restart_block(); },
+       "session 1, event 3: block 0 was restarted, but nothing in it was interrupted"},
+  });
 }
 
 }  // namespace touchtrial

@@ -359,11 +359,5 @@ TEST_CASE("gl_row of a negative is exactly the negative texture on every target"
   });
 }
 
-TEST_CASE("gl_row of order zero finds no texture on any target") {
-  on_every_simd_target([] {
-    CHECK(largest_magnitude(texture_of(noise_image({20, 45}), 3, 0.0)) == 0.0);
-  });
-}
-
 }  // namespace
 }  // namespace touchtrial

@@ -74,21 +74,6 @@ TEST_CASE("glcm_statistics of the smallest image agree with a count by hand") {
   CHECK(table[kAt135].contrast == 9.0);
 }
 
-TEST_CASE("glcm_statistics of a flat image are exact") {
-  for (const int level : {0, 128, 255}) {
-    for (const Size size : {Size{2, 2}, Size{3, 50}, Size{257, 255}}) {
-      for (const engine::GlcmStatistics& direction :
-           engine::glcm_statistics(flat_image(size, level))) {
-        CHECK(direction.angular_second_moment == 1.0);
-        CHECK(direction.energy == 1.0);
-        CHECK(direction.entropy == 0.0);
-        CHECK(direction.contrast == 0.0);
-        CHECK(direction.correlation == 1.0);
-      }
-    }
-  }
-}
-
 TEST_CASE("glcm_statistics of a checkerboard distinguish straight and diagonal directions") {
   const engine::GlcmTable table = engine::glcm_statistics(checkerboard({20, 21}));
   for (const std::size_t straight : {kAt0, kAt90}) {
@@ -144,21 +129,6 @@ TEST_CASE("glcm_statistics turn with the image") {
   check_same(mirrored[kAt0], table[kAt0], 1e-14);
   check_same(mirrored[kAt45], table[kAt135], 1e-14);
   check_same(mirrored[kAt135], table[kAt45], 1e-14);
-}
-
-TEST_CASE("glcm_statistics stay in their ranges") {
-  for (const auto& [name, image] : example_images({40, 41})) {
-    INFO(name);
-    for (const engine::GlcmStatistics& direction : engine::glcm_statistics(image)) {
-      CHECK(direction.angular_second_moment > 0.0);
-      CHECK(direction.angular_second_moment <= 1.0);
-      CHECK(direction.entropy >= 0.0);
-      CHECK(direction.entropy <= std::log(65536.0));
-      CHECK(direction.contrast >= 0.0);
-      CHECK(direction.contrast <= 65025.0);
-      CHECK(std::abs(direction.correlation) <= 1.0);
-    }
-  }
 }
 
 TEST_CASE("glcm_statistics refuse an image in which a direction has no pair") {

@@ -113,12 +113,6 @@ TEST_CASE("decode_field refuses a field of the former version, and a height that
   }
 }
 
-TEST_CASE("encode_field makes files of one size from fields of one size") {
-  const engine::TextureField flat = flat_field(30, 20);
-  const engine::TextureField rough = random_field(30, 20, 2, 100.0);
-  CHECK(engine::encode_field(flat.view()).size() == engine::encode_field(rough.view()).size());
-}
-
 TEST_CASE("encode_field refuses a view that is not a whole field") {
   std::vector<float> heights(6);
   const auto with = [&](PlaneGeometry geometry) {
@@ -173,13 +167,6 @@ TEST_CASE("decode_field refuses a pitch that is not a finite number above zero")
   const double pitch_mm = GENERATE(0.0, -0.2, std::numeric_limits<double>::infinity(),
                                    std::numeric_limits<double>::quiet_NaN());
   CHECK(refusal_of(with_value(file, 24, pitch_mm)).find("pitch") != std::string::npos);
-}
-
-TEST_CASE("decode_field names the file and a remedy on one line") {
-  const std::string message = refusal_of(Bytes(10));
-  CHECK(message.find(kFieldPath.string()) == 0);
-  CHECK(message.find("touchtrial prepare") != std::string::npos);
-  CHECK(message.find('\n') == std::string::npos);
 }
 
 const std::filesystem::path kManifestPath = "study.pack/pack.json";

@@ -231,22 +231,6 @@ TEST_CASE("choose_gains equalises the rms force of all fields") {
   }
 }
 
-TEST_CASE("choose_gains scales with the budget and against the texture") {
-  const std::vector<engine::TextureField> fields = three_fields();
-  const engine::Gains plain = engine::choose_gains(views_of(fields), {}).of_field[0];
-  engine::RenderingOptions doubled;
-  doubled.texture_stiffness_n_per_mm = 0.8;
-  const engine::Gains strong = engine::choose_gains(views_of(fields), doubled).of_field[0];
-  CHECK(strong.tangential_n == Approx(2.0 * plain.tangential_n).epsilon(1e-12));
-  CHECK(strong.normal_n == Approx(2.0 * plain.normal_n).epsilon(1e-12));
-  const std::vector<engine::TextureField> once = {random_field(30, 30, 4, 10.0)};
-  const std::vector<engine::TextureField> thrice = {random_field(30, 30, 4, 30.0)};
-  const engine::Gains of_once = engine::choose_gains(views_of(once), {}).of_field[0];
-  const engine::Gains of_thrice = engine::choose_gains(views_of(thrice), {}).of_field[0];
-  CHECK(of_once.tangential_n == Approx(3.0 * of_thrice.tangential_n).epsilon(1e-5));
-  CHECK(of_once.normal_n == Approx(3.0 * of_thrice.normal_n).epsilon(1e-5));
-}
-
 TEST_CASE("choose_gains gives zero where all fields are flat") {
   const std::vector<engine::TextureField> fields = {flat_field(10, 10), flat_field(5, 5)};
   const engine::RenderingOptions options = GENERATE(engine::RenderingOptions{}, equalised());

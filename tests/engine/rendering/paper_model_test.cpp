@@ -1,6 +1,5 @@
 #include "engine/rendering/paper_model.hpp"
 
-#include "engine/force_field.hpp"
 #include "engine/reference/paper_reference.hpp"
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"
@@ -16,11 +15,6 @@ namespace {
 constexpr engine::Gains kGains{0.012, 0.01};
 constexpr Vec3 kStill{};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Vec3 centre_of(engine::FieldView field, int y, int x, double z_mm) {
-  const Vec2 at = field.geometry.to_mm(x, y);
-  return {at.x, at.y, z_mm};
-}
 
 TEST_CASE("PaperModel is a Hooke wall on a flat texture") {
   const engine::TextureField field = flat_field(20, 20);
@@ -51,37 +45,6 @@ TEST_CASE("PaperModel read literally steps at the surface and is nothing above i
   CHECK(model.force_n({0.9, 0.9, -1e-9}, kStill).z == Approx(1.28));
   CHECK(model.force_n({0.9, 0.9, 0.0}, kStill) == Vec3{});
   CHECK(model.force_n({0.9, 0.9, 0.1}, kStill) == Vec3{});
-}
-
-TEST_CASE("PaperModel damps in contact, never pulls and does not act in the air") {
-  const engine::TextureField field = random_field(20, 20, 1);
-  engine::RenderingOptions options;
-  options.damping_n_s_per_mm = 0.002;
-  const engine::PaperModel model(field.view(), options, {0.012, 0.0});
-  CHECK(model.force_n({2.0, 2.0, -1.0}, {0.0, 0.0, 50.0}).z == Approx(0.4 - 0.1));
-  CHECK(model.force_n({2.0, 2.0, -1.0}, {0.0, 0.0, -50.0}).z == Approx(0.4 + 0.1));
-  CHECK(model.force_n({2.0, 2.0, -1.0}, {0.0, 0.0, 200.0}) == Vec3{});
-  CHECK(model.force_n({2.0, 2.0, 0.1}, {0.0, 0.0, -500.0}) == Vec3{});
-  CHECK(model.force_n({-2.0, 2.0, -1.0}, {0.0, 0.0, 50.0}).z == Approx(0.4 - 0.1));
-  CHECK(model.force_n({-2.0, 2.0, -1.0}, {0.0, 0.0, 300.0}) == Vec3{});
-  CHECK(model.force_n({-2.0, 2.0, 0.1}, {0.0, 0.0, -500.0}) == Vec3{});
-}
-
-TEST_CASE("PaperModel gives tangential_force() of the field's heights at pixel centres") {
-  const engine::TextureField field = random_field(6, 9, 2);
-  const engine::FieldView view = field.view();
-  Plane<double> heights(6, 9);
-  std::ranges::copy(view.heights, heights.samples().begin());
-  const engine::ForceField<double> slow = engine::tangential_force(heights, 3);
-  const engine::PaperModel model(view, {}, kGains);
-  for (int y = 0; y < 6; ++y) {
-    for (int x = 0; x < 9; ++x) {
-      const Vec3 force_n = model.force_n(centre_of(view, y, x, -2.0), kStill);
-      REQUIRE(force_n.x == Approx(0.012 * slow.x.at(y, x)).margin(1e-12));
-      REQUIRE(force_n.y == Approx(0.012 * slow.y.at(y, x)).margin(1e-12));
-      REQUIRE(force_n.z == Approx(0.8 + 0.01 * heights.at(y, x)).margin(1e-12));
-    }
-  }
 }
 
 TEST_CASE("PaperModel agrees with its equations at every size, load, speed and ramp") {
@@ -244,18 +207,6 @@ TEST_CASE("PaperModel with texture gains at zero is the wall alone") {
         model.force_n({random.uniform(0.0, 2.0), random.uniform(0.0, 2.0), z_mm}, kStill);
     REQUIRE(force_n == Vec3{0.0, 0.0, z_mm < 0.0 ? -0.4 * z_mm : 0.0});
   }
-}
-
-TEST_CASE("PaperModel's tangential force is proportional to its gain") {
-  const engine::TextureField field = random_field(10, 10, 11);
-  const engine::PaperModel once(field.view(), {}, {0.01, 0.005});
-  const engine::PaperModel twice(field.view(), {}, {0.02, 0.005});
-  const Vec3 weak_n = once.force_n({0.77, 1.31, -1.0}, kStill);
-  const Vec3 strong_n = twice.force_n({0.77, 1.31, -1.0}, kStill);
-  CHECK(std::abs(weak_n.x) > 0.0);
-  CHECK(strong_n.x == Approx(2.0 * weak_n.x).epsilon(1e-12));
-  CHECK(strong_n.y == Approx(2.0 * weak_n.y).epsilon(1e-12));
-  CHECK(strong_n.z == weak_n.z);
 }
 
 TEST_CASE("PaperModel limits the norm of the force and keeps its direction") {

@@ -85,16 +85,6 @@ TEST_CASE("SurfaceModel's force is minus the gradient of its potential, everywhe
   if (height * width > 1) CHECK(strongest_n > 0.01);
 }
 
-TEST_CASE("SurfaceModel's lateral force grows in proportion to the load") {
-  const engine::TextureField field = random_surface(20, 20, 3);
-  const engine::SurfaceModel model(field.view(), unlimited(), kGains);
-  const Vec3 light_n = still_force_n(model, {1.77, 2.31, -1.0});
-  const Vec3 heavy_n = still_force_n(model, {1.77, 2.31, -4.0});
-  REQUIRE(std::abs(light_n.x) > 1e-4);
-  CHECK(heavy_n.x / light_n.x == Approx(heavy_n.z / light_n.z).epsilon(1e-12));
-  CHECK(heavy_n.y / light_n.y == Approx(heavy_n.z / light_n.z).epsilon(1e-12));
-}
-
 TEST_CASE("SurfaceModel's surface goes through the texture at pixel centres") {
   engine::RenderingOptions options = unlimited();
   options.filter_mm = 0.0;

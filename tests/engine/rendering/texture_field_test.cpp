@@ -14,17 +14,6 @@
 namespace touchtrial {
 namespace {
 
-TEST_CASE("make_texture_field is flat and without force where the texture is zero") {
-  const engine::TextureField field = flat_field(5, 8);
-  REQUIRE(field.view().heights.size() == 40);
-  const engine::SampledField samples = sampled(field.view());
-  for (const engine::FieldSample& sample : samples.samples.samples()) {
-    REQUIRE(sample.height == 0.0F);
-    REQUIRE(sample.force_x == 0.0F);
-    REQUIRE(sample.force_y == 0.0F);
-  }
-}
-
 TEST_CASE("make_texture_field carries the texture's shape and the options' pitch") {
   engine::RenderingOptions options;
   options.pitch_mm = 0.25;
@@ -32,22 +21,6 @@ TEST_CASE("make_texture_field carries the texture's shape and the options' pitch
   CHECK(field.view().geometry.height_px == 3);
   CHECK(field.view().geometry.width_px == 7);
   CHECK(field.view().geometry.pitch_mm == 0.25);
-}
-
-TEST_CASE("make_texture_field without filter pushes from bright to dark by the slope") {
-  engine::RenderingOptions options;
-  options.filter_mm = 0.0;
-  Plane<double> ramp(6, 6);
-  for (int y = 0; y < 6; ++y) {
-    for (int x = 0; x < 6; ++x) ramp.at(y, x) = x;
-  }
-  const engine::TextureField field = engine::make_texture_field(ramp, options);
-  const engine::SampledField samples = sampled(field.view());
-  const engine::FieldSample inside = samples.samples.at(2, 3);
-  CHECK(inside.height == 3.0F);
-  CHECK(inside.force_x == Approx(-4.0));
-  CHECK(inside.force_y == Approx(0.0).margin(1e-6));
-  CHECK(samples.samples.at(2, 0).force_x == Approx(-2.0));
 }
 
 TEST_CASE("make_texture_field is the force of the filtered surface") {

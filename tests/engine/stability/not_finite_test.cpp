@@ -56,41 +56,6 @@ TEST_CASE("a field of a texture that is not finite is refused by name") {
   }
 }
 
-TEST_CASE("an option that is not finite is refused by its name, whatever the method") {
-  const GreyImage image = noise_image({9, 9});
-  const auto refusal = [&](engine::Method method,
-                           const std::function<void(engine::ExtractionOptions&)>& spoil) {
-    engine::ExtractionOptions options;
-    options.method = method;
-    spoil(options);
-    return refusal_of([&] { (void)engine::extract_texture<float>(image, options); });
-  };
-  for (const double value : kNotFinite) {
-    CHECK_THAT(refusal(engine::Method::fixed, [=](auto& o) { o.order = value; }),
-               holds_text("order:"));
-    CHECK_THAT(refusal(engine::Method::gaussian, [=](auto& o) { o.sigma_px = value; }),
-               holds_text("sigma:"));
-    CHECK_THAT(refusal(engine::Method::median, [=](auto& o) { o.threshold_grey = value; }),
-               holds_text("threshold:"));
-    CHECK_THAT(refusal(engine::Method::edge, [=](auto& o) { o.divisor = value; }),
-               holds_text("divisor:"));
-    CHECK_THAT(refusal(engine::Method::tv_gabor, [=](auto& o) { o.tv_gabor.lambda = value; }),
-               holds_text("lambda:"));
-    CHECK_THAT(refusal(engine::Method::tv_gabor, [=](auto& o) { o.tv_gabor.gap = value; }),
-               holds_text("gap:"));
-  }
-}
-
-TEST_CASE("orders of 1 and beyond, and below 0, are refused before anything is computed") {
-  for (const double order : {1.0, -1.0, -1e-300, 1.0 + 1e-15, 1e300, kNan, kInfinity}) {
-    engine::ExtractionOptions options;
-    options.method = engine::Method::fixed;
-    options.order = order;
-    CHECK_THAT(refusal_of([&] { engine::check_options(options); }),
-               holds_text("order: must be in [0, 1), not "));
-  }
-}
-
 TEST_CASE("rendering options that are not finite are refused") {
   const engine::TextureField field = engine::make_texture_field(Plane<double>(5, 5, 1.0), {});
   const std::vector<engine::FieldView> views = {field.view()};
