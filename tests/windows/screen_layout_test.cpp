@@ -92,10 +92,11 @@ app::InputEvent key(app::Key which, int digit = 0) {
 struct Drawn {
   explicit Drawn(const session::Step& step, const std::string& language = "en",
                  const std::vector<std::string>& labels = {})
-      : screen(app::screen_for(
-            step,
-            {.words = &words_in(language), .language = language, .shelf = &shelf, .glass = &glass},
-            labels)) {}
+      : context{.words = &words_in(language),
+                .language = language,
+                .shelf = &shelf,
+                .glass = &glass},
+        screen(app::screen_for(step, context, labels)) {}
   [[nodiscard]] app::Canvas draw() { return paper.draw(*screen); }
   std::optional<session::StepReply> press(app::Key which, int digit = 0) {
     std::optional<session::StepReply> reply = screen->take(key(which, digit));
@@ -115,6 +116,7 @@ struct Drawn {
   Paper paper{{1280.0, 720.0}};
   Squares shelf{51.2};
   app::Glass glass{0.27, true};
+  app::ScreenContext context;
   std::shared_ptr<app::Screen> screen;
 };
 
