@@ -113,7 +113,8 @@ void add_to_record(const store::Event& event, SessionRecord& session) {
       if (store::resumed_from_json(event.body).after == "program-ended") ++session.resumed;
       return;
     case store::EventKind::interrupted:
-      ++session.interruptions;
+      // A pause takes a presentation off and counts against nobody.
+      if (store::trial_from_json(event.body).reason != store::kPauseReason) ++session.interruptions;
       return;
     case store::EventKind::paused:
       ++session.pauses;

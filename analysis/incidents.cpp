@@ -36,14 +36,20 @@ bool take_body(const store::Event& event, Incident& incident) {
       incident.device_fault = std::move(body.device_fault);
       return true;
     }
-    case EventKind::break_taken:
     case EventKind::paused:
+      incident.text = remark_in(event);
+      incident.trial = store::pause_from_json(event.body).trial;
+      return true;
+    case EventKind::break_taken:
     case EventKind::noted:
       incident.text = remark_in(event);
       return true;
-    case EventKind::resumed:
-      incident.code = store::resumed_from_json(event.body).after;
+    case EventKind::resumed: {
+      store::ResumedBody body = store::resumed_from_json(event.body);
+      incident.trial = body.trial;
+      incident.code = std::move(body.after);
       return true;
+    }
     case EventKind::block_restarted:
       return true;
     case EventKind::stopped: {

@@ -73,7 +73,9 @@ void count_answer(const store::TrialRow& trial, TrialQuality& quality) {
   ++quality.presented;
   if (trial.state == store::TrialState::timed_out) ++quality.no_response;
   if (trial.state == store::TrialState::interrupted) ++quality.not_repeated;
-  if (trial.state == store::TrialState::answered) ++quality.answered;
+  if (trial.state != store::TrialState::answered) return;
+  ++quality.answered;
+  if (trial.paused) ++quality.paused;
 }
 
 void count_trace(const store::TrialRow& trial, TrialQuality& quality) {
@@ -158,8 +160,10 @@ std::string health_text(const QualityReport& report) {
   const TrialQuality& quality = report.quality;
   std::string text = heading("trials", report.simulated);
   text += fmt::format(
-      "  presented {}, answered {}, no response {}, interrupted {}{}\n", quality.presented,
-      quality.answered, quality.no_response, quality.interrupted,
+      "  presented {}, answered {}{}, no response {}, interrupted {}{}\n", quality.presented,
+      quality.answered,
+      quality.paused > 0 ? fmt::format(" ({} after a pause, without a time)", quality.paused) : "",
+      quality.no_response, quality.interrupted,
       quality.not_repeated > 0 ? fmt::format(" ({} not repeated)", quality.not_repeated) : "");
   text += fmt::format("  valid {} of {} with a trace ({})\n", quality.valid, quality.with_trace,
                       percent_of({quality.with_trace, quality.valid}));
@@ -246,6 +250,7 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
   object["responses"] = {{"presented", quality.presented},
                          {"answered", quality.answered},
                          {"no_response", quality.no_response},
+                         {"paused", quality.paused},
                          {"interrupted", quality.interrupted},
                          {"not_repeated", quality.not_repeated}};
   object["validity"] = {

@@ -31,7 +31,8 @@ struct TrialQuality {
   int presented = 0;
   int answered = 0;
   int no_response = 0;   ///< time ran out
-  int interrupted = 0;   ///< presentations that were interrupted, repeated or not
+  int paused = 0;        ///< answered, after a pause that leaves the answer without a time
+  int interrupted = 0;   ///< presentations that were interrupted, repeated or not, but for a pause
   int not_repeated = 0;  ///< trials that were interrupted and not presented again yet
   int with_trace = 0;
   int valid = 0;              ///< trials with a trace that are valid by the study's rule

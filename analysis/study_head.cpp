@@ -23,9 +23,8 @@ struct Samples {
 };
 
 void add(const TrialOutcome& trial, Samples& samples) {
-  if (trial.row.answered_at) {
-    const std::chrono::duration<double> taken = *trial.row.answered_at - trial.row.presented_at;
-    samples.answer_s.push_back(taken.count());
+  if (const auto taken = trial.row.reaction_time()) {
+    samples.answer_s.push_back(std::chrono::duration<double>(*taken).count());
   }
   if (!trial.measures || !(trial.measures->contact_s > 0.0)) return;
   const store::TrialMeasures& felt = *trial.measures;

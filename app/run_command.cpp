@@ -76,6 +76,9 @@ void add_session_options(CLI::App& command, RunOptions& options) {
       .add_option("--station", options.station,
                   "Name of this station, whose file is <study>.NAME.station")
       ->excludes(file);
+  command.add_option("--accept-clock", options.accept_clock,
+                     "Go on after a visit that a wrong clock put into the future; the reason is "
+                     "recorded");
   add_yes_flag(command, options.yes);
 }
 

@@ -166,7 +166,7 @@ class SafetyRecord {
     Session& session = found->second;
     const store::Event event = readable(stored, session.row);
     const std::optional<Incident> incident = incident_of(event, session.row);
-    if (!incident || !is_of_safety(*incident)) return;
+    if (!incident || !is_of_safety(*incident) || incident->code == store::kPauseReason) return;
     session.interruptions += event.kind == EventKind::interrupted ? 1 : 0;
     session.stops += event.kind == EventKind::stopped ? 1 : 0;
     session.deviations +=

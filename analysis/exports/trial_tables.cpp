@@ -106,7 +106,7 @@ DataCell validity_of(const TrialView& trial) {
   return flag(trial.outcome != nullptr ? trial.outcome->valid() : trial.row.valid);
 }
 
-constexpr std::array<TrialColumn, 36> kTrialColumns{{
+constexpr std::array<TrialColumn, 37> kTrialColumns{{
     {"participant", false, [](const TrialView& t) -> DataCell { return t.participant; }},
     {"session", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.session}; }},
     {"trial", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.trial}; }},
@@ -118,9 +118,9 @@ constexpr std::array<TrialColumn, 36> kTrialColumns{{
     {"correct", true, correctness_of},
     {"confidence", true, number_of<&store::TrialRow::confidence>},
     {"reaction_time_s", true,
-     [](const TrialView& t) { return time_between(t.row.presented_at, t.row.answered_at); }},
+     [](const TrialView& t) { return time_or_nothing(t.row.reaction_time()); }},
     {"from_contact_s", true,
-     [](const TrialView& t) { return time_between(t.row.contact_at, t.row.answered_at); }},
+     [](const TrialView& t) { return time_or_nothing(t.row.from_contact()); }},
     {"contact_s", false, measured<&store::TrialMeasures::contact_s>},
     {"path_mm", false, measured<&store::TrialMeasures::path_mm>},
     {"force_rms_n", false, measured<&store::TrialMeasures::force_rms_n>},
@@ -134,7 +134,10 @@ constexpr std::array<TrialColumn, 36> kTrialColumns{{
     {"explorations", false,
      [](const TrialView& t) -> DataCell { return std::int64_t{t.row.explorations}; }},
     {"first_contact_s", true,
-     [](const TrialView& t) { return time_between(t.row.presented_at, t.row.contact_at); }},
+     [](const TrialView& t) -> DataCell {
+       if (!t.row.contact_at) return std::monostate{};
+       return *t.row.contact_at - t.row.presented_at;
+     }},
     {"position", true, number_of<&store::TrialRow::position>},
     {"first_position", true, number_of<&store::TrialRow::first_position>},
     {"valid_in_clear", false, [](const TrialView& t) { return flag(t.row.valid); }},
@@ -147,6 +150,7 @@ constexpr std::array<TrialColumn, 36> kTrialColumns{{
     {"samples", true, [](const TrialView& t) -> DataCell { return t.row.samples; }},
     {"sampling_hz", false, [](const TrialView& t) -> DataCell { return t.row.rate_hz; }},
     {"overruns", false, [](const TrialView& t) -> DataCell { return t.row.overruns; }},
+    {"paused", false, [](const TrialView& t) { return flag(t.row.paused); }},
 }};
 
 void add_trial(DataTable& table, const std::vector<TrialColumn>& columns, const TrialView& trial) {
@@ -194,10 +198,8 @@ DataTable trials_that_are(bool scored, const Outcomes& outcomes) {
 
 }  // namespace
 
-DataCell time_between(const std::optional<std::chrono::nanoseconds>& from,
-                      const std::optional<std::chrono::nanoseconds>& to) {
-  if (!from || !to) return std::monostate{};
-  return *to - *from;
+DataCell time_or_nothing(const std::optional<std::chrono::nanoseconds>& time) {
+  return time ? DataCell(*time) : DataCell();
 }
 
 std::span<const TrialColumn> trial_columns() {

@@ -36,8 +36,7 @@ struct TrialColumn {
 [[nodiscard]] std::vector<TrialColumn> trial_columns_of(const Outcomes* outcomes);
 
 /// The time between two moments of a trial; missing unless both occurred.
-[[nodiscard]] DataCell time_between(const std::optional<std::chrono::nanoseconds>& from,
-                                    const std::optional<std::chrono::nanoseconds>& to);
+[[nodiscard]] DataCell time_or_nothing(const std::optional<std::chrono::nanoseconds>& time);
 
 /// The file name of a trial's image, as the study gives it.
 [[nodiscard]] const std::string& image_of(const Outcomes& study, const TrialOutcome& trial);

@@ -37,6 +37,7 @@ Table trials_table(const TrialQuality& quality) {
   };
   add("presented", quality.presented, quality.presented);
   add("answered", quality.answered, quality.presented);
+  add("answered after a pause, without a reaction time", quality.paused, quality.answered);
   add("no response: time ran out", quality.no_response, quality.presented);
   add("interrupted presentations, repeated or not", quality.interrupted, 0);
   add("interrupted, and not repeated yet", quality.not_repeated, quality.presented);
@@ -44,7 +45,8 @@ Table trials_table(const TrialQuality& quality) {
   add("valid by the study's rule, as far as it is in clear", quality.valid, quality.with_trace);
   add("with servo ticks that came late", quality.with_overruns, quality.with_trace);
   table.notes = {
-      {"Shares: of presented trials; of validity and late ticks, of trials with a trace."}};
+      {"Shares: of presented trials; of pauses, of answers; of validity and late ticks, of trials "
+       "with a trace."}};
   return table;
 }
 

@@ -103,7 +103,7 @@ void SessionCourse::follow_trial(const store::Event& event) {
   const bool is_over_without_answer = event.kind == store::EventKind::timed_out &&
                                       study_.trials.on_timeout == design::OnTimeout::no_response;
   if (event.kind == store::EventKind::interrupted) {
-    course_.spoil();
+    if (store::trial_from_json(event.body).reason != store::kPauseReason) course_.spoil();
   } else if (event.kind == store::EventKind::answered) {
     answer(event);
   } else if (is_over_without_answer) {

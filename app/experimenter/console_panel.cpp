@@ -104,6 +104,13 @@ void draw_stop(const session::SessionStatus& status) {
   ImGui::TextWrapped("%s", stop_advice(status).c_str());
 }
 
+void draw_alert(const session::SessionStatus& status) {
+  if (status.alert.empty()) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, kVermillion);
+  ImGui::TextWrapped("%s", status.alert.c_str());
+  ImGui::PopStyleColor();
+}
+
 void fact(const char* name, const std::string& value) {
   ImGui::TableNextColumn();
   // The name is closer to its value than to the row above.
@@ -208,6 +215,7 @@ void ConsolePanel::draw(Vec2 size, float density, bool may_write) {
   draw_heading(view.status);
   draw_progress(view.status, density);
   draw_stop(view.status);
+  draw_alert(view.status);
   ImGui::Spacing();
   draw_facts(view.status);
   ImGui::Spacing();

@@ -400,6 +400,10 @@ void ConsoleWindow::draw() {
   glfwSwapBuffers(s.window);
 }
 
+bool ConsoleWindow::has_focus() const {
+  return glfwGetWindowAttrib(state_->window, GLFW_FOCUSED) != 0;
+}
+
 std::optional<engine::ColourImage> ConsoleWindow::picture(std::chrono::milliseconds longest) {
   State& s = *state_;
   {

@@ -47,6 +47,9 @@ class ConsoleWindow {
   ConsoleWindow(const ConsoleWindow&) = delete;
   ConsoleWindow& operator=(const ConsoleWindow&) = delete;
 
+  /// Whether keys come to this window. Runs on the main thread.
+  [[nodiscard]] bool has_focus() const;
+
   /// \name Drawing thread. These functions change the current OpenGL context.
   ///@{
   void begin_drawing();

@@ -33,7 +33,8 @@ std::string stop_advice(const session::SessionStatus& status) {
 }
 
 std::string progress_words(const session::SessionStatus& status) {
-  std::string words = status.participant + "  " + status.stage;
+  std::string words = status.alert.empty() ? "" : "ALERT: " + status.alert + "  ";
+  words += status.participant + "  " + status.stage;
   if (status.practice && status.stage != "practice") words += " (practice)";
   if (status.participant_stopped) words += " by the participant";
   if (status.trial > 0) words += fmt::format("  trial {} of {}", status.trial, status.of);

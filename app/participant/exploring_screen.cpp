@@ -99,6 +99,7 @@ void ExploringScreen::paint_plane(Canvas& canvas) {
 const std::string& ExploringScreen::below_plane() const {
   const Words& words = *context_.words;
   if (!view_.interval) return words.exploring_mouse;
+  if (is_to_lift()) return words.interval_text_mouse;
   return view_.interval->hand_off ? words.exploring_hand_off : words.exploring_interval_mouse;
 }
 
@@ -119,9 +120,13 @@ void ExploringScreen::paint_interval(Canvas& canvas) {
   const double width = 1000.0 * unit;
   const double top = 0.386 * canvas.size().y;
   canvas.label({middle - width / 2.0, top, width, 56.0 * unit}, Letters::title, tone::kText, which);
-  canvas.label({middle - width / 2.0, top + 58.0 * unit, width, 66.0 * unit}, Letters::body,
-               tone::kText,
-               view_.interval->hand_off ? words.exploring_hand_off : words.exploring_interval);
+  const Box below{middle - width / 2.0, top + 58.0 * unit, width, 66.0 * unit};
+  if (is_to_lift()) {
+    canvas.label(below, Letters::strong, tone::kWarn, words.interval_text);
+  } else {
+    canvas.label(below, Letters::body, tone::kText,
+                 view_.interval->hand_off ? words.exploring_hand_off : words.exploring_interval);
+  }
   paint_explored(canvas, {middle - 220.0 * unit, top + 146.0 * unit, 440.0 * unit, 14.0 * unit});
 }
 

@@ -38,6 +38,7 @@ struct ExploringView {
   std::optional<session::IntervalStep> interval{};  ///< the plane is one of several
   /// How much of the interval was explored as asked for, of kExploredSteps; set if `interval` is.
   const std::atomic<int>* explored = nullptr;
+  const std::atomic<bool>* has_lifted = nullptr;  ///< the plane is on; set if `interval` is
 };
 
 class ExploringScreen final : public Screen {
@@ -57,6 +58,9 @@ class ExploringScreen final : public Screen {
   void paint_plane(Canvas& canvas);
   void paint_bars(Canvas& canvas);
   void paint_interval(Canvas& canvas);
+  [[nodiscard]] bool is_to_lift() const noexcept {
+    return view_.interval && !view_.interval->hand_off && !view_.has_lifted->load();
+  }
   void paint_explored(Canvas& canvas, const Box& track);
   [[nodiscard]] const std::string& below_plane() const;
 

@@ -314,6 +314,29 @@ struct ParticipantWindow::State {
     gone.compare_exchange_strong(nobody, static_cast<int>(why));
   }
 
+  /// A plane whose participant cannot stop it must not stay on.
+  void look_at_focus() {
+    constexpr milliseconds kBetweenLooks{50};
+    constexpr milliseconds kBetweenAsks{200};
+    const Clock::time_point now = Clock::now();
+    if (now - looked_at_focus < kBetweenLooks) return;
+    looked_at_focus = now;
+    const bool focused =
+        glfwGetWindowAttrib(window, GLFW_FOCUSED) != 0 || (console && console->has_focus());
+    if (focused) {
+      had_focus = true;
+      lost_at = Clock::duration{};
+      return;
+    }
+    if (!had_focus) return;
+    if (lost_at.load() == Clock::duration{}) lost_at = now.time_since_epoch();
+    if (!exploring) return;
+    lost_at_plane = true;
+    if (now - asked_for_focus < kBetweenAsks) return;
+    asked_for_focus = now;
+    glfwFocusWindow(window);
+  }
+
   /// Hides the pointer while a plane is on: it would show where a mouse user's hand is.
   void hide_pointer() {
     const bool hide = exploring || between;
@@ -423,6 +446,9 @@ struct ParticipantWindow::State {
   // Main thread.
   Vec2 pointer_at;
   bool pointer_hidden = false;
+  bool had_focus = false;
+  Clock::time_point looked_at_focus{};
+  Clock::time_point asked_for_focus{};
   Gamepads gamepads;
 
   // Between threads.
@@ -431,6 +457,8 @@ struct ParticipantWindow::State {
   std::atomic<bool> between{false};    ///< it is said which of a trial's planes comes next
   std::atomic<bool> has_clock{false};  ///< the plane ends by itself
   std::atomic<int> explored{0};        ///< of the interval, in steps of its bar
+  std::atomic<Clock::duration> lost_at{};  ///< when another program got the focus; 0: none has it
+  std::atomic<bool> lost_at_plane{false};
   std::atomic<bool> comfort_asked{false};
   std::atomic<bool> finish_asked{false};
   std::atomic<bool> has_touched{false};  ///< as the options want it
@@ -459,7 +487,8 @@ struct ParticipantWindow::State {
   std::optional<device::ServoSample> last_felt;
   bool is_too_hard = false;
   std::optional<session::IntervalStep> interval;  ///< of the plane; set before it comes on
-  bool has_lifted = false;                        ///< since the plane can come on
+  std::atomic<bool> has_lifted{false};            ///< since the plane can come on
+  bool lifted_shown = false;
   Vec2 velocity_mm_s;
   double explored_s = 0.0;
 
@@ -482,6 +511,7 @@ void ParticipantWindow::pump(milliseconds longest) {
   });
   s.hide_pointer();
   s.publish_pointer();
+  s.look_at_focus();
   if (device::StopOnSignals::asked()) s.leave(WindowGone::signal);
 }
 
@@ -545,7 +575,7 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
   const auto* const interval = s.step ? std::get_if<session::IntervalStep>(&*s.step) : nullptr;
   s.interval = interval != nullptr && s.options.intervals ? std::optional(*interval) : std::nullopt;
   s.has_clock = s.interval.has_value();
-  s.has_lifted = false;
+  s.has_lifted = s.lifted_shown = false;
   s.velocity_mm_s = {};
   s.explored_s = 0.0;
   s.explored = s.explored_shown = 0;
@@ -561,7 +591,8 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
                            &s.asks_for_touch,
                            plane,
                            s.interval,
-                           &s.explored};
+                           &s.explored,
+                           &s.has_lifted};
   s.screen = std::make_shared<ExploringScreen>(view, s.context);
   s.exchange.show(s.screen);
   if (!s.between) s.comfort_asked = false;
@@ -581,7 +612,9 @@ void ParticipantWindow::exploring(device::ServoControl& servo) {
   if (s.finish_asked && s.has_touched) servo.finish();
   const bool asks = !s.has_touched && (s.finish_asked.exchange(false) || s.asks_for_touch);
   const int explored = s.explored;
-  const bool grew = std::exchange(s.explored_shown, explored) != explored;
+  const bool lifted = s.has_lifted;
+  const bool grew = std::exchange(s.explored_shown, explored) != explored ||
+                    std::exchange(s.lifted_shown, lifted) != lifted;
   if (s.asks_for_touch.exchange(asks) != asks || grew) s.exchange.redraw();
 }
 
@@ -590,7 +623,7 @@ void ParticipantWindow::feel(const device::ServoSample& sample) noexcept {
   // In an interval the hand's force alone: a texture's would tell the planes apart.
   const double press_n = s.options.stiffness_n_per_mm * std::max(0.0, -sample.position_mm.z);
   const double force_n = s.interval ? press_n : norm(sample.force_n);
-  s.has_lifted = s.has_lifted || sample.position_mm.z > design::kLiftedMm;
+  if (sample.position_mm.z > design::kLiftedMm) s.has_lifted = true;
   if (force_n > kPushTooHardN && !s.is_too_hard) s.cue(Cue::too_hard);
   s.is_too_hard = force_n > (s.is_too_hard ? kSoftAgainN : kPushTooHardN);
   if (s.last_felt && sample.tick > s.last_felt->tick) {
@@ -620,6 +653,20 @@ std::optional<WindowGone> ParticipantWindow::gone() const noexcept {
   const int why = state_->gone;
   if (why < 0) return std::nullopt;
   return static_cast<WindowGone>(why);
+}
+
+milliseconds ParticipantWindow::out_of_reach() const noexcept {
+  const Clock::duration lost = state_->lost_at;
+  if (lost == Clock::duration{}) return {};
+  return std::chrono::duration_cast<milliseconds>(Clock::now().time_since_epoch() - lost);
+}
+
+bool ParticipantWindow::take_out_of_reach() noexcept {
+  return state_->lost_at_plane.exchange(false);
+}
+
+bool ParticipantWindow::is_exploring() const noexcept {
+  return state_->exploring;
 }
 
 void ParticipantWindow::close() noexcept {

@@ -131,10 +131,8 @@ class Maker {
   }
   Made operator()(const session::PracticeStep& step) const {
     const bool again = step.round > 1;
-    const std::string& first =
-        context_.intervals != nullptr ? words_.practice_text_intervals : words_.practice_text;
     return note(again ? words_.practice_again_title : words_.practice_title,
-                again ? words_.practice_again_text : first, "", words_.practice_start);
+                again ? words_.practice_again_text : practice_text(), "", words_.practice_start);
   }
   Made operator()(const session::ReadyStep& step) const {
     const Progress progress{step.trial - 1, step.of,
@@ -193,6 +191,11 @@ class Maker {
   }
 
  private:
+  [[nodiscard]] const std::string& practice_text() const {
+    if (context_.intervals != nullptr) return words_.practice_text_intervals;
+    const bool says = context_.sight == design::Sight::blindfold;
+    return says ? words_.practice_text_blindfold : words_.practice_text;
+  }
   [[nodiscard]] const std::string& ready_text(const session::ReadyStep& step) const {
     if (step.hand_off) return words_.ready_text_hand_off;
     if (context_.intervals != nullptr) {

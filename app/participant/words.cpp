@@ -19,6 +19,7 @@ constexpr std::pair<const char*, std::string Words::*> kWords[] = {
     {"practice_title", &Words::practice_title},
     {"practice_again_title", &Words::practice_again_title},
     {"practice_text", &Words::practice_text},
+    {"practice_text_blindfold", &Words::practice_text_blindfold},
     {"practice_text_intervals", &Words::practice_text_intervals},
     {"practice_again_text", &Words::practice_again_text},
     {"practice_start", &Words::practice_start},

@@ -24,6 +24,7 @@ struct Words {
   std::string practice_title;
   std::string practice_again_title;  ///< second round
   std::string practice_text;
+  std::string practice_text_blindfold;  ///< where answers are spoken
   std::string practice_text_intervals;  ///< where a trial has several planes
   std::string practice_again_text;
   std::string practice_start;

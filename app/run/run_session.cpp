@@ -7,6 +7,7 @@
 #include "app/participant/participant_window.hpp"
 #include "app/participant/window_subject.hpp"
 #include "app/participant_ids.hpp"
+#include "app/run/database_watch.hpp"
 #include "app/run/participant_dialogue.hpp"
 #include "app/run/run_study.hpp"
 #include "app/run/session_bounds.hpp"
@@ -34,6 +35,8 @@
 #include "protocols/simulation/trial_course.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -42,6 +45,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -91,6 +95,67 @@ std::string why_gone(const ParticipantWindow& window) {
   return *gone == WindowGone::closed ? "the participant's window was closed"
                                      : "the participant's monitor was unplugged";
 }
+
+/// Why the program is to end, apart from signals; empty: it is not to end.
+std::string why_ended(DatabaseWatch& watch, const ParticipantWindow* window) {
+  std::string why = watch.trouble();
+  return why.empty() && window != nullptr ? why_gone(*window) : why;
+}
+
+/// While another program has the database locked: shows why the session waits.
+/// \return whether it goes on waiting
+bool waits(const std::string& why, const std::function<void()>& show) {
+  spdlog::warn("{}; the session waits", why);
+  show();
+  return EndingSignals::which() == 0;
+}
+
+/// A deviation, once the database was locked for a while.
+std::optional<session::ExperimenterRequest> wait_to_record(PatientSink& sink) {
+  const auto waited = sink.take_waited();
+  if (!waited) return std::nullopt;
+  const double seconds = std::chrono::duration<double>(*waited).count();
+  return session::ExperimenterRequest{session::ExperimenterRequest::Kind::deviation,
+                                      fmt::format("locked for {:.0f} s by another program", seconds),
+                                      "database-locked"};
+}
+
+/// Pauses the session while a plane is on and the participant's keys do not reach it, and goes on
+/// once they do. Belongs to the session's thread.
+class FocusWatch {
+ public:
+  explicit FocusWatch(ParticipantWindow& window) : window_(window) {}
+
+  [[nodiscard]] std::optional<session::ExperimenterRequest> request() {
+    using Kind = session::ExperimenterRequest::Kind;
+    constexpr std::chrono::milliseconds kPatience{500};
+    const std::chrono::milliseconds lost = window_.out_of_reach();
+    if (window_.take_out_of_reach() && !std::exchange(is_noted_, true)) {
+      return session::ExperimenterRequest{Kind::deviation, kWhat, "focus-lost"};
+    }
+    if (lost >= kPatience && window_.is_exploring() && !std::exchange(has_paused_, true)) {
+      return session::ExperimenterRequest{Kind::pause, kWhat, ""};
+    }
+    if (lost > std::chrono::milliseconds{}) return std::nullopt;
+    is_noted_ = false;
+    if (!std::exchange(has_paused_, false)) return std::nullopt;
+    return session::ExperimenterRequest{Kind::resume, "", ""};
+  }
+
+  /// SessionStatus::alert.
+  [[nodiscard]] std::string alert() const {
+    constexpr std::chrono::seconds kAlarming{1};
+    if (window_.out_of_reach() < kAlarming) return "";
+    return "another window has the keyboard; click on the participant's window";
+  }
+
+ private:
+  static constexpr const char* kWhat = "another window had the keyboard while a plane was on";
+
+  ParticipantWindow& window_;
+  bool is_noted_ = false;
+  bool has_paused_ = false;
+};
 
 /// The practice textures of one participant.
 class ParticipantPractice {
@@ -304,9 +369,14 @@ class PersonsSession {
     }
     session::SteadySessionClock clock(entered.clock);
     SpokenAnswers spoken(window, desk_);
+    DatabaseWatch watch(options_.database);
+    FocusWatch focus(window);
     RunExperimenter experimenter(
-        desk_, [&] { return why_gone(window); },
-        [this] { return sound_ ? sound_->to_record() : std::nullopt; });
+        desk_, [&] { return why_ended(watch, &window); },
+        [&] { return recorded_by_itself(*entered.sink, focus); }, [&] { return focus.alert(); });
+    entered.sink->set_waiting([&](const std::string& why) {
+      return waits(why, [&] { static_cast<void>(spoken.attend(session::PauseStep{})); });
+    });
     const session::SessionTexts texts = texts_for(study_.key.study, device_.info());
     const session::SessionTally tally =
         session::run_session(*entered.session, {.key = study_.key,
@@ -323,7 +393,15 @@ class PersonsSession {
                                                 .limits = device_.limits(),
                                                 .instruments = instruments_.get()});
     terminal_.end_line();
-    return conclude_session(options_, entered.number, tally, database_.made());
+    return conclude_session(options_, entered.number, tally, database_.made(), watch.trouble());
+  }
+
+  /// What the program records of the session's room, one request after the other.
+  [[nodiscard]] std::optional<session::ExperimenterRequest> recorded_by_itself(PatientSink& sink,
+                                                                               FocusWatch& focus) {
+    if (auto request = wait_to_record(sink)) return request;
+    if (auto request = focus.request()) return request;
+    return sound_ ? sound_->to_record() : std::nullopt;
   }
 
   const RunOptions& options_;
@@ -410,9 +488,11 @@ class SimulatedSession {
     std::optional<WindowSubject> before_window;
     if (window != nullptr) before_window.emplace(*window, *mind, options_.real_time);
     session::AlwaysReady devices;
-    RunExperimenter experimenter(session::no_experimenter(), [&] {
-      return window != nullptr ? why_gone(*window) : std::string();
-    });
+    DatabaseWatch watch(options_.database);
+    RunExperimenter experimenter(
+        session::no_experimenter(), [&] { return why_ended(watch, window); },
+        [&] { return wait_to_record(*entered.sink); });
+    entered.sink->set_waiting([](const std::string& why) { return waits(why, [] {}); });
     const session::SessionTexts texts = session_texts(study_.key.study);
     const session::SessionTally tally = session::run_session(
         *entered.session,
@@ -427,7 +507,7 @@ class SimulatedSession {
          .participant_name = options_.participant,
          .device_name = "simulated",
          .instruments = instruments_.get()});
-    return conclude_session(options_, entered.number, tally, database_.made());
+    return conclude_session(options_, entered.number, tally, database_.made(), watch.trouble());
   }
 
   const RunOptions& options_;

@@ -107,9 +107,9 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study, Run
   entered.number = store.next_session();
   SystemEntropy entropy;
   const SecretKey key = entropy.secret("participant key");
-  entered.sink = store.begin_session(
+  entered.sink = std::make_unique<PatientSink>(store.begin_session(
       entered.number, store::wrap_participant_key(study.key.investigator_box, entered.number, key),
-      {}, store::keep_participant_key(study.key.station.secret, entered.number, key));
+      {}, store::keep_participant_key(study.key.station.secret, entered.number, key)));
   entered.session = std::make_unique<session::Session>(
       schedule, study.key.study.trials, store::SessionRecorder(entered.number, key, *entered.sink),
       block_restart_of(study.key, entered.draw),
@@ -177,7 +177,14 @@ EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunD
   const design::VisitPlan& plan = study.key.study.visits;
   const nanoseconds before = opened_at(database.made(), last.session);
   const double days = design::days_between(before, utc_now());
-  if (in_days && days < plan.least_days) {
+  const bool is_clock_wrong = in_days && days < 0.0;
+  if (is_clock_wrong && options.accept_clock.empty()) {
+    refuse(fmt::format("visit {} was opened at {}, and this machine's clock shows {}: one of the "
+                       "two was wrong; set the clock if it is this one, or else give "
+                       "--accept-clock REASON, which is recorded",
+                       last.visit, utc_words(before), utc_words(utc_now())));
+  }
+  if (in_days && !is_clock_wrong && days < plan.least_days) {
     const auto least = std::chrono::duration<double, std::ratio<86'400>>(plan.least_days);
     refuse(
         fmt::format("comes {:.1f} days after visit {} by this machine's clock, and the study has "
@@ -186,6 +193,11 @@ EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunD
                     utc_words(before + std::chrono::ceil<nanoseconds>(least))));
   }
   EnteredSession entered = new_session(options, study, database, last.enrolment, describe);
+  if (is_clock_wrong) {
+    entered.session->deviate({}, {"wrong-clock", fmt::format("visit {} was opened at {}: {}",
+                                                             last.visit, utc_words(before),
+                                                             options.accept_clock)});
+  }
   if (in_days && plan.most_days && days > *plan.most_days) {
     const std::string late = fmt::format("{:.1f} days after visit {}, at most {} in the study",
                                          days, last.visit, *plan.most_days);
@@ -201,7 +213,7 @@ struct KeptSession {
   SecretKey key{};
   std::string schedule;  ///< JSON
   std::vector<store::Event> events;
-  nanoseconds away{};  ///< since its last event
+  nanoseconds away{};  ///< since its last event; less than 0 if the clock was set back since
 };
 
 /// \throws StoreError if this station does not hold the session's key
@@ -225,14 +237,14 @@ KeptSession kept_session(const RunOptions& options, const RunStudy& study,
     if (stored.sequence == 0) session.schedule = std::move(opened->secret);
     session.events.push_back(std::move(opened->event));
   }
-  session.away =
-      std::max(nanoseconds{}, utc_now() - opened_at(store, row.session) - session.events.back().at);
+  session.away = utc_now() - opened_at(store, row.session) - session.events.back().at;
   return session;
 }
 
 std::string standing(const store::StudyStore& store, const store::SessionRow& row,
                      nanoseconds away) {
-  const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(away).count();
+  const auto minutes =
+      std::chrono::duration_cast<std::chrono::minutes>(std::max(nanoseconds{}, away)).count();
   return fmt::format("participant {} has session {}, with {} trials answered, left {} h {} min ago",
                      row.participant, row.session, answered_trials(store, row.session),
                      minutes / 60, minutes % 60);
@@ -254,6 +266,19 @@ nanoseconds time_after(const RunOptions& options, nanoseconds last, nanoseconds 
   return options.is_simulated() && !options.real_time ? last : last + away;
 }
 
+/// Records that the clock was set back since the session's last event, by more than a clock that is
+/// kept right is set by.
+void record_clock(const RunOptions& options, nanoseconds away, EnteredSession& entered) {
+  constexpr std::chrono::seconds kSmall{5};
+  const bool is_virtual = options.is_simulated() && !options.real_time;
+  if (is_virtual || away >= -kSmall) return;
+  const auto back = std::chrono::duration_cast<std::chrono::seconds>(-away).count();
+  entered.session->deviate(
+      entered.clock, {"clock-set-back", fmt::format("this machine's clock shows {}, {} s before the "
+                                                    "session's last event",
+                                                    utc_words(utc_now()), back)});
+}
+
 EnteredSession resumed_session(const RunOptions& options, const RunStudy& study,
                                store::StudyStore& store, const KeptSession& kept,
                                const store::SessionRow& row) {
@@ -261,14 +286,16 @@ EnteredSession resumed_session(const RunOptions& options, const RunStudy& study,
   entered.number = row.session;
   entered.enrolment = row.enrolment;
   entered.draw = study.key.draw_of(row.enrolment, draws_of(options), row.visit);
-  entered.sink = store.continue_session(row.session);
+  entered.sink = std::make_unique<PatientSink>(store.continue_session(row.session));
   entered.session =
       std::make_unique<session::Session>(restored(options, study, kept, row, *entered.sink));
   session::Session& session = *entered.session;
-  entered.clock = time_after(options, session.last(), kept.away);
+  const nanoseconds away = std::max(nanoseconds{}, kept.away);
+  entered.clock = time_after(options, session.last(), away);
   session.take_up(entered.clock, {.after = "program-ended",
-                                  .away_s = std::chrono::duration<double>(kept.away).count(),
+                                  .away_s = std::chrono::duration<double>(away).count(),
                                   .program_version = std::string(program_version())});
+  record_clock(options, kept.away, entered);
   return entered;
 }
 
@@ -461,8 +488,15 @@ std::string EndingSignals::message() {
 }
 
 RunExperimenter::RunExperimenter(session::Experimenter& inner, std::function<std::string()> gone,
-                                 std::function<std::optional<session::ExperimenterRequest>()> more)
-    : inner_(inner), gone_(std::move(gone)), more_(std::move(more)) {}
+                                 std::function<std::optional<session::ExperimenterRequest>()> more,
+                                 std::function<std::string()> alert)
+    : inner_(inner), gone_(std::move(gone)), more_(std::move(more)), alert_(std::move(alert)) {}
+
+void RunExperimenter::show(const session::SessionStatus& status) {
+  session::SessionStatus shown = status;
+  if (alert_) shown.alert = alert_();
+  inner_.show(shown);
+}
 
 std::optional<session::ExperimenterRequest> RunExperimenter::request() {
   std::string why = EndingSignals::message();
@@ -497,7 +531,14 @@ std::string summary(const RunOptions& options, int session, const session::Sessi
 }  // namespace
 
 int conclude_session(const RunOptions& options, int session, const session::SessionTally& tally,
-                     const store::StudyStore& store) {
+                     const store::StudyStore& store, std::string trouble) {
+  if (trouble.empty() && !is_on_disk(options.database, session, store)) {
+    trouble = one_line(options.database.string()) + " was changed while the session ran";
+  }
+  if (!trouble.empty()) {
+    throw StoreError(fmt::format("{}, and does not hold session {} of participant {} to its end; {}", trouble, session,
+                                 options.participant, rescue(options.database, store)));
+  }
   const bool is_complete =
       store.session_of(options.participant)->state == store::SessionState::completed;
   // Nobody has a day sheet of simulated participants.

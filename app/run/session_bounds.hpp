@@ -2,6 +2,7 @@
 /// its end, and what the program then prints and returns.
 #pragma once
 
+#include "app/run/database_watch.hpp"
 #include "app/run/run_session.hpp"
 #include "app/run/run_study.hpp"
 #include "protocols/design/schedule.hpp"
@@ -25,7 +26,7 @@ struct EnteredSession {
   int enrolment = 0;
   design::ScheduleDraw draw;         ///< what its schedule is drawn from
   std::chrono::nanoseconds clock{};  ///< present time of the session's clock
-  std::unique_ptr<store::EventSink> sink;
+  std::unique_ptr<PatientSink> sink;
   std::unique_ptr<session::Session> session;
 };
 
@@ -72,10 +73,12 @@ class RunExperimenter final : public session::Experimenter {
   /// \param inner  must outlive this object
   /// \param gone  says why the program is to end, apart from signals; "": it is not to end
   /// \param more  further requests, such as those of the sound; empty: there are none
+  /// \param alert  SessionStatus::alert; empty: there is none
   RunExperimenter(session::Experimenter& inner, std::function<std::string()> gone,
-                  std::function<std::optional<session::ExperimenterRequest>()> more = {});
+                  std::function<std::optional<session::ExperimenterRequest>()> more = {},
+                  std::function<std::string()> alert = {});
 
-  void show(const session::SessionStatus& status) override { inner_.show(status); }
+  void show(const session::SessionStatus& status) override;
   [[nodiscard]] std::optional<session::ExperimenterRequest> request() override;
   [[nodiscard]] std::optional<std::vector<session::Tick>> day_sheet(
       const std::vector<session::DaySheetItem>& items) override {
@@ -87,13 +90,15 @@ class RunExperimenter final : public session::Experimenter {
   session::Experimenter& inner_;
   std::function<std::string()> gone_;
   std::function<std::optional<session::ExperimenterRequest>()> more_;
+  std::function<std::string()> alert_;
 };
 
 /// Prints the session's summary, which says nothing about outcomes, and how to resume the session
 /// if it was left open.
+/// \param trouble  DatabaseWatch::trouble; what the store holds is then saved beside the database
 /// \return the exit code, as run_study_session
 [[nodiscard]] int conclude_session(const RunOptions& options, int session,
                                    const session::SessionTally& tally,
-                                   const store::StudyStore& store);
+                                   const store::StudyStore& store, std::string trouble);
 
 }  // namespace touchtrial::app

@@ -80,9 +80,12 @@ std::vector<std::vector<std::string>> pages_for(const design::Study& study) {
   return pages;
 }
 
-/// A part of the texts, or what the protocol says itself.
+/// A part of the texts, for whoever wears a blindfold if that differs, or what the protocol says
+/// itself.
 std::string part_of(const design::Study& study, const Section& texts, const std::string& part) {
-  const auto found = texts.find(part);
+  const bool is_blindfold = study.session.sight == design::Sight::blindfold;
+  auto found = is_blindfold ? texts.find(part + "_blindfold") : texts.end();
+  if (found == texts.end()) found = texts.find(part);
   return found == texts.end() ? study.protocol->instruction() : found->second;
 }
 

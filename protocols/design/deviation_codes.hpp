@@ -16,7 +16,10 @@ inline constexpr const char* kUnverifiedDeviceCode = "unverified-device";
 
 /// In alphabetical order.
 inline constexpr auto kDeviationCodes = std::to_array<std::string_view>({"answers-lost",
+                                                                         "clock-set-back",
                                                                          "comfort-stop",
+                                                                         "database-locked",
+                                                                         "focus-lost",
                                                                          "key-at-station",
                                                                          "no-blindfold",
                                                                          "no-calibration",
@@ -39,7 +42,8 @@ inline constexpr auto kDeviationCodes = std::to_array<std::string_view>({"answer
                                                                          "other-device",
                                                                          "practice-not-passed",
                                                                          kUnverifiedDeviceCode,
-                                                                         "visit-late"});
+                                                                         "visit-late",
+                                                                         "wrong-clock"});
 
 /// Whether a code is one of them, or names an item of a study's own day sheet: "no-day-sheet-3".
 [[nodiscard]] constexpr bool is_deviation_code(std::string_view code) noexcept {

@@ -34,6 +34,7 @@ struct SessionStatus {
   bool needs_consent = false;          ///< no force until the experimenter consents
   std::chrono::nanoseconds elapsed{};  ///< since the session's opening
   std::string device;                  ///< its name, and what it needs
+  std::string alert;                   ///< what somebody must do now; empty: nothing
   /// While a plane is on in real time, and the hand at it.
   std::optional<HandLevels> hand;
   // Of the last exploration in real time.

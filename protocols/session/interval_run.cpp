@@ -47,10 +47,13 @@ IntervalsEnd run_intervals(SessionDesk& desk, const design::Presentation& shown,
   const auto ticks = std::max<std::int64_t>(1, std::llround(plan.seconds * servo.rate_hz));
   const double stiffness_n_per_mm = study.rendering.stiffness_n_per_mm;
   const int of = static_cast<int>(shown.intervals.size());
+  int pauses = 0;  // before the first plane
   for (int i = 0; i < of; ++i) {
     if (!desk.attend(IntervalStep{shown.trial, practice, i + 1, of, shown.hand_off})) {
       return IntervalsEnd::broken_off;
     }
+    if (i == 0) pauses = desk.pauses();
+    if (desk.pauses() != pauses) return IntervalsEnd::paused;
     const engine::RenderingModel model =
         parts.source.plane_of(shown.intervals[static_cast<std::size_t>(i)]);
     IntervalForce felt(model, stiffness_n_per_mm, plan.windows, ticks);
@@ -60,6 +63,7 @@ IntervalsEnd run_intervals(SessionDesk& desk, const design::Presentation& shown,
     const Exploration done = desk.explore(force, parts.source.plane(), servo, trace);
     listener.explored(done);
     if (is_interrupted(done.servo)) return IntervalsEnd::interrupted;
+    if (desk.was_cut_short()) return IntervalsEnd::paused;
     if (!force.is_done()) return IntervalsEnd::not_explored;
   }
   return IntervalsEnd::explored;

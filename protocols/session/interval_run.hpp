@@ -65,6 +65,7 @@ enum class IntervalsEnd {
   explored,      ///< all as asked for
   not_explored,  ///< an interval's time was up before its clock had run down
   interrupted,   ///< by a fault or a comfort stop, in an exploration
+  paused,        ///< by the experimenter, in an exploration or between two; begin again after it
   broken_off     ///< between two explorations: the session was stopped or left, or interrupted
 };
 

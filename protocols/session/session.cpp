@@ -12,11 +12,13 @@ namespace touchtrial::session {
 namespace {
 
 /// To tenths of a second: an exact time would tell more than how quickly somebody answers.
+/// \return 0 if every answer waited for the end of a pause
 double median_s(std::span<const GivenAnswer> answers) {
   std::vector<double> times_s;
   for (const GivenAnswer& answer : answers) {
-    times_s.push_back(std::chrono::duration<double>(answer.took).count());
+    if (answer.took) times_s.push_back(std::chrono::duration<double>(*answer.took).count());
   }
+  if (times_s.empty()) return 0.0;
   std::ranges::sort(times_s);
   const std::size_t half = times_s.size() / 2;
   const bool is_odd = times_s.size() % 2 == 1;
@@ -191,6 +193,7 @@ void Session::begin_presentation(Time at) noexcept {
   presented_at_ = at;
   had_contact_ = false;
   was_timed_out_ = false;
+  paused_answer_ = false;
   evidence_.reset();
   answer_.reset();
   ++begun_;
@@ -226,7 +229,7 @@ void Session::interrupt(Time at, const std::string& reason,
   require(Input::interrupt, at);
   recorder_.interrupted(at, current()->trial, reason, detail);
   if (detail) note_force(detail->largest_force_n);
-  give_up_presentation(at);
+  give_up_presentation(at, reason);
   restart_block(at);
 }
 
@@ -272,7 +275,13 @@ void Session::note_evidence(const store::TraceBody& body) {
 }
 
 void Session::note_answer(Time at, int position) {
-  answers_.push_back({position, at - presented_at_});
+  GivenAnswer given{position, std::nullopt};
+  if (!paused_answer_) given.took = at - presented_at_;
+  answers_.push_back(given);
+}
+
+std::optional<int> Session::trial_under_way() const noexcept {
+  return in_presentation() ? std::optional(current()->trial) : std::nullopt;
 }
 
 void Session::note_force(double largest_n) {
@@ -287,8 +296,8 @@ void Session::finish_presentation(Time at, std::optional<int> position) {
   move_to(between_trials(), at);
 }
 
-void Session::give_up_presentation(Time at) {
-  course_.spoil();
+void Session::give_up_presentation(Time at, const std::string& reason) {
+  if (reason != store::kPauseReason) course_.spoil();
   evidence_.reset();
   move_to(between_trials(), at);
 }
@@ -312,7 +321,8 @@ void Session::take_break(Time at, const std::string& text) {
 
 void Session::pause(Time at, const std::string& reason) {
   require(Input::pause, at);
-  recorder_.remarked(at, store::EventKind::paused, reason);
+  if (in_presentation()) paused_answer_ = true;
+  recorder_.paused(at, {.text = reason, .trial = trial_under_way()});
   before_pause_ = phase_;
   move_to(Phase::paused, at);
 }
@@ -320,7 +330,9 @@ void Session::pause(Time at, const std::string& reason) {
 void Session::resume(Time at) {
   require(Input::resume, at);
   recorder_.resumed(
-      at, {.after = "pause", .away_s = std::chrono::duration<double>(at - last_).count()});
+      at, {.after = "pause",
+           .away_s = std::chrono::duration<double>(at - last_).count(),
+           .trial = trial_under_way()});
   move_to(before_pause_, at);
 }
 

@@ -24,7 +24,7 @@ namespace touchtrial::session {
 
 struct GivenAnswer {
   int position = 0;
-  std::chrono::nanoseconds took{};  ///< from plane-on
+  std::optional<std::chrono::nanoseconds> took;  ///< from plane-on; empty if it contains a pause
 };
 
 /// The state of a session.
@@ -150,7 +150,8 @@ class Session {
   void time_out(Time at);
   /// The presentation was spoilt by a comfort stop or a device fault. The study's on_interruption
   /// decides whether it is repeated. Its evidence is discarded.
-  /// \param reason  in clear: must not depend on the stimulus, and be nobody's words
+  /// \param reason  in clear: a fixed phrase that does not depend on the stimulus; after
+  ///   store::kPauseReason the same presentation is the next one
   /// \param detail  sealed but for the faults' names
   void interrupt(Time at, const std::string& reason,
                  const std::optional<store::InterruptionDetail>& detail = std::nullopt);
@@ -176,7 +177,8 @@ class Session {
   /// One presentation of the practice, between instruction and the first trial.
   void practise(Time at, const store::PracticeBody& body);
   void take_break(Time at, const std::string& text = "");
-  /// Possible whenever the plane is off; `resume` returns to the phase before.
+  /// Possible whenever the plane is off; `resume` returns to the phase before. While a presentation
+  /// is explored, `interrupt` it before, with store::kPauseReason.
   void pause(Time at, const std::string& reason);
   void resume(Time at);
   // Remarks, possible at any time between opening and closing.
@@ -207,10 +209,12 @@ class Session {
   /// \param position  of the answer, if there is one
   void finish_presentation(Time at, std::optional<int> position);
   void note_answer(Time at, int position);
+  [[nodiscard]] std::optional<int> trial_under_way() const noexcept;
   void note_evidence(const store::TraceBody& body);
   void note_force(double largest_n);
-  /// Takes the current presentation off, as the study's on_interruption has it.
-  void give_up_presentation(Time at);
+  /// Takes the current presentation off, as the study's on_interruption has it; after kPauseReason
+  /// it is the next one.
+  void give_up_presentation(Time at, const std::string& reason);
   /// Draws, records and begins a block anew, if the course waits for it.
   void restart_block(Time at);
   /// Where nothing is under way: between trials, or after the last.
@@ -233,6 +237,7 @@ class Session {
   Time presented_at_{};
   bool had_contact_ = false;
   bool was_timed_out_ = false;
+  bool paused_answer_ = false;  ///< there was a pause in the current presentation
   std::optional<store::TrialEvidence> evidence_;
   std::optional<Answer> answer_;
   SessionRemarks remarks_;

@@ -141,8 +141,10 @@ Exploration SessionDesk::explore(device::ForceSource& force, const PlaneGeometry
                                  const device::ServoOptions& options, store::Trace& trace) {
   AttendedParticipant participant(*this);
   hand_.begin();
+  was_cut_short_ = false;
   Exploration done = parts_.explorer.explore(force, plane, participant, options, trace);
   hand_.begin();
+  was_cut_short_ = was_cut_short_ && done.servo.end == device::ServoEnd::hand_stopped;
   parts_.clock.pass(done.lasted);
   status_.rate_hz = done.servo.rate_hz;
   status_.lateness_p99_us = done.servo.lateness.p99_us;
@@ -183,6 +185,8 @@ void SessionDesk::heed(Request request, device::ServoControl& servo) {
       servo.comfort_stop();
       break;
     case Request::Kind::pause:
+      // A participant who is done already goes on to the answer screen, and is paused there.
+      was_cut_short_ = was_cut_short_ || !servo.finish_asked();
       servo.finish();
       break;
     default:
@@ -245,8 +249,12 @@ bool SessionDesk::obey(const Request& request) {
 }
 
 bool SessionDesk::obey_pause(const Request& request) {
+  // Between two planes of a presentation no force is on, but the presentation is under way.
+  const bool interrupts = session_.phase() == SessionPhase::exploring;
+  if (interrupts) session_.interrupt(now(), store::kPauseReason);
   if (!session_.accepts(SessionInput::pause)) return true;
   session_.pause(now(), request.text);
+  ++pauses_;
   const std::string stage = std::exchange(status_.stage, "paused");
   show();
   for (;;) {
@@ -256,7 +264,7 @@ bool SessionDesk::obey_pause(const Request& request) {
         session_.resume(now());
         status_.stage = stage;
         show();
-        return true;
+        return !interrupts;
       }
       if (!obey(*next)) return false;
       if (session_.phase() != SessionPhase::paused) return true;

@@ -45,6 +45,10 @@ class SessionDesk {
   /// \param trace  gets every sample
   [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                     const device::ServoOptions& options, store::Trace& trace);
+  /// Whether the experimenter's pause ended the last exploration, and not the participant.
+  [[nodiscard]] bool was_cut_short() const noexcept { return was_cut_short_; }
+  /// Pauses of this run so far.
+  [[nodiscard]] int pauses() const noexcept { return pauses_; }
   /// The options of the session's explorations.
   [[nodiscard]] device::ServoOptions servo_options() const;
   /// Obeys the experimenter's requests.
@@ -107,6 +111,8 @@ class SessionDesk {
   bool is_stopped_ = false;            ///< a comfort stop is not settled yet
   bool is_participants_stop_ = false;  ///< and not the experimenter's
   bool announces_ = false;             ///< the next presentation is announced
+  bool was_cut_short_ = false;
+  int pauses_ = 0;
   std::chrono::steady_clock::time_point shown_{};
 };
 

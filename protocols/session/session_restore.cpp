@@ -84,8 +84,11 @@ bool Session::follow_trial(const store::Event& event) {
     }
     case store::EventKind::interrupted:
       require_current();
-      note_force(store::trial_from_json(event.body).largest_force_n);
-      give_up_presentation(event.at);
+      {
+        const store::TrialBody body = store::trial_from_json(event.body);
+        note_force(body.largest_force_n);
+        give_up_presentation(event.at, body.reason);
+      }
       return true;
     case store::EventKind::explored_again:
       require_current();
@@ -138,6 +141,7 @@ void Session::follow_course(const store::Event& event) {
       return;
     }
     case store::EventKind::paused:
+      if (in_presentation()) paused_answer_ = true;
       before_pause_ = phase_;
       phase_ = Phase::paused;
       return;

@@ -50,6 +50,7 @@ class TrialRun {
   /// \return whether the participant is to answer
   [[nodiscard]] bool explore(const engine::RenderingModel& model);
   [[nodiscard]] bool explore_again(const engine::RenderingModel& model);
+  [[nodiscard]] bool came_late();
   [[nodiscard]] bool end_exploration(const Exploration& done, Time plane_on);
   void answer(const engine::RenderingModel& model);
   [[nodiscard]] AnswerStep question() const;
@@ -103,11 +104,21 @@ bool TrialRun::explore(const engine::RenderingModel& model) {
   trace_.begin();
   presented_at_ = desk_.now();
   session_.present(presented_at_);
-  desk_.enter("exploring");
   ++tally_.presentations;
+  if (came_late()) return false;
+  desk_.enter("exploring");
   ModelForce force(model);
   return end_exploration(desk_.explore(force, parts_.source.plane(), servo_, trace_.next_part()),
                          presented_at_);
+}
+
+/// Where a plane waited for a locked database, its trial has no beginning: it is presented anew.
+bool TrialRun::came_late() {
+  constexpr std::chrono::seconds kLate{1};
+  const Time now = desk_.now();
+  if (now - presented_at_ < kLate) return false;
+  session_.interrupt(now, store::kPauseReason);
+  return true;
 }
 
 bool TrialRun::explore_again(const engine::RenderingModel& model) {
@@ -137,6 +148,10 @@ bool TrialRun::end_exploration(const Exploration& done, Time plane_on) {
   const auto [began, ended] = note_exploration(done, plane_on);
   if (is_interrupted(done.servo)) {
     session_.interrupt(ended, desk_.note_interruption(done.servo), done.detail);
+    return false;
+  }
+  if (desk_.was_cut_short()) {
+    session_.interrupt(ended, store::kPauseReason);
     return false;
   }
   trace_.add(done, began - presented_at_);
@@ -184,6 +199,9 @@ void TrialRun::run_intervals() {
       return;
     case IntervalsEnd::interrupted:
       session_.interrupt(ended, desk_.note_interruption(last), detail);
+      return;
+    case IntervalsEnd::paused:
+      if (session_.in_presentation()) session_.interrupt(ended, store::kPauseReason);
       return;
     case IntervalsEnd::not_explored:
       session_.interrupt(ended, "not explored as asked for");

@@ -266,6 +266,7 @@ std::optional<device::ServoEnd> PracticeRun::explore_intervals(const design::Pre
       static_cast<void>(desk_.attend(
           NoticeStep{NoticeStep::What::not_explored, desk_.session().presentations_begun()}));
       return std::nullopt;
+    case IntervalsEnd::paused:
     case IntervalsEnd::broken_off:
       break;
   }
@@ -275,6 +276,7 @@ std::optional<device::ServoEnd> PracticeRun::explore_intervals(const design::Pre
 std::optional<device::ServoEnd> PracticeRun::explore_plane(const engine::RenderingModel& model) {
   ModelForce force(model);
   const Exploration done = desk_.explore(force, textures_.plane, desk_.servo_options(), trace_);
+  if (desk_.was_cut_short()) return std::nullopt;
   if (!is_interrupted(done.servo)) return done.servo.end;
   desk_.session().note(desk_.now(), "practice interrupted: " + desk_.note_interruption(done.servo));
   return std::nullopt;

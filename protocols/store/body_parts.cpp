@@ -17,12 +17,12 @@ constexpr auto kExcluded = std::to_array<std::string_view>({"after_outcomes", "s
 constexpr auto kWithdrawn = std::to_array<std::string_view>({"kept", "not_erased", "session"});
 constexpr auto kReplaced = std::to_array<std::string_view>({"by", "session"});
 constexpr auto kRemarked = std::to_array<std::string_view>({"code", "session"});
-constexpr auto kAnswered = std::to_array<std::string_view>({"trial"});
+constexpr auto kTrial = std::to_array<std::string_view>({"trial"});
 constexpr auto kPractised = std::to_array<std::string_view>({"presentation", "round"});
 constexpr auto kCode = std::to_array<std::string_view>({"code"});
 constexpr auto kInterrupted =
     std::to_array<std::string_view>({"device_fault", "reason", "safety_fault", "trial"});
-constexpr auto kResumed = std::to_array<std::string_view>({"after", "program_version"});
+constexpr auto kResumed = std::to_array<std::string_view>({"after", "program_version", "trial"});
 constexpr auto kTraceStored =
     std::to_array<std::string_view>({"contact_ok", "force_ok", "overruns", "path_ok", "rate_hz",
                                      "servo", "speed_ok", "trace", "trial", "valid"});
@@ -39,13 +39,13 @@ std::optional<Members> clear_members(EventKind kind) {
     case EventKind::participant_noted:
       return kRemarked;
     case EventKind::answered:
-      return kAnswered;
+    case EventKind::paused:
+      return kTrial;
     case EventKind::interrupted:
       return kInterrupted;
     case EventKind::practised:
       return kPractised;
     case EventKind::noted:
-    case EventKind::paused:
       return Members();
     case EventKind::stopped:
     case EventKind::deviated:

@@ -18,6 +18,12 @@ class DamagedStore : public StoreError {
   using StoreError::StoreError;
 };
 
+/// Another program has the database locked. Nothing was changed; the same call may succeed later.
+class LockedStore : public StoreError {
+ public:
+  using StoreError::StoreError;
+};
+
 /// In place of a sequence number: the fault is not in an event.
 inline constexpr std::int64_t kNoEvent = -1;
 

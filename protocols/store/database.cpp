@@ -200,6 +200,7 @@ std::string explanation(int code, const std::string& message) {
   const int primary_code = error.getErrorCode() & 0xff;
   const std::string line = one_line(path.string() + ": " + explanation(primary_code, error.what()));
   if (primary_code == SQLITE_CORRUPT || primary_code == SQLITE_NOTADB) throw DamagedStore(line);
+  if (primary_code == SQLITE_BUSY || primary_code == SQLITE_LOCKED) throw LockedStore(line);
   throw StoreError(line);
 }
 

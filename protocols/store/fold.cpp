@@ -91,6 +91,11 @@ void touch_plane(DerivedRows& rows, const Event& event) {
   if (!row.contact_at) row.contact_at = event.time();
 }
 
+void pause_trial(DerivedRows& rows, const Event& event) {
+  const PauseBody body = body_of(event, pause_from_json);
+  if (body.trial) waiting_row(rows, event, *body.trial).paused = true;
+}
+
 void answer_trial(DerivedRows& rows, const Event& event, const AnswerBody& body) {
   TrialRow& row = waiting_row(rows, event, body.trial);
   row.state = TrialState::answered;
@@ -193,6 +198,8 @@ void fold_session_event(DerivedRows& rows, const Event& event) {
       return measure_trial(rows, event, body_of(event, trace_body_from_json));
     case EventKind::explored_again:
       return explore_again(rows, event);
+    case EventKind::paused:
+      return pause_trial(rows, event);
     case EventKind::block_restarted:
       return restart_block(rows, event);
     case EventKind::closed:
@@ -203,6 +210,16 @@ void fold_session_event(DerivedRows& rows, const Event& event) {
 }
 
 }  // namespace
+
+std::optional<std::chrono::nanoseconds> TrialRow::reaction_time() const {
+  if (paused || !answered_at) return std::nullopt;
+  return *answered_at - presented_at;
+}
+
+std::optional<std::chrono::nanoseconds> TrialRow::from_contact() const {
+  if (paused || !answered_at || !contact_at) return std::nullopt;
+  return *answered_at - *contact_at;
+}
 
 int session_about(const Event& event) {
   switch (event.kind) {

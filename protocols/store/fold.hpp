@@ -84,6 +84,14 @@ struct TrialRow {
   std::optional<int> target;  ///< index of the right choice
   std::int64_t samples = 0;
 
+  /// The session was paused between the end of the exploration and the answer.
+  bool paused = false;
+
+  /// From plane-on to the answer; empty without one, and if the session was paused between.
+  [[nodiscard]] std::optional<std::chrono::nanoseconds> reaction_time() const;
+  /// The same from the first contact.
+  [[nodiscard]] std::optional<std::chrono::nanoseconds> from_contact() const;
+
   [[nodiscard]] bool has_trace() const noexcept { return rate_hz > 0.0; }
   friend bool operator==(const TrialRow&, const TrialRow&) = default;
 };

@@ -208,12 +208,24 @@ struct DeviationBody {
   std::string text;  ///< in the experimenter's words; may be empty; sealed in `deviated`
 };
 
+/// `paused`.
+struct PauseBody {
+  std::string text{};  ///< the experimenter's reason; may be empty; sealed
+  /// The presentation whose answer waits meanwhile; empty between presentations.
+  std::optional<int> trial{};
+};
+
 /// `resumed`.
 struct ResumedBody {
   std::string after;              ///< "pause", or "program-ended"
   double away_s = 0.0;            ///< since the last event before; sealed: 0 if not opened
   std::string program_version{};  ///< after the program ended
+  std::optional<int> trial{};     ///< as in the pause before
 };
+
+/// Reason of an `interrupted` that makes room for a pause. The same presentation is the next one,
+/// whatever the study does after other interruptions.
+inline constexpr const char* kPauseReason = "pause";
 
 /// `presented`, `first-contact`, `interrupted`, `timed-out`.
 struct TrialBody {

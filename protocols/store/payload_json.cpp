@@ -148,10 +148,17 @@ void members(Io& io, In<Io, DeviationBody>& body) {
 }
 
 template <typename Io>
+void members(Io& io, In<Io, PauseBody>& body) {
+  io.sealed("text", body.text);
+  io.if_any("trial", body.trial, 1);
+}
+
+template <typename Io>
 void members(Io& io, In<Io, ResumedBody>& body) {
   io("after", body.after);
   io.sealed("away_s", body.away_s);
   io("program_version", body.program_version);
+  io.if_any("trial", body.trial, 1);
 }
 
 template <typename Io>
@@ -343,6 +350,7 @@ template std::string to_json(const AnswerBody&);
 template std::string to_json(const PracticeBody&);
 template std::string to_json(const StopBody&);
 template std::string to_json(const DeviationBody&);
+template std::string to_json(const PauseBody&);
 template std::string to_json(const ResumedBody&);
 template std::string to_json(const TraceBody&);
 template std::string to_json(const TrialMeasures&);
@@ -365,6 +373,7 @@ template AnswerBody from_json(const std::string&);
 template PracticeBody from_json(const std::string&);
 template StopBody from_json(const std::string&);
 template DeviationBody from_json(const std::string&);
+template PauseBody from_json(const std::string&);
 template ResumedBody from_json(const std::string&);
 template TraceBody from_json(const std::string&);
 template InterruptionDetail from_json(const std::string&);

@@ -41,6 +41,7 @@ inline constexpr auto* answer_from_json = &from_json<AnswerBody>;
 inline constexpr auto* practice_from_json = &from_json<PracticeBody>;
 inline constexpr auto* stop_from_json = &from_json<StopBody>;
 inline constexpr auto* deviation_from_json = &from_json<DeviationBody>;
+inline constexpr auto* pause_from_json = &from_json<PauseBody>;
 inline constexpr auto* resumed_from_json = &from_json<ResumedBody>;
 inline constexpr auto* trace_body_from_json = &from_json<TraceBody>;
 inline constexpr auto* interruption_from_json = &from_json<InterruptionDetail>;

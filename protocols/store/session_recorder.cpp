@@ -16,7 +16,6 @@ bool is_remark(EventKind kind) {
     case EventKind::calibrated:
     case EventKind::instructed:
     case EventKind::break_taken:
-    case EventKind::paused:
     case EventKind::stopped:
     case EventKind::noted:
     case EventKind::ticked:
@@ -129,6 +128,10 @@ void SessionRecorder::explored_again(std::chrono::nanoseconds at, int trial) {
 void SessionRecorder::block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
                                       const std::string& secret_schedule) {
   append(at, {EventKind::block_restarted, block_to_json(block, first_trial), secret_schedule});
+}
+
+void SessionRecorder::paused(std::chrono::nanoseconds at, const PauseBody& body) {
+  append(at, {EventKind::paused, to_json(body)});
 }
 
 void SessionRecorder::resumed(std::chrono::nanoseconds at, const ResumedBody& body) {

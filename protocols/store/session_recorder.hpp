@@ -95,9 +95,10 @@ class SessionRecorder {
   /// \param secret_schedule  JSON of the block's new presentations, sealed
   void block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
                        const std::string& secret_schedule);
+  void paused(std::chrono::nanoseconds at, const PauseBody& body);
   void resumed(std::chrono::nanoseconds at, const ResumedBody& body);
-  /// \param kind  calibrated, instructed, break_taken, paused, stopped, noted or ticked
-  /// \param text  one line, or empty; sealed if a person may have typed it: paused, stopped, noted
+  /// \param kind  calibrated, instructed, break_taken, stopped, noted or ticked
+  /// \param text  one line, or empty; sealed if a person may have typed it: stopped, noted
   void remarked(std::chrono::nanoseconds at, EventKind kind, const std::string& text);
   void stopped(std::chrono::nanoseconds at, const StopBody& why);
   /// Seals the chain's length and head up to here into the event, see ChainEnd.

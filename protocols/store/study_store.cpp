@@ -406,8 +406,9 @@ std::optional<ChainFault> StudyStore::first_fault(TraceCheck traces,
   });
 }
 
-void copy_database(const std::filesystem::path& from, const std::filesystem::path& to) {
-  const Database database = Database::open(from, Database::Mode::read_only);
+namespace {
+
+void copy(const Database& database, const std::filesystem::path& to) {
   std::filesystem::path draft = to;
   draft += ".part";
   std::error_code error;
@@ -418,6 +419,16 @@ void copy_database(const std::filesystem::path& from, const std::filesystem::pat
     throw StoreError(one_line(to.string()) + ": cannot be written (" + error.message() +
                      "); give another folder or change its permissions");
   }
+}
+
+}  // namespace
+
+void StudyStore::copy_to(const std::filesystem::path& path) const {
+  copy(impl_->database(), path);
+}
+
+void copy_database(const std::filesystem::path& from, const std::filesystem::path& to) {
+  copy(Database::open(from, Database::Mode::read_only), to);
 }
 
 }  // namespace touchtrial::store

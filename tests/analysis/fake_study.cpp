@@ -128,7 +128,7 @@ FakeSession talkative(const std::string& participant, int enrolment, const std::
             recorder.questioned(
                 milliseconds(10), "handedness",
                 R"({"pen_hand":0,"spoon":1,"throwing":0,"toothbrush":0,"writing":0})");
-            recorder.remarked(milliseconds(20), store::EventKind::paused, "a phone rang");
+            recorder.paused(milliseconds(20), {.text = "a phone rang"});
             recorder.resumed(milliseconds(30), {.after = "pause", .away_s = 0.01});
             recorder.remarked(milliseconds(40), store::EventKind::noted, "wears a ring");
             for (int i = 1; i <= 3; ++i) {

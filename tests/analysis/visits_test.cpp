@@ -157,7 +157,7 @@ TEST_CASE("exports have columns of visits and groups, and others' exports do not
   add_three(study);
   const auto folder = study.folder() / "blind";
   static_cast<void>(analysis::export_csv(study.store(), std::nullopt, folder));
-  CHECK(header_of(folder / "trials.csv").ends_with(",overruns,visit,group"));
+  CHECK(header_of(folder / "trials.csv").ends_with(",overruns,paused,visit,group"));
   CHECK(header_of(folder / "participants.csv").ends_with(",visit,group"));
   for (const CsvRow& row : rows_of(folder / "participants.csv")) CHECK(row.at("group").empty());
   for (const CsvRow& row : rows_of(folder / "trials.csv")) CHECK(row.at("group").empty());
@@ -175,7 +175,7 @@ TEST_CASE("exports have columns of visits and groups, and others' exports do not
   CHECK(rows_of(shown / "trials.csv").size() == 60);
   FakeStudy usual(design::identification::classification());
   static_cast<void>(analysis::export_csv(usual.store(), std::nullopt, usual.folder() / "out"));
-  CHECK(header_of(usual.folder() / "out" / "trials.csv").ends_with(",overruns"));
+  CHECK(header_of(usual.folder() / "out" / "trials.csv").ends_with(",overruns,paused"));
 }
 
 TEST_CASE("datasets for archives tell visits, and groups once outcomes are shown") {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <SQLiteCpp/Database.h>
 
 using namespace touchtrial;
 
@@ -95,6 +96,26 @@ TEST_CASE("key check names the station whose file does not hold") {
   CHECK(study.type("key check @cloths.json --station 1").exit_code == 3);
   const ProgramResult other = study.type("key check @cloths.json --station-file @older.station");
   CHECK(other.exit_code == 3);
+}
+
+TEST_CASE("key check counts the sessions of a database that the key opens") {
+  const KeyedStudy study;
+  succeeded(study.simulate("a.db", {"--keep-blind"}));
+  study.done("withdraw @a.db --participant P002 --reason asked --erase --yes");
+  study.done("withdraw @a.db --participant P003 --reason asked --keep-data --yes");
+  const ProgramResult checked = study.done("key check @a.db");
+  CHECK_THAT(checked.output,
+             holds_text("opens 3 sessions (1 of people who withdrew and left their data) and 4 "
+                        "safety records; 1 erased, which nothing opens"));
+  {
+    SQLite::Database database(study.in("a.db"), SQLite::OPEN_READWRITE);
+    database.exec("UPDATE safety_keys SET wrapped = zeroblob(length(wrapped)) WHERE session = 1");
+  }
+  const ProgramResult torn = study.type("key check @a.db --json");
+  CHECK(torn.exit_code == 3);
+  CHECK(json::parse(torn.output).at("safety") == 3);
+  CHECK_THAT(torn.output, holds_text("session 1: the safety key does not open"));
+  check_refused(study.type("key check @a.db --key @cloths.key"), 3, {"is not the key of"});
 }
 
 TEST_CASE("a key that was lost is made again from its printed sheet") {

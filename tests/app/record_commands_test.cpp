@@ -525,7 +525,7 @@ TEST_CASE("notes and deviations are on the file's chain, before and after closin
   check_refused(study.people("note", "P003", {"--deviation", "no-curtian", "torn"}), 2,
                 {"did you mean no-curtain?", "no-placement", "no-day-sheet-NUMBER", "--own-code"});
   check_refused(study.people("note", "P003", {"--deviation", "sneezed", "twice"}), 2,
-                {"sneezed is none of the program's codes: answers-lost, comfort-stop"});
+                {"sneezed is none of the program's codes: answers-lost, clock-set-back"});
   CHECK_THAT(study.type("note --help").output, holds_text("practice-not-passed"));
   check_refused(study.people("note", "P9", {"who"}), 1, {"P9", "no session"});
   check_refused(study.people("note", "P003"), 2, {"TEXT"});

@@ -64,6 +64,22 @@ TEST_CASE("simulated participants come as often as the study says") {
   }
 }
 
+TEST_CASE("after a visit with a wrong clock the next one goes on with a reason, which is recorded") {
+  const VisitFolder study;
+  ::setenv("FAKE_CLOCK_AHEAD_S", "100000000", 1);
+  ::setenv("LD_PRELOAD", TOUCHTRIAL_FAKE_MACHINE, 1);
+  const ProgramResult first = study.visit("P01", "1", {"--real-time"});
+  ::unsetenv("LD_PRELOAD");
+  ::unsetenv("FAKE_CLOCK_AHEAD_S");
+  succeeded(first);
+  const ProgramResult refused = study.visit("P01", "2", {"--real-time"});
+  CHECK(refused.exit_code == 1);
+  CHECK(says(refused, "--accept-clock"));
+  succeeded(study.visit("P01", "2", {"--real-time", "--accept-clock", "battery"}));
+  study.done("export @study.db --format csv --out @out");
+  CHECK(content(study.path() / "out" / "incidents.csv").find("wrong-clock") != std::string::npos);
+}
+
 TEST_CASE("stations of a study with visits merge into what one simulation makes") {
   const VisitFolder study;
   succeeded(study.simulate("all.db"));

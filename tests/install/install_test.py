@@ -130,7 +130,7 @@ def main(work):
     check("completion knows device models", "falcon" in completed(script, program, "simulate", "--on", ""))
     check("completion leaves files to the shell", completed(script, program, "extract", "-o", "") == [])
     commands = [line.split()[0] for line in run(program, "--help").partition("Options:")[0].splitlines()
-                if line.startswith("  ") and not line.startswith("   ")]
+                if line.startswith("  ") and not line.startswith("   ") and not line.startswith("  touchtrial ")]
     pages = {path.name for path in (tree / "share/man/man1").iterdir()}
     missing = [name for name in commands if f"touchtrial-{name}.1.gz" not in pages]
     check(f"every command of {len(commands)} has its manual page: {missing}", len(commands) > 25 and not missing)

@@ -638,5 +638,29 @@ TEST_CASE("the window fills the requested monitor") {
   });
 }
 
+TEST_CASE("a window takes the keyboard back while a plane is on, and says that it was lost") {
+  Sitting room;
+  room.run([&] {
+    room.show(answer_step());
+    room.settle();
+    CHECK(room.window.out_of_reach() == milliseconds{0});
+    room.window.show_exploring(kPlane);
+    const auto give_up = steady_clock::now() + kPatience;
+    const auto waits = [&](const auto& done) {
+      while (!done() && steady_clock::now() < give_up) {
+        std::this_thread::sleep_for(milliseconds(20));
+      }
+      CHECK(done());
+    };
+    bool is_lost = false;
+    waits([&] {
+      if (!is_lost) room.screen->take_focus();
+      return is_lost = is_lost || room.window.take_out_of_reach();
+    });
+    waits([&] { return room.window.out_of_reach() == milliseconds{0}; });
+    CHECK_FALSE(room.window.gone());
+  });
+}
+
 }  // namespace
 }  // namespace touchtrial

@@ -118,6 +118,8 @@ class VirtualScreen::Client {
            "a window's place or size");
   }
 
+  [[nodiscard]] xcb_window_t root() const noexcept { return root_; }
+
   void focus(xcb_window_t window) {
     insist(
         xcb_set_input_focus_checked(connection_, XCB_INPUT_FOCUS_PARENT, window, XCB_CURRENT_TIME),
@@ -285,6 +287,10 @@ void VirtualScreen::resize_window(const std::string& title, int width, int heigh
 
 void VirtualScreen::focus_window(const std::string& title) const {
   client_->focus(client_->window(title));
+}
+
+void VirtualScreen::take_focus() const {
+  client_->focus(client_->root());
 }
 
 bool VirtualScreen::wait_until_heard(const std::string& title) const {

@@ -34,6 +34,8 @@ class VirtualScreen {
   void move_window(const std::string& title, int x, int y) const;
   void resize_window(const std::string& title, int width, int height) const;
   void focus_window(const std::string& title) const;
+  /// Takes the focus from every window, as a program of others does.
+  void take_focus() const;
   /// Waits until the window's program has taken all events so far.
   /// \return false if there is no such window, or it closes meanwhile
   bool wait_until_heard(const std::string& title) const;

@@ -111,6 +111,7 @@ nlohmann::ordered_json reaction_array(const std::vector<ReactionTimes>& reaction
   for (std::size_t i = 0; i < reaction.size(); ++i) {
     const bool is_class = i < classes.size();
     all.push_back({{"class", is_class ? Json(classes[i]) : Json(nullptr)},
+                   {"paused", reaction[i].paused},
                    {"from_plane_on", quartiles_json(reaction[i].from_plane_on)},
                    {"from_contact", quartiles_json(reaction[i].from_contact)}});
   }

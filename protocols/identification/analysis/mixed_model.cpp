@@ -120,8 +120,8 @@ std::vector<DataCell> row_of(const Outcomes& outcomes, const TrialOutcome& trial
           class_or_nothing(outcomes, previous_class),
           class_or_nothing(outcomes, previous_response),
           whole_or_nothing(row.confidence),
-          time_between(row.presented_at, row.answered_at),
-          time_between(row.contact_at, row.answered_at),
+          time_or_nothing(row.reaction_time()),
+          time_or_nothing(row.from_contact()),
           flag(trial.valid()),
           1.0 / static_cast<double>(outcomes.classes.size()),
           flag(outcomes.simulated)};

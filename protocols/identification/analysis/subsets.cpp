@@ -145,25 +145,27 @@ void count(Proportion& proportion, bool correct) {
   if (correct) ++proportion.correct;
 }
 
-double seconds_between(std::chrono::nanoseconds from, std::chrono::nanoseconds to) {
-  return std::chrono::duration<double>(to - from).count();
+double seconds(std::chrono::nanoseconds time) {
+  return std::chrono::duration<double>(time).count();
 }
 
 /// The reaction times of one class, in seconds.
 struct Times {
   std::vector<double> from_plane_on;
   std::vector<double> from_contact;
+  int paused = 0;
 
   void add(const store::TrialRow& row) {
-    from_plane_on.push_back(seconds_between(row.presented_at, *row.answered_at));
-    if (row.contact_at) from_contact.push_back(seconds_between(*row.contact_at, *row.answered_at));
+    if (row.paused) ++paused;
+    if (const auto time = row.reaction_time()) from_plane_on.push_back(seconds(*time));
+    if (const auto time = row.from_contact()) from_contact.push_back(seconds(*time));
   }
 };
 
 ReactionTimes summary_of(Times times) {
   std::ranges::sort(times.from_plane_on);
   return {quartiles(times.from_plane_on), quartiles(std::move(times.from_contact)),
-          times.from_plane_on};
+          times.from_plane_on, times.paused};
 }
 
 }  // namespace

@@ -69,6 +69,7 @@ struct ReactionTimes {
   Quartiles from_plane_on;        ///< from the moment the plane can be felt to the answer
   Quartiles from_contact;         ///< from first contact to the answer
   std::vector<double> seconds{};  ///< from plane-on, ascending; for the figure
+  int paused = 0;                 ///< responses after a pause, without a time
 };
 
 /// The reaction times of one method, by class; the last entry is for all classes together.

@@ -28,7 +28,7 @@ constexpr const char* kHeader =
     "reaction_time_s,from_contact_s,contact_s,path_mm,force_rms_n,saturated_share,valid,"
     "presented_at_s,simulated,counted,kind,state,explorations,first_contact_s,position,"
     "first_position,valid_in_clear,contact_ok,path_ok,force_ok,speed_ok,within_limits,limited_"
-    "ticks,samples,sampling_hz,overruns";
+    "ticks,samples,sampling_hz,overruns,paused";
 
 /// The study's own closing questions.
 constexpr const char* kQuestions = R"({"closing_questions": [
@@ -147,7 +147,7 @@ TEST_CASE("Before unblinding an export has no word of what was presented or answ
   }
   const std::vector<CsvRow> rows = rows_of(out / "trials.csv");
   REQUIRE(rows.size() == 48);
-  CHECK(rows[0].size() == 19);
+  CHECK(rows[0].size() == 20);
   for (const char* column : {"confidence", "reaction_time_s", "from_contact_s", "presented_at_s",
                              "first_contact_s", "samples"}) {
     INFO(column);

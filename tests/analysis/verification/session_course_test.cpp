@@ -51,7 +51,7 @@ class ToldSession {
   void resume(const std::string& after, double away_s) {
     recorder_.resumed(later(), {.after = after, .away_s = away_s});
   }
-  void pause() { recorder_.remarked(later(), store::EventKind::paused, ""); }
+  void pause() { recorder_.paused(later(), {}); }
 
   void restart_block() {
     const design::StudyKey& key = study_.key();

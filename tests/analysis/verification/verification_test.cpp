@@ -284,7 +284,7 @@ TEST_CASE("verify_files compares a rebuilt pack with the study only if the pack 
 }
 
 TEST_CASE("verify_files makes a dropped table and a missing first event findings") {
-  for (const char* sql : {"DROP TABLE trials",
+  for (const char* sql : {"DROP TABLE traces",
                           "DROP TRIGGER events_no_delete; DELETE FROM events WHERE session = 0"}) {
     FakeStudy study(design::identification::classification());
     SQLite::Database(study.database().string(), SQLite::OPEN_READWRITE).exec(sql);

@@ -125,7 +125,7 @@ TEST_CASE("pressing lands smoothly on the wall and holds 0.7 N, releasing lifts 
   CHECK(samples[tick_at(1.15)].force_n.z == Approx(0.7).margin(1e-3));
   CHECK(samples[tick_at(1.15)].position_mm.z == Approx(-0.7 / 0.4).margin(0.01));
   CHECK(samples.back().force_n.z == 0.0);
-  CHECK(samples.back().position_mm.z == Approx(2.0).margin(1e-3));
+  CHECK(samples.back().position_mm.z == Approx(device::MouseOptions{}.hover_mm).margin(1e-3));
   CHECK(greatest_n < 0.8);
   CHECK(steepest_n_per_s < 25.0);
 }

@@ -133,7 +133,7 @@ TEST_CASE("a rule about deviations names codes that can occur") {
   const std::string refusal = with({{"deviations", {"no-curtain", "no-curtan"}}});
   CHECK_THAT(refusal, holds_text("/registration/exclusion_rules/deviations/1: is no code that the "
                                  "program records, which are answers-lost, comfort-stop, "));
-  CHECK_THAT(refusal, holds_text("visit-late and no-day-sheet-1, ..; a code that "
+  CHECK_THAT(refusal, holds_text("wrong-clock and no-day-sheet-1, ..; a code that "
                                  "experimenters enter belongs in \"own_deviations\""));
   CHECK(with({{"own_deviations", {"no-curtan"}}}).empty());
   const json two = {"Door shut", "Phone off"};

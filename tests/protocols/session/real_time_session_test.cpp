@@ -71,7 +71,8 @@ struct Laboratory {
                                       study.key().draw_of(1, design::Draws::rehearsal)),
                 study.key().study.trials, store::SessionRecorder(1, participant_key, events)) {}
 
-  session::SessionTally run(session::Participant& participant) {
+  session::SessionTally run(session::Participant& participant,
+                            session::Experimenter& experimenter = session::no_experimenter()) {
     REQUIRE(station.make_ready() == session::SupplyState::ready);
     store::SessionOpening opening;
     opening.participant = "P001";
@@ -80,7 +81,7 @@ struct Laboratory {
                               "");
     session.open({}, opening, "{}");
     return session::run_session(session, {study.key(), source, participant, clock, explorer,
-                                          station, device::kServoRateHz});
+                                          station, device::kServoRateHz, experimenter});
   }
   session::SessionTally run() { return run(person); }
 
@@ -263,6 +264,60 @@ TEST_CASE("a comfort stop interrupts the trial, and force comes back only with c
   CHECK(lab.helper.consents == 2);
   CHECK(lab.cable.writes_unarmed == 0);
   CHECK(lab.all(store::EventKind::answered).size() == 5);
+}
+
+/// A participant whose servo stands still in each exploration until the experimenter opens the gate.
+class Waiting final : public PersonAtStation {
+ public:
+  Waiting(Laboratory& lab, std::atomic<bool>& gate)
+      : PersonAtStation(lab.station, lab.device), gate_(gate) {}
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
+    gate_ = false;
+    return PersonAtStation::begin_exploring(plane);
+  }
+
+ private:
+  std::atomic<bool>& gate_;
+};
+
+/// Pauses the first exploration, and goes on at once.
+class Pausing final : public session::Experimenter {
+ public:
+  explicit Pausing(std::atomic<bool>& gate) : gate_(gate) {}
+  void show(const session::SessionStatus& status) override { stage_ = status.stage; }
+  [[nodiscard]] std::optional<session::ExperimenterRequest> request() override {
+    using Kind = session::ExperimenterRequest::Kind;
+    if (stage_ == "exploring" && !std::exchange(has_paused_, true)) {
+      return session::ExperimenterRequest{Kind::pause, "", ""};
+    }
+    gate_ = true;
+    if (stage_ != "paused") return std::nullopt;
+    return session::ExperimenterRequest{Kind::resume, "", ""};
+  }
+
+ private:
+  std::atomic<bool>& gate_;
+  std::string stage_;
+  bool has_paused_ = false;
+};
+
+TEST_CASE("a pause while a plane is on presents the trial anew, and counts against nobody") {
+  std::atomic<bool> gate{false};
+  Laboratory lab(gated(gate));
+  Waiting person(lab, gate);
+  Pausing experimenter(gate);
+  const session::SessionTally tally = lab.run(person, experimenter);
+  CHECK(tally.presentations == 6);
+  CHECK(lab.helper.consents == 1);
+  const std::vector<store::Event> interrupted = lab.all(store::EventKind::interrupted);
+  REQUIRE(interrupted.size() == 1);
+  const store::TrialBody body = store::trial_from_json(interrupted.front().body);
+  CHECK(body.reason == store::kPauseReason);
+  const std::vector<store::Event> presented = lab.all(store::EventKind::presented);
+  CHECK(store::trial_from_json(presented[0].body).trial == body.trial);
+  CHECK(store::trial_from_json(presented[1].body).trial == body.trial);
+  CHECK(lab.all(store::EventKind::answered).size() == 5);
+  CHECK(lab.events.traces.size() == 5);
 }
 
 TEST_CASE("an emergency stop between two explorations applies to the next") {

@@ -212,6 +212,38 @@ TEST_CASE("an interrupted trial is repeated after all others, under its number")
   CHECK(trials == std::vector<int>{2, 3, 1});
 }
 
+TEST_CASE("a presentation that makes room for a pause is the next one, whatever the policy") {
+  for (const auto policy : {design::OnInterruption::repeat, design::OnInterruption::leave_out}) {
+    Laboratory lab(3, {.on_interruption = policy});
+    lab.session.present(lab.now += seconds(1));
+    CHECK_FALSE(lab.session.accepts(Input::pause));
+    lab.session.interrupt(lab.now += seconds(1), store::kPauseReason);
+    lab.session.pause(lab.now += seconds(1), "telephone");
+    CHECK_FALSE(lab.last_body().contains("trial"));
+    lab.session.resume(lab.now += seconds(9));
+    std::vector<int> trials;
+    while (lab.session.phase() == Phase::ready) {
+      trials.push_back(lab.session.current()->trial);
+      lab.run_trial(0);
+    }
+    CHECK(trials == std::vector<int>{1, 2, 3});
+  }
+}
+
+TEST_CASE("a pause that an answer waits for names the trial, and the answer has no time") {
+  Laboratory lab(1);
+  lab.session.present(lab.now += seconds(1));
+  lab.session.end_exploring(lab.now += seconds(1));
+  lab.session.pause(lab.now += seconds(1), "telephone");
+  CHECK(lab.last_body().at("trial") == 1);
+  lab.session.resume(lab.now += seconds(90));
+  CHECK(lab.last_body().at("trial") == 1);
+  lab.session.choose(0);
+  lab.session.confirm(lab.now += seconds(1));
+  lab.session.close(lab.now += seconds(1));
+  CHECK(lab.last_body().at("answers").at("median_s") == 0.0);
+}
+
 store::TrialEvidence evidence_of(const session::Session& session, double height_mm) {
   store::TraceBody body;
   body.trial = 1;

@@ -238,7 +238,7 @@ TEST_CASE("nothing in clear links presentations of a texture at the force limit,
   // People at the edges of the windows are outside in some trials.
   for (const std::string window : {"contact_ok", "path_ok", "force_ok", "speed_ok"}) {
     INFO(window);
-    CHECK(found.in_clear.contains(window));
+    CHECK(found.in_clear.contains("trace-stored/" + window));
   }
   SQLite::Database database(path.string(), SQLite::OPEN_READONLY);
   SQLite::Statement sizes(database,

@@ -52,7 +52,7 @@ void record_course(SessionRecorder& recorder, const Course& course) {
                        .confidence = course.confidence},
                       evidence);
   }
-  recorder.remarked(later(seconds(1)), EventKind::paused, course.note);
+  recorder.paused(later(seconds(1)), {.text = course.note});
   recorder.resumed(
       later(seconds(1)),
       {.after = "pause", .away_s = std::chrono::duration<double>(course.away).count()});

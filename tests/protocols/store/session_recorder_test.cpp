@@ -243,7 +243,7 @@ TEST_CASE("only remarks are recorded as remarks") {
   recorder.opened(seconds(1), opening(1), "{}");
   for (const EventKind kind :
        {EventKind::calibrated, EventKind::instructed, EventKind::ticked, EventKind::break_taken,
-        EventKind::paused, EventKind::stopped, EventKind::noted}) {
+        EventKind::stopped, EventKind::noted}) {
     recorder.remarked(seconds(1), kind, "text");
     REQUIRE(events.events.back().kind == kind);
     REQUIRE(opened(events.events.back()).body == R"({"text":"text"})");
@@ -271,7 +271,7 @@ TEST_CASE("the safety key opens why a session stopped and what deviated, and not
   recorder.deviated(seconds(200), {.code = "no-curtain", .text = "in the wash"});
   recorder.stopped(seconds(201), {.code = "", .text = "a cramp"});
   recorder.remarked(seconds(202), EventKind::noted, "tall");
-  recorder.remarked(seconds(203), EventKind::paused, "called his wife");
+  recorder.paused(seconds(203), {.text = "called his wife"});
   const SecretKey safety = safety_key(participant_key(3));
   std::vector<std::string> bodies;
   for (const Event& event : session.events) {

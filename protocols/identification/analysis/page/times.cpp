@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include <fmt/format.h>
+
 namespace touchtrial::analysis::identification {
 namespace {
 
@@ -40,6 +42,10 @@ Table times_table(const StudyReport& report, std::size_t index) {
        "and from first contact, to the answer; one monotonic clock, the servo's. "
        "Quantiles by interpolation (definition 7).",
        {Source::hyndman_fan}}};
+  if (const int paused = times.empty() ? 0 : times.back().paused; paused > 0) {
+    table.notes.push_back({fmt::format("{} waited for the end of a pause and {} left out.",
+                                       counted(paused, "response"), paused == 1 ? "is" : "are")});
+  }
   return table;
 }
 

@@ -1,0 +1,103 @@
+#include "app/run/database_watch.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/store/damage.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+namespace touchtrial::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Clock = std::chrono::steady_clock;
+
+std::optional<std::pair<unsigned long, unsigned long>> id_of(const fs::path& path) {
+  struct stat found {};
+  if (::stat(path.c_str(), &found) != 0) return std::nullopt;
+  return std::pair<unsigned long, unsigned long>(found.st_dev, found.st_ino);
+}
+
+fs::path log_of(const fs::path& database) {
+  fs::path log = database;
+  return log += "-wal";
+}
+
+}  // namespace
+
+void PatientSink::accept(const store::Event& event,
+                         const std::optional<store::SealedTrace>& trace) {
+  patiently([&] { inner_->accept(event, trace); });
+}
+
+void PatientSink::accept_together(std::span<const store::RecordedEvent> events) {
+  patiently([&] { inner_->accept_together(events); });
+}
+
+void PatientSink::patiently(const std::function<void()>& store) {
+  const Clock::time_point began = Clock::now();
+  for (bool waited = false;; waited = true) {
+    try {
+      store();
+      if (waited) waited_ = Clock::now() - began;
+      return;
+    } catch (const store::LockedStore& locked) {
+      if (!waiting_ || !waiting_(locked.what())) throw;
+    }
+  }
+}
+
+DatabaseWatch::DatabaseWatch(fs::path database)
+    : database_(std::move(database)),
+      file_{database_, id_of(database_)},
+      log_{log_of(database_), id_of(log_of(database_))} {}
+
+std::string DatabaseWatch::trouble() {
+  constexpr std::chrono::seconds kBetweenLooks{1};
+  const Clock::time_point now = Clock::now();
+  if (!trouble_.empty() || now - looked_ < kBetweenLooks) return trouble_;
+  looked_ = now;
+  for (const File& file : {file_, log_}) {
+    const auto id = id_of(file.path);
+    if (id == file.id) continue;
+    trouble_ = fmt::format("{} was {} while the session ran", one_line(file.path.string()),
+                           id ? "replaced by another file" : "removed");
+    break;
+  }
+  return trouble_;
+}
+
+bool is_on_disk(const fs::path& database, int session, const store::StudyStore& store) {
+  try {
+    const store::StudyStore found =
+        store::StudyStore::open(database, store::StudyStore::Access::read_only);
+    const auto there = found.last_event(session);
+    const auto here = store.last_event(session);
+    return there && here && there->sequence == here->sequence && there->hash == here->hash;
+  } catch (const store::LockedStore&) {
+    return true;  // by a reader, who cannot have changed it
+  } catch (const StoreError&) {
+    return false;
+  }
+}
+
+std::string rescue(const fs::path& database, const store::StudyStore& store) {
+  for (int i = 1;; ++i) {
+    fs::path name = database;
+    name.replace_extension();
+    name += fmt::format("-rescued-{}.db", i);
+    if (is_there(name)) continue;
+    try {
+      store.copy_to(name);
+      return fmt::format("what was recorded is in {}; find out which file is the study's before "
+                         "the next session",
+                         one_line(name.string()));
+    } catch (const Error& error) {
+      return fmt::format("what was recorded could not be saved ({})", error.what());
+    }
+  }
+}
+
+}  // namespace touchtrial::app
