@@ -117,18 +117,4 @@ TEST_CASE("a driver that does not exist is refused with the nearest name") {
   CHECK(refuses<UsageError>(opened("theremin"), "device list"));
 }
 
-TEST_CASE("the simulated device opens and gives positions that move") {
-  const auto device = device::open_device("simulated", {});
-  CHECK(device->info().name == "simulated");
-  CHECK(device->info().simulated);
-  CHECK_FALSE(device->info().workspace.has_value());
-  device::DeviceSample first;
-  REQUIRE(device->read(first) == device::DeviceStatus::ok);
-  for (int i = 0; i < 500; ++i) REQUIRE(device->write({}) == device::DeviceStatus::ok);
-  device::DeviceSample later;
-  REQUIRE(device->read(later) == device::DeviceStatus::ok);
-  CHECK(norm(later.position_mm - first.position_mm) > 1.0);
-  CHECK(later.sequence > first.sequence);
-}
-
 }  // namespace touchtrial

@@ -6,7 +6,9 @@
 
 #include <atomic>
 #include <deque>
+#include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace touchtrial {
@@ -55,6 +57,19 @@ class ConstantForce final : public device::ForceSource {
 
  private:
   Vec3 force_n_;
+};
+
+/// Forces by a function of the sample.
+class ForceBy final : public device::ForceSource {
+ public:
+  using Law = std::function<Vec3(const device::DeviceSample& sample)>;
+  explicit ForceBy(Law law) : law_(std::move(law)) {}
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
+    return law_(sample);
+  }
+
+ private:
+  Law law_;
 };
 
 /// Wakes the servo late by script: the first wait by the first delay, and so on; then on time.

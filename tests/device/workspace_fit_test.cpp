@@ -120,14 +120,6 @@ TEST_CASE("the offered crop of a ball is the largest part that fits to the pixel
   CHECK(device::fit_plane(fit.largest, ball_of(40.0)).fits);
 }
 
-TEST_CASE("the offered crop of a box is the plane cut at its sides alone") {
-  const device::WorkspaceFit fit =
-      device::fit_plane(plane_of(100.0, 30.0), box_of(80.0, 40.0, 60.0));
-  CHECK_FALSE(fit.fits);
-  CHECK(fit.largest.width_px == 350);
-  CHECK(fit.largest.height_px == 150);
-}
-
 TEST_CASE("no crop that is one pixel larger fits") {
   const PlaneGeometry plane = plane_of(80.0, 50.0);
   for (const device::Workspace& workspace :
@@ -155,11 +147,10 @@ TEST_CASE("a session on a device that is too small is refused with numbers and a
   device.name = "falcon";
   device.workspace = ball_of(40.0);
   CHECK(device::placement_of(plane_of(40.0, 40.0), device, {}).has_value());
-  CHECK(message_of<DeviceError>(
-            [&] { return device::placement_of(plane_of(51.2, 51.2), device, {}); }) ==
-        "falcon: the plane of 51.2 x 51.2 mm (256 x 256 px) does not fit its workspace of 80 x 80 "
-        "x 80 mm (rounded) with 5 mm around it; crop the pictures to 230 x 231 px around their "
-        "middle (46 x 46.2 mm), turn the plane, or use a larger device");
+  CHECK_THAT(message_of<DeviceError>(
+                 [&] { return device::placement_of(plane_of(51.2, 51.2), device, {}); }),
+             holds_text("51.2 x 51.2 mm (256 x 256 px)") && holds_text("80 x 80 x 80 mm") &&
+                 holds_text("230 x 231 px"));
   CHECK(refuses<DeviceError>(
       [&] {
         return device::placement_of(plane_of(40.0, 40.0), device, use_at({60.0, 0.0, 0.0}));
@@ -178,21 +169,12 @@ TEST_CASE("a study is refused on a device that does not render its stiffness or 
   CHECK_THAT(device::check_stiffness({0.4, 0.3, 0.0}, device),
              holds_text("rendering.stiffness_n_per_mm of 0.4 N/mm is at the device's own limit") &&
                  holds_text("at most 0.36"));
-  CHECK(refuses<DeviceError>(
-      [&] {
-        (void)device::check_stiffness({0.41, 0.3, 0.0}, device);
-      },
-      "stiffness_n_per_mm of 0.41 N/mm is beyond"));
-  CHECK(refuses<DeviceError>(
-      [&] {
-        (void)device::check_stiffness({0.3, 0.5, 0.0}, device);
-      },
-      "texture_stiffness_n_per_mm of 0.5"));
-  CHECK(refuses<DeviceError>(
-      [&] {
-        (void)device::check_stiffness({0.3, 0.3, 0.005}, device);
-      },
-      "damping_n_s_per_mm of 0.005 N s/mm"));
+  const auto is_refused = [&](const device::RenderedStiffness& stiffness, const char* part) {
+    return refuses<DeviceError>([&] { return device::check_stiffness(stiffness, device); }, part);
+  };
+  CHECK(is_refused({0.41, 0.3, 0.0}, "stiffness_n_per_mm of 0.41 N/mm is beyond"));
+  CHECK(is_refused({0.3, 0.5, 0.0}, "texture_stiffness_n_per_mm of 0.5"));
+  CHECK(is_refused({0.3, 0.3, 0.005}, "damping_n_s_per_mm of 0.005 N s/mm"));
 }
 
 }  // namespace touchtrial

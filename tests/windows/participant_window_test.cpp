@@ -1,13 +1,10 @@
 // The participant's window on a virtual screen, driven by real key and mouse events.
 #include "app/participant/participant_window.hpp"
 
-#include "app/participant/card_screen.hpp"
 #include "app/participant/window_subject.hpp"
-#include "app/texts/study_texts.hpp"
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_control.hpp"
 #include "engine/pictures/colour_image.hpp"
-#include "protocols/identification/design/identification.hpp"
 #include "protocols/simulation/simulated_participant.hpp"
 #include "stimuli/generator.hpp"
 #include "support/catch.hpp"
@@ -16,16 +13,12 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace touchtrial {
@@ -257,21 +250,6 @@ TEST_CASE("the second press of a space bar that is pressed twice to go on stops 
     sitting.window.inject(space);
     sitting.window.show_exploring(kPlane);
     CHECK(press_after(10'501));
-  });
-}
-
-TEST_CASE("a comfort stop is heard and has a page of its own") {
-  CountedCues cues;
-  app::ParticipantWindowOptions wanted = options();
-  wanted.cues = &cues;
-  Sitting sitting(wanted);
-  sitting.run([&] {
-    sitting.window.show_exploring(kPlane);
-    const session::NoticeStep stopped{session::NoticeStep::What::stopped, 1, false};
-    sitting.show(stopped);
-    sitting.type("Return space");
-    for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.attend(stopped));
-    CHECK(cues.stopped == 1);
   });
 }
 
@@ -639,13 +617,6 @@ TEST_CASE("where textures are made by several methods, the question is which pic
   CHECK(fits != asked_with(false, ""));
 }
 
-TEST_CASE("the window's title and the monitor's number are all that the system sees") {
-  Sitting sitting;
-  CHECK(sitting.screen->has_window(kTitle));
-  sitting.run([&] { sitting.show(answer_step()); });
-  CHECK(sitting.screen->has_window(kTitle));
-}
-
 TEST_CASE("an error names a missing monitor, and how many there are") {
   const auto screen = VirtualScreen::open();
   app::ParticipantWindowOptions wanted = options();
@@ -664,100 +635,6 @@ TEST_CASE("the window fills the requested monitor") {
     const engine::ColourImage picture = sitting.window.picture();
     CHECK(picture.width() == 1920);
     CHECK(picture.height() == 1080);
-  });
-}
-
-/// A study whose instructions have every page.
-design::Study full_study(const std::string& language) {
-  design::Study study;
-  study.protocol = &design::identification::comparison();
-  study.classes.resize(5);
-  study.trials.practice = 5;
-  study.session.language = language;
-  study.session.confidence_levels = 5;
-  return study;
-}
-
-/// Screens that a participant may see, for people to inspect.
-/// \param texts  must outlive the steps
-/// \param strategy  a question with a free answer; the same
-std::vector<std::pair<std::string, session::Step>> gallery(const session::SessionTexts& texts,
-                                                           const design::Questionnaire& strategy) {
-  std::vector<std::pair<std::string, session::Step>> steps;
-  for (std::size_t i = 0; i < texts.instructions.size(); ++i) {
-    steps.emplace_back("instructions-" + std::to_string(i + 1),
-                       session::InstructionStep{{texts.instructions[i]}});
-  }
-  const std::vector<std::pair<std::string, session::Step>> others = {
-      {"question", session::QuestionStep{&texts.handedness.value()}},
-      {"text", session::QuestionStep{&strategy}},
-      {"practice", session::PracticeStep{1}},
-      {"ready", session::ReadyStep{7, 25, false}},
-      {"answer", session::AnswerStep{.trial = 7, .of = 25, .may_explore_again = true}},
-      {"time-is-up", session::AnswerStep{.trial = 8, .of = 25, .time_is_up = true}},
-      {"spoken", session::AnswerStep{.trial = 9, .of = 25, .sight = design::Sight::blindfold}},
-      {"wrong", session::FeedbackStep{0, 4}},
-      {"right", session::FeedbackStep{1, 1}},
-      {"break", session::BreakStep{10, 25}},
-      {"practice-over", session::NoticeStep{session::NoticeStep::What::practice_over}},
-      {"no-response", session::NoticeStep{session::NoticeStep::What::time_is_up, 3}},
-      {"stopped", session::NoticeStep{session::NoticeStep::What::stopped, 3, false}},
-      {"stopped-alone", session::NoticeStep{session::NoticeStep::What::stopped, 3}},
-      {"pause", session::PauseStep{}},
-      {"end", session::EndStep{}}};
-  steps.insert(steps.end(), others.begin(), others.end());
-  return steps;
-}
-
-void keep(app::ParticipantWindow& window, const std::filesystem::path& file) {
-  const Bytes png = engine::png_bytes(window.picture());
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
-}
-
-TEST_CASE("screenshots of every screen, for TOUCHTRIAL_SCREENSHOTS=FOLDER", "[.]") {
-  const char* const folder = std::getenv("TOUCHTRIAL_SCREENSHOTS");
-  REQUIRE(folder != nullptr);
-  const auto [width, height] =
-      GENERATE(std::pair(1280, 720), std::pair(1920, 1080), std::pair(3840, 2160));
-  const std::string language = GENERATE("en", "de", "es", "fr", "ja", "zh");
-  app::ParticipantWindowOptions wanted = options(width, height);
-  wanted.session.language = language;
-  if (const char* const scale = std::getenv("TOUCHTRIAL_TEXT_SCALE")) {
-    wanted.session.text_scale = std::stod(scale);
-    wanted.session.high_contrast = true;
-  }
-  const std::string size = std::to_string(width) + "x" + std::to_string(height);
-  Sitting sitting(wanted, size.c_str());
-  const auto file = [&](const std::string& name) {
-    return std::filesystem::path(folder) / (name + "-" + language + "-" + size + ".png");
-  };
-  sitting.run([&] {
-    const session::SessionTexts texts = app::session_texts(full_study(language));
-    const design::Questionnaire strategy{"closing", {texts.closing->questions.at(1)}};
-    for (const auto& [name, step] : gallery(texts, strategy)) {
-      sitting.show(step);
-      if (name == "question" || name == "answer") sitting.type("4");
-      if (name == "text") sitting.type("B y space f e e l");
-      keep(sitting.window, file(name));
-      if (name != "answer") continue;
-      sitting.type("2");
-      keep(sitting.window, file("answer-changed"));
-    }
-    session::AnswerStep step = answer_step(12);
-    step.confidence_levels = 5;
-    sitting.show(step);
-    sitting.type("4 Return 3");
-    keep(sitting.window, file("confidence"));
-    static_cast<void>(sitting.answer(session::ReadyStep{2, 5, true}, "Return"));
-    sitting.window.show_exploring(kPlane);
-    feel_texture(sitting.window, 0.9);
-    CHECK(sitting.window.wait_until_shown(kPatience));
-    keep(sitting.window, file("exploring-practice"));
-    const auto card = std::make_shared<app::CardScreen>(25.4 / 96.0);
-    CHECK_FALSE(sitting.window.attend(card));
-    CHECK(sitting.window.wait_until_shown(kPatience));
-    keep(sitting.window, file("card"));
   });
 }
 

@@ -4,45 +4,31 @@
 #include "core/errors.hpp"
 #include "device/flat_wall.hpp"
 #include "device/mouse/mouse_device.hpp"
+#include "device/passing_device.hpp"
 #include "device/servo/servo_clock.hpp"
 #include "device/servo/servo_thread.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
+#include "support/environment.hpp"
 #include "windows/virtual_screen.hpp"
 
 #include <chrono>
 #include <functional>
 #include <memory>
 
-#include <stdlib.h>
-
 namespace touchtrial {
 namespace {
 
 /// Keeps the last force that the servo wrote.
-class LastWritten final : public device::HapticDevice {
+class LastWritten final : public PassingDevice {
  public:
-  explicit LastWritten(device::HapticDevice& device) : device_(device) {}
-  [[nodiscard]] device::DeviceInfo info() const override { return device_.info(); }
-  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& s) noexcept override {
-    return device_.read(s);
-  }
+  using PassingDevice::PassingDevice;
   [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
     force_n_ = force_n;
-    return device_.write(force_n);
+    return PassingDevice::write(force_n);
   }
-  void halt() noexcept override { device_.halt(); }
-  void rearm() noexcept override { device_.rearm(); }
-  [[nodiscard]] device::DeviceFault fault() const noexcept override { return device_.fault(); }
 
   Vec3 force_n_{1.0, 1.0, 1.0};
-
- private:
-  device::HapticDevice& device_;
-};
-
-class NoSink final : public device::SampleSink {
- public:
-  void record(const device::ServoSample&) noexcept override {}
 };
 
 /// A mouse with its window, a flat wall, and the servo in real time on its own thread.
@@ -79,7 +65,7 @@ struct PilotStation {
   device::MouseDevice mouse{exchange, clock};
   LastWritten last{mouse};
   FlatWall wall;
-  NoSink sink;
+  NoSamples sink;
   device::LatestValue<device::ServoState> states;
   device::ServoReport report;
   device::ServoThread thread{{device::SchedulingPolicy::other, 0, false}};
@@ -141,8 +127,8 @@ TEST_CASE("the space bar requests a stop") {
 }
 
 TEST_CASE("without a display the window says what to do about it") {
-  ::unsetenv("DISPLAY");
-  ::unsetenv("WAYLAND_DISPLAY");
+  const EnvironmentVariable display("DISPLAY", nullptr);
+  const EnvironmentVariable wayland("WAYLAND_DISPLAY", nullptr);
   device::PointerExchange exchange;
   CHECK_THROWS_WITH(app::ReadingsWindow{exchange}, holds_text("graphical session"));
 }

@@ -7,6 +7,7 @@
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
 #include "support/child_process.hpp"
+#include "support/environment.hpp"
 #include "support/temp_folder.hpp"
 #include "windows/virtual_screen.hpp"
 
@@ -325,19 +326,9 @@ TEST_CASE("a person pilots a session whose trials have several planes with the m
   CHECK(person.output().find("trial 6 acknowledged") != std::string::npos);
 }
 
-/// While it lives, the program's configuration is in a folder of its own.
-class OwnConfiguration {
- public:
-  OwnConfiguration() { ::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1); }
-  ~OwnConfiguration() { ::unsetenv("XDG_CONFIG_HOME"); }
-  OwnConfiguration(const OwnConfiguration&) = delete;
-  OwnConfiguration& operator=(const OwnConfiguration&) = delete;
-
-  TempFolder folder;
-};
-
 TEST_CASE("a screen that was measured with a card has a known scale from then on") {
-  const OwnConfiguration own;
+  const TempFolder folder;
+  const EnvironmentVariable own("XDG_CONFIG_HOME", folder.path().c_str());
   const auto screen = VirtualScreen::open("1280x720");
   app::ParticipantWindowOptions window;
   window.size_px = {640, 480};
@@ -348,7 +339,7 @@ TEST_CASE("a screen that was measured with a card has a known scale from then on
   while (program.listen(std::chrono::milliseconds(20))) screen->type("Return");
   CHECK(program.finish() == 0);
   INFO(program.output());
-  const fs::path file = own.folder.path() / "touchtrial" / "screens.json";
+  const fs::path file = folder.path() / "touchtrial" / "screens.json";
   CHECK_THAT(program.output(), holds_text("kept in " + file.string()));
   const json kept = json::parse(text_of(read_file(file, 1U << 20U)));
   REQUIRE(kept.at("screens").size() == 1);

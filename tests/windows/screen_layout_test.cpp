@@ -81,6 +81,45 @@ class Paper {
   app::Fonts fonts_;
 };
 
+app::InputEvent key(app::Key which, int digit = 0) {
+  app::InputEvent event;
+  event.key = which;
+  event.digit = digit;
+  return event;
+}
+
+/// A screen on paper, with what it is drawn from.
+struct Drawn {
+  explicit Drawn(const session::Step& step, const std::string& language = "en",
+                 const std::vector<std::string>& labels = {})
+      : context{.words = &words_in(language),
+                .language = language,
+                .shelf = &shelf,
+                .glass = &glass},
+        screen(app::screen_for(step, context, labels)) {}
+  [[nodiscard]] app::Canvas draw() { return paper.draw(*screen); }
+  std::optional<session::StepReply> press(app::Key which, int digit = 0) {
+    std::optional<session::StepReply> reply = screen->take(key(which, digit));
+    static_cast<void>(draw());
+    return reply;
+  }
+  /// Types letters.
+  void write(const std::u32string& letters) {
+    for (const char32_t letter : letters) {
+      app::InputEvent event;
+      event.kind = app::InputEvent::Kind::letter;
+      event.letter = letter;
+      CHECK_FALSE(screen->take(event));
+    }
+  }
+
+  Paper paper{{1280.0, 720.0}};
+  Squares shelf{51.2};
+  app::Glass glass{0.27, true};
+  app::ScreenContext context;
+  std::shared_ptr<app::Screen> screen;
+};
+
 bool lies_inside(const app::Box& inner, const app::Box& outer) {
   constexpr double kRounding = 1.5;
   return inner.x >= outer.x - kRounding && inner.y >= outer.y - kRounding &&
@@ -116,13 +155,6 @@ std::string faults_of(const app::Canvas& canvas) {
     }
   }
   return faults;
-}
-
-app::InputEvent key(app::Key which, int digit = 0) {
-  app::InputEvent event;
-  event.key = which;
-  event.digit = digit;
-  return event;
 }
 
 design::Question choice(int options) {
@@ -233,7 +265,7 @@ TEST_CASE("everything on every screen can be read, in all languages and at all s
   CAPTURE(size.x, language, side_mm, text_scale);
   const Paper paper(size, text_scale, app::letters_in(all_texts(language)));
   const session::SessionTexts texts = app::session_texts(full_study(language));
-  const app::Words words = app::words_of(design::language_of(language).texts);
+  const app::Words& words = words_in(language);
   Squares shelf(side_mm);
   const app::Glass glass = {size.x > 2000.0 ? 0.16 : 0.27, knows};
   for (const std::size_t count : {2U, 5U, 9U}) {
@@ -317,7 +349,7 @@ TEST_CASE("with high contrast, no screen has the design's pale colours") {
   const Paper paper({1280.0, 720.0});
   Squares shelf(51.2);
   const app::Glass glass = {0.27, true};
-  const app::Words words = app::words_of(design::language_of("en").texts);
+  const app::Words& words = words_in("en");
   const app::ScreenContext context = {.words = &words, .shelf = &shelf, .glass = &glass};
   const auto uses = [&](app::Screen& screen, bool high_contrast, std::uint32_t colour) {
     static_cast<void>(paper.draw(screen, high_contrast));
@@ -338,7 +370,7 @@ TEST_CASE("with high contrast, no screen has the design's pale colours") {
 TEST_CASE("letters that are new to the fonts are reported, and are there when asked for") {
   Squares shelf(51.2);
   const app::Glass glass;
-  const app::Words words = app::words_of(design::language_of("ja").texts);
+  const app::Words& words = words_in("ja");
   const app::ScreenContext context = {.words = &words, .shelf = &shelf, .glass = &glass};
   const auto screen = app::screen_for(session::EndStep{}, context, {});
   std::set<char32_t> missing;
@@ -356,7 +388,7 @@ TEST_CASE("a page shows its pictures beside the text, and bold words without the
   const Paper paper({1280.0, 720.0});
   Squares shelf(51.2);
   const app::Glass glass;
-  const app::Words words = app::words_of(design::language_of("en").texts);
+  const app::Words& words = words_in("en");
   const app::ScreenContext context = {.words = &words, .shelf = &shelf, .glass = &glass};
   const auto width_of_body = [&](const std::string& page) {
     const auto screen = app::screen_for(session::InstructionStep{{page}}, context, {});
@@ -478,15 +510,10 @@ TEST_CASE("while one of several planes is on, the screen says which and how far 
 
 TEST_CASE("after a comfort stop the space bar does nothing, and Enter goes on where it may") {
   const bool may_go_on = GENERATE(true, false);
-  const Paper paper({1280.0, 720.0});
-  Squares shelf(50.0);
-  const app::Glass glass;
-  const app::ScreenContext context = {.words = &words_in("en"), .shelf = &shelf, .glass = &glass};
-  const auto screen = app::screen_for(
-      session::NoticeStep{session::NoticeStep::What::stopped, 3, may_go_on}, context, {});
-  static_cast<void>(paper.draw(*screen));
-  CHECK_FALSE(screen->take(key(app::Key::space)));
-  CHECK(screen->take(key(app::Key::enter)).has_value() == may_go_on);
+  Drawn stopped(session::NoticeStep{session::NoticeStep::What::stopped, 3, may_go_on});
+  static_cast<void>(stopped.draw());
+  CHECK_FALSE(stopped.press(app::Key::space));
+  CHECK(stopped.press(app::Key::enter).has_value() == may_go_on);
 }
 
 TEST_CASE("a frame that is as large as a bank card gives the scale of the screen") {
@@ -506,112 +533,69 @@ TEST_CASE("a frame that is as large as a bank card gives the scale of the screen
   CHECK(screen.take(key(app::Key::enter)));
 }
 
-struct Asked {
+/// A question, and its answer by keys.
+struct Asked : Drawn {
   explicit Asked(const session::AnswerStep& step = {.trial = 1, .of = 25},
                  const std::vector<std::string>& labels = std::vector<std::string>(5, "x"))
-      : screen(step, {.words = &words, .shelf = &shelf, .glass = &glass}, labels) {
-    static_cast<void>(paper.draw(screen));
+      : Drawn(step, "en", labels) {
+    static_cast<void>(draw());
   }
-  std::optional<session::StepReply> press(app::Key which, int digit = 0) {
-    std::optional<session::StepReply> reply = screen.take(key(which, digit));
-    static_cast<void>(paper.draw(screen));
-    return reply;
-  }
-
-  app::Words words = app::words_of(design::language_of("en").texts);
-  Paper paper{{1280.0, 720.0}};
-  Squares shelf{51.2};
-  app::Glass glass{0.27, true};
-  app::AnswerScreen screen;
 };
 
-TEST_CASE("an answer needs a choice and Next; Enter alone does not answer") {
-  Asked asked;
-  CHECK_FALSE(asked.press(app::Key::enter));
-  CHECK_FALSE(asked.press(app::Key::digit, 3));
-  const auto reply = asked.press(app::Key::enter);
-  REQUIRE(reply);
-  CHECK(reply->position == 2);
-  CHECK_FALSE(reply->first_position);
-}
+const session::AnswerStep kPictures{.trial = 1, .of = 25};
+const session::AnswerStep kWords{.trial = 1, .of = 60, .question = "threshold_odd"};
+const std::vector<std::string> kThree = {"first", "second", "third"};
 
-TEST_CASE("choices that are words are chosen as pictures are, and changed once") {
-  Asked asked({.trial = 1, .of = 60, .question = "threshold_odd"}, {"first", "second", "third"});
-  const app::Canvas canvas = asked.paper.draw(asked.screen);
-  CHECK(shows(canvas, "Which surface was unlike the others?"));
-  for (const char* word : {"First", "Second", "Third"}) CHECK(shows(canvas, word));
-  CHECK_FALSE(shows(canvas, "10 mm"));
+TEST_CASE("an answer needs a choice that is there and Next, and can be changed once") {
+  Asked asked(GENERATE(kPictures, kWords), kThree);
   CHECK_FALSE(asked.press(app::Key::enter));
   static_cast<void>(asked.press(app::Key::digit, 4));
+  static_cast<void>(asked.press(app::Key::digit, 0));
   CHECK_FALSE(asked.press(app::Key::enter));
   static_cast<void>(asked.press(app::Key::digit, 1));
-  CHECK(shows(asked.paper.draw(asked.screen), "You can change your answer once."));
-  static_cast<void>(asked.press(app::Key::right));
-  static_cast<void>(asked.press(app::Key::digit, 3));
-  static_cast<void>(asked.press(app::Key::digit, 2));
-  CHECK(shows(asked.paper.draw(asked.screen), "Your answer is now fixed."));
+  CHECK(shows(asked.draw(), "You can change your answer once."));
+  const bool changes = GENERATE(false, true);
+  if (changes) {
+    static_cast<void>(asked.press(app::Key::digit, 1));
+    static_cast<void>(asked.press(app::Key::right));
+    static_cast<void>(asked.press(app::Key::digit, 3));
+    static_cast<void>(asked.press(app::Key::digit, 2));
+    CHECK(shows(asked.draw(), "Your answer is now fixed."));
+  }
   const auto reply = asked.press(app::Key::enter);
   REQUIRE(reply);
-  CHECK(reply->position == 2);
-  CHECK(reply->first_position == 0);
+  CHECK(reply->position == (changes ? 2 : 0));
+  CHECK(reply->first_position == (changes ? std::optional(0) : std::nullopt));
+  CHECK_FALSE(asked.press(app::Key::enter));
 }
 
-TEST_CASE("arrows go along choices that are words, and from them to Next") {
-  Asked asked({.trial = 1, .of = 60, .question = "threshold_same"}, {"same", "different"});
-  static_cast<void>(asked.press(app::Key::right));
-  static_cast<void>(asked.press(app::Key::right));
-  CHECK(asked.screen.attention().focus == 1);
+TEST_CASE("choices that are words are shown under their own question, without a scale") {
+  Asked asked(kWords, kThree);
+  CHECK(shows(asked.draw(), "Which surface was unlike the others?"));
+  for (const char* word : {"First", "Second", "Third"}) CHECK(shows(asked.draw(), word));
+  CHECK_FALSE(shows(asked.draw(), "10 mm"));
+}
+
+TEST_CASE("arrows go from choice to choice, and to Next") {
+  Asked asked(GENERATE(kPictures, kWords), kThree);
+  for (const app::Key which : {app::Key::right, app::Key::right, app::Key::right, app::Key::left}) {
+    static_cast<void>(asked.press(which));
+  }
+  CHECK(asked.screen->attention().focus == 1);
   static_cast<void>(asked.press(app::Key::enter));
+  CHECK(asked.screen->attention().focus == app::kNextTarget);
   const auto reply = asked.press(app::Key::enter);
   REQUIRE(reply);
   CHECK(reply->position == 1);
 }
 
 TEST_CASE("what is said before a plane goes away by itself and not by a key") {
-  const Paper paper({1280.0, 720.0});
-  Squares shelf(50.0);
-  const app::Glass glass;
-  const app::ScreenContext context = {.words = &words_in("en"), .shelf = &shelf, .glass = &glass};
-  const auto screen = app::screen_for(session::IntervalStep{.trial = 1}, context, {});
-  CHECK(shows(paper.draw(*screen), "Surface 1 of 2"));
+  Drawn said(session::IntervalStep{.trial = 1});
+  CHECK(shows(said.draw(), "Surface 1 of 2"));
   for (const app::Key which : {app::Key::enter, app::Key::space, app::Key::tab, app::Key::right}) {
-    CHECK_FALSE(screen->take(key(which)));
+    CHECK_FALSE(said.press(which));
   }
-  CHECK_FALSE(screen->take(key(app::Key::digit, 1)));
-}
-
-TEST_CASE("an answer can be changed once, and the reply holds both choices") {
-  Asked asked;
-  static_cast<void>(asked.press(app::Key::digit, 3));
-  static_cast<void>(asked.press(app::Key::digit, 3));
-  static_cast<void>(asked.press(app::Key::digit, 5));
-  static_cast<void>(asked.press(app::Key::digit, 1));
-  const auto reply = asked.press(app::Key::enter);
-  REQUIRE(reply);
-  CHECK(reply->position == 4);
-  CHECK(reply->first_position == 2);
-  CHECK_FALSE(asked.press(app::Key::enter));
-}
-
-TEST_CASE("keys beyond the pictures choose nothing") {
-  Asked asked;
-  static_cast<void>(asked.press(app::Key::digit, 6));
-  static_cast<void>(asked.press(app::Key::digit, 0));
-  CHECK_FALSE(asked.press(app::Key::enter));
-}
-
-TEST_CASE("arrows go from picture to picture, and down to Next") {
-  Asked asked;
-  static_cast<void>(asked.press(app::Key::right));
-  static_cast<void>(asked.press(app::Key::right));
-  static_cast<void>(asked.press(app::Key::right));
-  static_cast<void>(asked.press(app::Key::left));
-  CHECK(asked.screen.attention().focus == 1);
-  static_cast<void>(asked.press(app::Key::enter));
-  CHECK(asked.screen.attention().focus == app::kNextTarget);
-  const auto reply = asked.press(app::Key::enter);
-  REQUIRE(reply);
-  CHECK(reply->position == 1);
+  CHECK_FALSE(said.press(app::Key::digit, 1));
 }
 
 TEST_CASE("confidence is asked after the answer, whose time is when Next was pressed") {
@@ -619,14 +603,14 @@ TEST_CASE("confidence is asked after the answer, whose time is when Next was pre
   static_cast<void>(asked.press(app::Key::digit, 2));
   app::InputEvent next = key(app::Key::enter);
   next.at = app::InputEvent::Time(std::chrono::seconds(5));
-  CHECK_FALSE(asked.screen.take(next));
-  static_cast<void>(asked.paper.draw(asked.screen));
+  CHECK_FALSE(asked.screen->take(next));
+  static_cast<void>(asked.draw());
   CHECK_FALSE(asked.press(app::Key::enter));
   static_cast<void>(asked.press(app::Key::digit, 5));
   static_cast<void>(asked.press(app::Key::digit, 4));
   app::InputEvent last = key(app::Key::enter);
   last.at = app::InputEvent::Time(std::chrono::seconds(9));
-  const auto reply = asked.screen.take(last);
+  const auto reply = asked.screen->take(last);
   REQUIRE(reply);
   CHECK(reply->position == 1);
   CHECK(reply->confidence == 4);
@@ -636,17 +620,17 @@ TEST_CASE("confidence is asked after the answer, whose time is when Next was pre
 TEST_CASE("a picture and Next can be clicked; releasing the button elsewhere is not a click") {
   Asked asked;
   const auto click = [&](int id, Vec2 slip) {
-    const auto targets = asked.paper.draw(asked.screen).targets();
+    const auto targets = asked.draw().targets();
     const auto found = std::find_if(targets.begin(), targets.end(),
                                     [id](const app::Target& t) { return t.id == id; });
     REQUIRE(found != targets.end());
     app::InputEvent event;
     event.position = {found->box.x + 5.0, found->box.y + 5.0};
     event.kind = app::InputEvent::Kind::pressed;
-    static_cast<void>(asked.screen.take(event));
+    static_cast<void>(asked.screen->take(event));
     event.kind = app::InputEvent::Kind::released;
     event.position = event.position + slip;
-    return asked.screen.take(event);
+    return asked.screen->take(event);
   };
   CHECK_FALSE(click(4, {0.0, 0.0}));
   CHECK_FALSE(click(app::kNextTarget, {0.0, -300.0}));
@@ -658,8 +642,8 @@ TEST_CASE("a picture and Next can be clicked; releasing the button elsewhere is 
 TEST_CASE("feeling again is offered only if the step allows it") {
   Asked without;
   Asked with({.trial = 1, .of = 25, .may_explore_again = true});
-  CHECK(without.paper.draw(without.screen).targets().size() == 5);
-  CHECK(with.paper.draw(with.screen).targets().size() == 6);
+  CHECK(without.draw().targets().size() == 5);
+  CHECK(with.draw().targets().size() == 6);
   static_cast<void>(with.press(app::Key::back_tab));
   const auto reply = with.press(app::Key::enter);
   REQUIRE(reply);
@@ -667,71 +651,45 @@ TEST_CASE("feeling again is offered only if the step allows it") {
 }
 
 TEST_CASE("a questionnaire can be answered with keys, and optional questions can be skipped") {
-  const Paper paper({1280.0, 720.0});
-  Squares shelf(51.2);
-  const app::Glass glass;
-  const app::Words words = app::words_of(design::language_of("de").texts);
-  const app::ScreenContext context = {
-      .words = &words, .language = "de", .shelf = &shelf, .glass = &glass};
-  const auto screen = app::screen_for(session::QuestionStep{&questions()}, context, {});
+  Drawn asked(session::QuestionStep{&questions()}, "de");
   const auto press = [&](app::Key which, int digit = 0) {
-    static_cast<void>(paper.draw(*screen));
-    return screen->take(key(which, digit));
+    static_cast<void>(asked.draw());
+    CHECK_FALSE(asked.press(which, digit));
   };
-  const auto write = [&](char32_t letter) {
-    app::InputEvent event;
-    event.kind = app::InputEvent::Kind::letter;
-    event.letter = letter;
-    CHECK_FALSE(screen->take(event));
-  };
-  CHECK_FALSE(press(app::Key::enter));  // it must be answered
-  CHECK_FALSE(press(app::Key::digit, 5));
-  CHECK_FALSE(press(app::Key::enter));
-  CHECK_FALSE(press(app::Key::digit, 9));
-  CHECK_FALSE(press(app::Key::digit, 1));
-  CHECK_FALSE(press(app::Key::enter));
-  for (const char32_t letter : U"2x3,5") {
-    if (letter != 0) write(letter);
-  }
-  CHECK_FALSE(press(app::Key::enter));
-  for (const char32_t letter : U"Rüe") {
-    if (letter != 0) write(letter);
-  }
-  CHECK_FALSE(press(app::Key::left));
-  write(U'h');
-  CHECK_FALSE(press(app::Key::remove));
-  CHECK_FALSE(press(app::Key::backspace));
-  const auto reply = press(app::Key::enter);
+  press(app::Key::enter);  // it must be answered
+  press(app::Key::digit, 5);
+  press(app::Key::enter);
+  press(app::Key::digit, 9);
+  press(app::Key::digit, 1);
+  press(app::Key::enter);
+  asked.write(U"2x3,5");
+  press(app::Key::enter);
+  asked.write(U"Rüe");
+  press(app::Key::left);
+  asked.write(U"h");
+  press(app::Key::remove);
+  press(app::Key::backspace);
+  const auto reply = asked.press(app::Key::enter);
   REQUIRE(reply);
   CHECK(reply->answers == std::vector<std::string>{"4", "0", "23.5", "Rü"});
 }
 
 TEST_CASE("a number that the question does not accept does not go on, and its bounds are shown") {
-  const Paper paper({1280.0, 720.0});
-  Squares shelf(51.2);
-  const app::Glass glass;
-  const app::ScreenContext context = {
-      .words = &words_in("de"), .language = "de", .shelf = &shelf, .glass = &glass};
   design::Question age{"age", design::QuestionKind::number, {{"de", "Alter?"}}, {}};
   age.min = 18.0;
   age.max = 99.5;
   const design::Questionnaire asked = {"closing", {age}};
-  const auto screen = app::screen_for(session::QuestionStep{&asked}, context, {});
+  Drawn screen(session::QuestionStep{&asked}, "de");
   const auto has_text = [&](const std::string& text) {
-    const std::vector<app::PlacedText> texts = paper.draw(*screen).texts();
+    const std::vector<app::PlacedText> texts = screen.draw().texts();
     return std::ranges::any_of(texts, [&](const app::PlacedText& t) { return t.text == text; });
   };
   CHECK(has_text("18 – 99,5"));
   const auto number = [&](const std::u32string& digits) {
-    for (int i = 0; i < 12; ++i) static_cast<void>(screen->take(key(app::Key::backspace)));
-    for (const char32_t digit : digits) {
-      app::InputEvent event;
-      event.kind = app::InputEvent::Kind::letter;
-      event.letter = digit;
-      CHECK_FALSE(screen->take(event));
-    }
-    CHECK(faults_of(paper.draw(*screen)) == "");
-    return screen->take(key(app::Key::enter));
+    for (int i = 0; i < 12; ++i) static_cast<void>(screen.press(app::Key::backspace));
+    screen.write(digits);
+    CHECK(faults_of(screen.draw()) == "");
+    return screen.press(app::Key::enter);
   };
   for (const std::u32string no : {U"17", U"99,6", U"100", U"-20", U"2-", U"1.8.", U","}) {
     CHECK_FALSE(number(no));
@@ -751,16 +709,13 @@ TEST_CASE("Next stays where it was when other buttons come and go") {
   Asked with({.trial = 1, .of = 25, .may_explore_again = true});
   static_cast<void>(without.press(app::Key::digit, 1));
   static_cast<void>(with.press(app::Key::digit, 1));
-  const app::Box next = next_of(without.paper.draw(without.screen));
+  const app::Box next = next_of(without.draw());
   CHECK(next.x + next.width / 2.0 == Approx(640.0).margin(1.0));
-  CHECK(next_of(with.paper.draw(with.screen)).x == next.x);
-  const Paper paper({1280.0, 720.0});
-  const app::ScreenContext context = {
-      .words = &words_in("en"), .shelf = &with.shelf, .glass = &with.glass};
-  const auto pages = app::screen_for(session::InstructionStep{{"one", "two"}}, context, {});
-  CHECK(next_of(paper.draw(*pages)).x == next.x);
-  static_cast<void>(pages->take(key(app::Key::enter)));
-  const app::Canvas second = paper.draw(*pages);
+  CHECK(next_of(with.draw()).x == next.x);
+  Drawn pages(session::InstructionStep{{"one", "two"}});
+  CHECK(next_of(pages.draw()).x == next.x);
+  static_cast<void>(pages.press(app::Key::enter));
+  const app::Canvas second = pages.draw();
   CHECK(second.targets().size() == 2);  // Back has come
   CHECK(next_of(second).x == next.x);
 }

@@ -335,9 +335,6 @@ TEST_CASE("a shake that gave no delay fails a device with its reason, unless it 
   const Certificate left_out = rehearsed(device::device_model("omega_3"), {.skip = {"shake"}});
   CHECK(left_out.passed());
   CHECK(axis_of(left_out, DeviceAxis::x).delay_left_out);
-  CHECK(std::ranges::any_of(left_out.not_measured, [](const device::NotMeasured& one) {
-    return one.what == "mass and delay on axis x" && one.why == "left out";
-  }));
 }
 
 TEST_CASE("a wall that throws the handle up slowly, again and again, is no stable wall") {

@@ -11,10 +11,10 @@
 #include "device/plugin/lockstep_plugins.hpp"
 #include "device/registry.hpp"
 #include "support/catch.hpp"
+#include "support/environment.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <set>
 #include <string>
 #include <vector>
@@ -164,9 +164,8 @@ TEST_CASE("conformance: each fault fails the check that is there for it, and no 
 
 TEST_CASE("conformance: a library without a sound interface fails it, and the rest says nothing") {
   const char* how = GENERATE("nothing", "version", "size", "function", "no_name", "long_name");
-  ::setenv("BROKEN_DEVICE", how, 1);
+  const EnvironmentVariable broken("BROKEN_DEVICE", how);
   const Checks checks = checked({TOUCHTRIAL_BROKEN_PLUGIN, "{}"}, brief(true));
-  ::unsetenv("BROKEN_DEVICE");
   INFO(how << "\n" << text_of(checks));
   CHECK(failed(checks) == Ids{ConformanceId::library});
   CHECK(passed(checks) == Ids{});

@@ -5,12 +5,13 @@
 #include "device/fakes/loaded_fake.hpp"
 #include "device/registry.hpp"
 #include "support/catch.hpp"
+#include "support/environment.hpp"
 #include "support/temp_folder.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -63,14 +64,6 @@ TEST_CASE("dhd: position, velocity and buttons arrive in the device frame, in mi
   CHECK(sample.velocity_mm_s == Vec3{});
   CHECK(sample.buttons == 5);
   CHECK(sample.ready);
-}
-
-TEST_CASE("dhd: a force in the device frame reaches the library in its own") {
-  LoadedDhd fake;
-  device::DhdDevice device = opened(fake);
-  CHECK(write_until(device, {1.0, 2.0, 3.0}, [&] {
-    return fake->force_n.get() == Vec3{3.0, 1.0, 2.0};
-  }));
 }
 
 TEST_CASE("dhd: the velocity is the hand's, in the device frame") {
@@ -383,9 +376,8 @@ TEST_CASE("dhd: the newest library of the kit's folder is used, and libdrd befor
 TEST_CASE("dhd: a kit that the environment names is found without any setting") {
   const LoadedDhd fake;
   const Kit kit;
-  REQUIRE(setenv("FDSDK", kit.folder().c_str(), 1) == 0);
+  const EnvironmentVariable named("FDSDK", kit.folder().c_str());
   CHECK(library_found("libdhd.so") == "libdhd.so.3.17.6");
-  REQUIRE(unsetenv("FDSDK") == 0);
 }
 
 TEST_CASE("dhd: a folder without a library is named, with the remedy") {
@@ -515,21 +507,6 @@ TEST_CASE(
   CHECK(device.write({}) == device::DeviceStatus::fault);
 }
 
-TEST_CASE("dhd: what a force brought from the device is new, though the time guard answers") {
-  LoadedDhd fake;
-  device::DhdDevice device = opened(fake);
-  (void)ready_sample(device);
-  fakes::SteppingClock clock(fake.exports());
-  device::DeviceSample before;
-  REQUIRE(device.read(before) == device::DeviceStatus::ok);
-  fake->hand.push_n.set({0.008, 0.0, 0.0});
-  REQUIRE(fake.exports().step(100));
-  device::DeviceSample after;
-  REQUIRE(device.read(after) == device::DeviceStatus::ok);
-  CHECK(after.sequence >= before.sequence + 99);
-  CHECK(after.position_mm.z > before.position_mm.z + 0.09);
-}
-
 TEST_CASE("dhd: no reading is new while the library exchanges nothing with the device") {
   LoadedDhd fake;
   device::DhdDevice device = opened(fake);
@@ -545,17 +522,6 @@ TEST_CASE("dhd: no reading is new while the library exchanges nothing with the d
   CHECK(sample.sequence == last);
   fake->exchanges = true;
   CHECK(next_sample(device).sequence > last);
-}
-
-TEST_CASE("dhd: a run ends as stale when the library exchanges nothing any more") {
-  LoadedDhd fake;
-  device::DhdDevice device = opened(fake);
-  fakes::WallRun wall(device, fake.exports());
-  REQUIRE(wall.run(50).end == device::ServoEnd::time_limit);
-  fake->exchanges = false;
-  const device::ServoReport report = wall.run(50);
-  CHECK(report.end == device::ServoEnd::fault);
-  CHECK(report.fault == device::SafetyFault::stale_sample);
 }
 
 TEST_CASE("dhd: saturated motors are not a fault, and the servo is told of them") {
@@ -628,26 +594,6 @@ TEST_CASE("the list of dhd names every connected device, and closes it") {
   CHECK(fake.calls() == "open force_off close open force_off close ");
 }
 
-TEST_CASE("the list of dhd says that a device waits for its calibration, and how to do it") {
-  const fakes::LoadedDhd fake;
-  fake->calibrated = false;
-  const std::vector<device::DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
-  REQUIRE(listings.size() == 1);
-  CHECK(listings[0].present);
-  REQUIRE(listings[0].missing.size() == 1);
-  CHECK_THAT(listings[0].missing[0],
-             holds_text("rest position") && holds_text("touchtrial device initialise dhd"));
-}
-
-TEST_CASE("the list of dhd says that the settings must give the size of an unknown model") {
-  const fakes::LoadedDhd fake;
-  fake->system_type = GENERATE(203, 206, 91);
-  const std::vector<device::DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
-  REQUIRE(listings.size() == 1);
-  REQUIRE(listings[0].missing.size() == 1);
-  CHECK_THAT(listings[0].missing[0], holds_text("dhd.max_force_n"));
-}
-
 std::string initialised_with(const std::filesystem::path& library) {
   device::DeviceSettings settings;
   settings.dhd.library = library;
@@ -677,35 +623,40 @@ TEST_CASE(
                     holds_text("name libdrd.so") && holds_text("rest position"));
 }
 
-TEST_CASE("the list of dhd says what is missing: device, library, function, or access") {
-  fakes::LoadedDhd fake;
-  SECTION("no device, library or function") {
-    fake->devices = 0;
-    const auto [library, missing] = GENERATE(table<const char*, const char*>(
-        {{TOUCHTRIAL_FAKE_DHD, "no device is connected"},
-         {"/nowhere/libdhd.so", "install Force Dimension's SDK"},
-         {TOUCHTRIAL_PARTIAL_DHD, "has no function dhdEnableForce"}}));
-    const std::vector<device::DeviceListing> listings = listings_with(library);
+TEST_CASE("the list of dhd says what is missing, and how to mend it") {
+  struct Lack {
+    const char* library;
+    bool present;
+    const char* missing;
+    std::function<void(fakes::FakeDhd&)> change;
+  };
+  const auto typed = [](int type) {
+    return [type](fakes::FakeDhd& fake) { fake.system_type = type; };
+  };
+  const auto none = [](fakes::FakeDhd& fake) { fake.devices = 0; };
+  for (const Lack& lack : {
+           Lack{TOUCHTRIAL_FAKE_DHD, false, "no device is connected", none},
+           Lack{"/nowhere/libdhd.so", false, "install Force Dimension's SDK", none},
+           Lack{TOUCHTRIAL_PARTIAL_DHD, false, "has no function dhdEnableForce", none},
+           Lack{TOUCHTRIAL_FAKE_DHD, true, "close other programs",
+                [](fakes::FakeDhd& fake) { fake.opens = false; }},
+           Lack{TOUCHTRIAL_FAKE_DHD, true, "rest position",
+                [](fakes::FakeDhd& fake) { fake.calibrated = false; }},
+           Lack{TOUCHTRIAL_FAKE_DHD, true, "touchtrial device initialise dhd",
+                [](fakes::FakeDhd& fake) { fake.calibrated = false; }},
+           Lack{TOUCHTRIAL_FAKE_DHD, true, "dhd.max_force_n", typed(203)},
+           Lack{TOUCHTRIAL_FAKE_DHD, true, "dhd.max_force_n", typed(206)},
+           Lack{TOUCHTRIAL_FAKE_DHD, true, "dhd.max_force_n", typed(91)},
+       }) {
+    INFO(lack.library << " " << lack.missing);
+    const fakes::LoadedDhd fake;
+    lack.change(*fake.exports().state);
+    const std::vector<device::DeviceListing> listings = listings_with(lack.library);
     REQUIRE(listings.size() == 1);
-    CHECK_FALSE(listings[0].present);
+    CHECK(listings[0].present == lack.present);
     REQUIRE(listings[0].missing.size() == 1);
-    CHECK_THAT(listings[0].missing[0], holds_text(missing));
+    CHECK_THAT(listings[0].missing[0], holds_text(lack.missing));
   }
-  SECTION("a device that does not open") {
-    fake->opens = false;
-    const std::vector<device::DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
-    REQUIRE(listings.size() == 1);
-    CHECK(listings[0].present);
-    REQUIRE(listings[0].missing.size() == 1);
-    CHECK_THAT(listings[0].missing[0], holds_text("close other programs"));
-  }
-}
-
-TEST_CASE("dhd is opened through the registry by its name") {
-  fakes::LoadedDhd fake;
-  device::DeviceSettings settings;
-  settings.dhd.library = TOUCHTRIAL_FAKE_DHD;
-  CHECK(device::open_device("dhd", settings)->info().name == "dhd");
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 // stand-in's time is the servo's; nothing here depends on how fast the machine is.
 #include "device/fakes/maker_dhd.hpp"
 
-#include "core/errors.hpp"
 #include "device/fakes/loaded_fake.hpp"
 #include "device/registry.hpp"
 #include "device/servo_fakes.hpp"
@@ -63,6 +62,18 @@ class UnhurriedClock final : public device::ServoClock {
 class Desk {
  public:
   explicit Desk(const MakerArm& arm = kOmega3) { fake.exports().plug(arm); }
+  /// However a test ends, a device that was closed pushes nobody.
+  ~Desk() {
+    clock.reset();
+    placed.reset();
+    opened.reset();
+    fake.exports().let_pass(1);
+    CHECK(motors_rest());
+    CHECK(fake->misuses == 0);
+    CHECK(fake.calls().ends_with("close "));
+  }
+  Desk(const Desk&) = delete;
+  Desk& operator=(const Desk&) = delete;
 
   void open() {
     opened = device::open_device("dhd", settings_of_maker());
@@ -165,22 +176,6 @@ double felt_grating_n(const std::vector<MakerMoment>& moments) {
   std::ranges::sort(amplitudes);
   return amplitudes[amplitudes.size() / 2];
 }
-
-/// A firm press in which the encoders stop.
-class FreezingPress final : public device::ForceSource {
- public:
-  FreezingPress(fakes::MakerDhd& fake, int at_tick) : fake_(fake), at_tick_(at_tick) {}
-  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
-    if (++ticks_ == at_tick_) fake_.frozen = true;
-    return press_.force_n(sample);
-  }
-
- private:
-  fakes::MakerDhd& fake_;
-  int at_tick_;
-  int ticks_ = 0;
-  Press press_{{0.0, 0.0, 1.2}};
-};
 
 TEST_CASE(
     "maker's dhd: a session goes on for seconds while nearly every reading is a guarded one") {
@@ -325,7 +320,11 @@ int longest_press_ms(const std::vector<MakerMoment>& moments) {
 TEST_CASE("maker's dhd: encoders that stop under a press are a fault within half a second") {
   Desk desk;
   desk.open_ready();
-  FreezingPress press(*desk.fake.exports().state, 1000);
+  Press firm({0.0, 0.0, 1.2});
+  ForceBy press([&, ticks = 0](const device::DeviceSample& sample) mutable {
+    if (++ticks == 1000) desk.fake->frozen = true;
+    return firm.force_n(sample);
+  });
   // On a busy machine forces lapse, so the unbroken press may be late.
   const device::ServoReport report = desk.feel_unhurried(press, 10'000);
   CHECK(report.end == ServoEnd::fault);
@@ -352,23 +351,6 @@ TEST_CASE("maker's dhd: an arm that stands bit-still in its holder is no fault")
   CHECK(desk.opened->fault() == DeviceFault::none);
 }
 
-TEST_CASE("maker's dhd: an arm of absurd weight is refused before force goes on") {
-  MakerArm heavy = kOmega3;
-  heavy.links_n = 50.0;
-  Desk desk(heavy);
-  bool is_refused = false;
-  try {
-    desk.open();
-    desk.clock.emplace(desk.fake.exports());
-    desk.wait_ms(1000);
-    is_refused = desk.opened->fault() != DeviceFault::none;
-  } catch (const DeviceError&) {
-    is_refused = true;
-  }
-  CHECK(is_refused);
-  CHECK_FALSE(desk.fake->had_force);
-}
-
 TEST_CASE("maker's dhd: the device stops by itself when the host is dead") {
   Desk desk;
   desk.open_ready();
@@ -378,26 +360,6 @@ TEST_CASE("maker's dhd: the device stops by itself when the host is dead") {
   desk.fake.exports().let_pass(40);
   CHECK(desk.motors_rest());
   CHECK(desk.fake->off_cause == 3);
-}
-
-TEST_CASE("maker's dhd: a device that waits for its calibration gets no force") {
-  Desk desk;
-  desk.fake->calibrated = false;
-  desk.open();
-  REQUIRE(eventually([&] { return desk.opened->readiness() != device::DeviceReadiness::ready; }));
-  desk.clock.emplace(desk.fake.exports());
-  Press press({0.0, 0.0, 0.4});
-  (void)desk.feel(press, 300);
-  CHECK_FALSE(desk.is_ready());
-  CHECK_FALSE(desk.fake->had_force);
-
-  desk.fake->calibrated = true;
-  desk.clock.reset();
-  REQUIRE(eventually([&] { return desk.is_ready(); }));
-  desk.clock.emplace(desk.fake.exports());
-  ConstantForce nothing({});
-  REQUIRE(desk.feel(nothing, 800).end == ServoEnd::time_limit);
-  CHECK(desk.carried_n(300) < 0.3);
 }
 
 TEST_CASE("maker's dhd: a device that is unplugged in a trial ends it, and pushes nobody") {
@@ -411,20 +373,6 @@ TEST_CASE("maker's dhd: a device that is unplugged in a trial ends it, and pushe
   CHECK(report.end == ServoEnd::fault);
   CHECK(report.device_fault == DeviceFault::link_lost);
   CHECK(desk.motors_rest());
-}
-
-TEST_CASE("maker's dhd: a device that was closed pushes nobody") {
-  Desk desk;
-  desk.open_ready();
-  Press press({0.0, 0.0, 0.7});
-  REQUIRE(desk.feel(press, 500).end == ServoEnd::time_limit);
-  desk.clock.reset();
-  desk.placed.reset();
-  desk.opened.reset();
-  desk.fake.exports().let_pass(1);
-  CHECK(desk.motors_rest());
-  CHECK(desk.fake->misuses == 0);
-  CHECK(desk.fake.calls().ends_with("close "));
 }
 
 }  // namespace

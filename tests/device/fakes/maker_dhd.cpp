@@ -288,11 +288,9 @@ class Device {
       return;
     }
     Vec3 all_n = tip_n() - (state->has_force ? 0.5 : kBrakesNsPerM) * velocity_ + stop_n(tip_m);
-    if (state->held) {
-      const Vec3 grip_n = Hand::force_n(state->hand_m.get(), tip_m, velocity_, time_s_);
-      hand_n_ = -1.0 * grip_n;
-      all_n = all_n + grip_n;
-    }
+    const Vec3 grip_n = Hand::force_n(state->hand_m.get(), tip_m, velocity_, time_s_);
+    hand_n_ = -1.0 * grip_n;
+    all_n = all_n + grip_n;
     velocity_ = velocity_ + kSubstepS * by_axis(all_n, arm_.inertia_kg);
     state->tip_m.set(tip_m + kSubstepS * velocity_);
   }
@@ -309,7 +307,7 @@ class Device {
 
   void keep_moment() {
     if (motors_n() != Vec3{}) ++state->forceful_ms;
-    moments_.push_back({motors_n(), tip_n(), hand_n_, state->has_force});
+    moments_.push_back({motors_n(), tip_n(), hand_n_});
     if (moments_.size() > kMostMoments) moments_.pop_front();
   }
 
@@ -616,7 +614,6 @@ int dhdGetPosition(double* px, double* py, double* pz, char /*id*/) {
   *px = tip_m.x;
   *py = tip_m.y;
   *pz = tip_m.z;
-  if (is_guarded) ++state->guarded_reads;
   return is_guarded ? kTimeGuard : 0;
 }
 
@@ -638,7 +635,8 @@ int dhdStop(char /*id*/) {
 
 unsigned int dhdGetButtonMask(char /*id*/) {
   const Call call;
-  return call.is_refused() ? 0 : state->buttons.load();
+  (void)call.is_refused();
+  return 0;
 }
 
 int dhdGetStatus(int* status, char /*id*/) {

@@ -33,10 +33,9 @@ inline constexpr MakerArm kSigma7{104, "sigma.7 (right-hand)", 1.17, 1.38, {1.5,
 
 /// One millisecond of the device. All forces are those on the hand.
 struct MakerMoment {
-  Vec3 motors_n;           ///< of the motors alone
-  Vec3 tip_n;              ///< what the tip pushes with: the motors' force, less the arm's weight
-  Vec3 hand_n;             ///< what the hand feels, the arm's inertia included
-  bool has_force = false;  ///< the device is in its mode FORCE
+  Vec3 motors_n;  ///< of the motors alone
+  Vec3 tip_n;     ///< what the tip pushes with: the motors' force, less the arm's weight
+  Vec3 hand_n;    ///< what the hand feels, the arm's inertia included
 };
 
 struct MakerDhd {
@@ -44,10 +43,8 @@ struct MakerDhd {
   std::atomic<bool> calibrated{true};  ///< false: status RESET, until it is true or drdAutoInit
   std::atomic<bool> frozen{false};     ///< the encoders keep what they had
   std::atomic<bool> unplugged{false};
-  std::atomic<unsigned> buttons{0};
   std::atomic<bool> clamped{false};  ///< the arm stands in a holder, bit-still
-  std::atomic<bool> held{true};      ///< by the hand, which trembles by some hundredths of a mm
-  SharedVec hand_m;                  ///< where the hand wants the tip
+  SharedVec hand_m;  ///< where the hand, which trembles by some hundredths of a mm, wants the tip
 
   // Observations.
   SharedVec tip_m;
@@ -55,7 +52,6 @@ struct MakerDhd {
   std::atomic<bool> had_force{false};  ///< it was, at any time
   std::atomic<int> off_cause{0};       ///< why it is no longer: DHD_FORCE_OFF_*
   std::atomic<long> forceful_ms{0};    ///< milliseconds in which the motors pushed
-  std::atomic<long> guarded_reads{0};  ///< positions that were answered by DHD_TIMEGUARD
   std::atomic<long> misuses{0};        ///< calls for a device that is not open
 };
 

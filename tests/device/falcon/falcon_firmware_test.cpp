@@ -178,11 +178,6 @@ TEST_CASE("unplugging in the middle of a load ends it at once") {
   CHECK(transport.sends == 40);
 }
 
-TEST_CASE("a firmware file is read whole") {
-  const TempFolder folder;
-  CHECK(read_falcon_firmware(write_dummy_firmware(folder.path())) == dummy_firmware());
-}
-
 TEST_CASE("a firmware file that is not named, is missing or has the wrong size is refused") {
   const TempFolder folder;
   CHECK_THROWS_WITH(read_falcon_firmware({}), holds_text("set falcon.firmware"));

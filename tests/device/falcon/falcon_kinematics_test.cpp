@@ -226,22 +226,6 @@ TEST_CASE("falcon forward kinematics gives the Jacobian of its pose") {
   }
 }
 
-TEST_CASE("falcon torques: torque times joint speed is force times hand speed") {
-  RandomStream random(9, "falcon power");
-  for (int i = 0; i < kPoses; ++i) {
-    const Vec3 position = random_position_m(random);
-    const Vec3 force_n = random_vector(random, 8.0);
-    const Vec3 speed_m_s = random_vector(random, 1.0);
-    const PerLeg torques = torques_nm(jacobian_at(position), force_n).value();
-    const auto rows = reference_rows(position);
-    REQUIRE(rows);
-    double joints_w = 0.0;
-    for (std::size_t leg = 0; leg < 3; ++leg)
-      joints_w += torques[leg] * dot((*rows)[leg], speed_m_s);
-    REQUIRE(joints_w == Approx(dot(force_n, speed_m_s)).margin(1e-6));
-  }
-}
-
 TEST_CASE("falcon torques make the requested force, along z as along x and y") {
   RandomStream random(10, "falcon force");
   for (int i = 0; i < 500; ++i) {

@@ -157,6 +157,8 @@ TEST_CASE("inverse3: what does not answer as a service that is known is told apa
   // Nobody at all.
   settings.port = 1;
   CHECK(refusal(settings).find("start Haply's Inverse service") != std::string::npos);
+  settings.host = "no such host";
+  CHECK(refusal(settings).find("inverse3.host") != std::string::npos);
 }
 
 TEST_CASE("inverse3: a Minverse reaches less far, and a grip has buttons") {
@@ -200,20 +202,6 @@ TEST_CASE("inverse3: what keeps it from opening is named with the remedy") {
   }
 }
 
-TEST_CASE("inverse3: without a service the error says how to start it") {
-  device::Inverse3Settings settings;
-  {
-    HaplyService service;
-    settings = service.settings();
-  }
-  const std::string message = refusal(settings);
-  CHECK(message.find("no service answers at 127.0.0.1:" + std::to_string(settings.port)) !=
-        std::string::npos);
-  CHECK(message.find("start Haply's Inverse service") != std::string::npos);
-  settings.host = "no such host";
-  CHECK(refusal(settings).find("inverse3.host") != std::string::npos);
-}
-
 TEST_CASE("inverse3: a device is chosen by its name") {
   HaplyService service({"--twins"});
   device::Inverse3Settings settings = service.settings();
@@ -253,21 +241,23 @@ TEST_CASE("inverse3: a service that falls silent is a lost link") {
   CHECK(device.read(sample) == device::DeviceStatus::fault);
 }
 
-TEST_CASE("inverse3: a service that ends, or loses the device, is a lost link") {
-  const auto options = GENERATE(std::vector<std::string>{"--disconnect-after", "50"},
-                                std::vector<std::string>{"--garbage", "gone"});
-  HaplyService service(options);
+TEST_CASE("inverse3: a service that ends is a lost link, and what makes no sense is bad data") {
+  const auto [option, value, fault] = GENERATE(table<const char*, const char*, DeviceFault>({
+      {"--disconnect-after", "50", DeviceFault::link_lost},
+      {"--garbage", "gone", DeviceFault::link_lost},  // the device
+      {"--garbage", "text", DeviceFault::bad_data},
+      {"--garbage", "null", DeviceFault::bad_data},
+      {"--garbage", "missing", DeviceFault::bad_data},
+      {"--garbage", "far", DeviceFault::bad_data},
+      {"--garbage", "infinite", DeviceFault::bad_data},
+      {"--garbage", "list", DeviceFault::bad_data},
+      {"--garbage", "twice", DeviceFault::bad_data},
+      {"--garbage", "huge", DeviceFault::bad_data},
+  }));
+  HaplyService service({option, value});
   const auto device = opened(service);
-  CHECK(fault_of(*device) == DeviceFault::link_lost);
-}
-
-TEST_CASE("inverse3: answers that make no sense are bad data") {
-  const std::string kind =
-      GENERATE("text", "null", "missing", "far", "infinite", "list", "twice", "huge");
-  HaplyService service({"--garbage", kind});
-  const auto device = opened(service);
-  INFO(kind);
-  CHECK(fault_of(*device) == DeviceFault::bad_data);
+  INFO(value);
+  CHECK(fault_of(*device) == fault);
 }
 
 TEST_CASE("inverse3: events of the device's own safety, and its loss, are faults") {

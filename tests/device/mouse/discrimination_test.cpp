@@ -15,16 +15,6 @@ TextureMaker gratings(std::vector<Grating> of_texture) {
   };
 }
 
-TEST_CASE("an observer of the drawn path tells two coarse gratings of one strength apart") {
-  const double right = share_named_rightly(2, kStrokes, gratings({{4.0, 0.05}, {7.0, 0.05}}));
-  CHECK(right >= 0.9);
-}
-
-TEST_CASE("an observer of the drawn path tells a weak grating from a strong one") {
-  const double right = share_named_rightly(2, kStrokes, gratings({{5.0, 0.03}, {5.0, 0.06}}));
-  CHECK(right >= 0.9);
-}
-
 TEST_CASE(
     "the observer also names gratings and strokes that did not serve to choose the settings") {
   const auto held_out = [](std::vector<Grating> pair) {

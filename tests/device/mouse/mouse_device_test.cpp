@@ -8,13 +8,10 @@
 #include "device/registry.hpp"
 #include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
+#include "support/environment.hpp"
 
-#include <cstdlib>
 #include <limits>
-#include <optional>
 #include <stdexcept>
-
-#include <stdlib.h>
 
 namespace touchtrial {
 namespace {
@@ -75,14 +72,9 @@ TEST_CASE("a steady tangential force displaces the stylus by four millimetres fo
 }
 
 TEST_CASE("no force displaces the stylus beyond its bound, however it alternates") {
-  class Hostile final : public device::ForceSource {
-   public:
-    [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override {
-      const bool back = ++tick_ / 37 % 2 == 0;
-      return {back ? -3.0 : 3.0, 1.0, 0.0};
-    }
-    int tick_ = 0;
-  } force;
+  ForceBy force([tick = 0](const device::DeviceSample&) mutable {
+    return Vec3{++tick / 37 % 2 == 0 ? -3.0 : 3.0, 1.0, 0.0};
+  });
   const device::MouseOptions defaults;
   const double bound_mm = defaults.greatest_pull_n / defaults.pull_n_per_mm;
   double farthest_mm = 0.0;
@@ -94,13 +86,9 @@ TEST_CASE("no force displaces the stylus beyond its bound, however it alternates
 }
 
 TEST_CASE("the stylus returns to the pointer when the force is gone, without passing it") {
-  class Pulse final : public device::ForceSource {
-   public:
-    [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override {
-      return {++tick_ < 300 ? 0.1 : 0.0, 0.0, 0.0};
-    }
-    int tick_ = 0;
-  } force;
+  ForceBy force([tick = 0](const device::DeviceSample&) mutable {
+    return Vec3{++tick < 300 ? 0.1 : 0.0, 0.0, 0.0};
+  });
   const auto samples = run([](double) { return at(5.0, 5.0); }, force, 1000);
   CHECK(samples[299].position_mm.x > 8.9);
   for (const device::ServoSample& sample : samples) CHECK(sample.position_mm.x >= 5.0);
@@ -110,16 +98,10 @@ TEST_CASE("the stylus returns to the pointer when the force is gone, without pas
 TEST_CASE(
     "a force that grows against the motion slows the stylus, one that grows with it speeds it") {
   // Uphill or downhill from 20 mm on: the force along x changes by 0.02 N/mm.
-  class Slope final : public device::ForceSource {
-   public:
-    explicit Slope(double rise_n_per_mm) : rise_n_per_mm_(rise_n_per_mm) {}
-    [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
-      return {-rise_n_per_mm_ * std::clamp(sample.position_mm.x - 20.0, 0.0, 15.0), 0.0, 0.0};
-    }
-    double rise_n_per_mm_;
-  };
   const double rise_n_per_mm = GENERATE(-0.01, 0.02);
-  Slope slope(rise_n_per_mm);
+  ForceBy slope([=](const device::DeviceSample& sample) {
+    return Vec3{-rise_n_per_mm * std::clamp(sample.position_mm.x - 20.0, 0.0, 15.0), 0.0, 0.0};
+  });
   const auto script = [](double time_s) { return at(20.0 * time_s, 0.0); };
   const auto samples = run(script, slope, 1500);
   const double speed_mm_s = (samples[1300].position_mm.x - samples[1200].position_mm.x) / 0.1;
@@ -155,15 +137,12 @@ TEST_CASE("without a wall a pressing hand goes no deeper than its reach") {
 }
 
 TEST_CASE("the stylus is stable on stiff walls and textures at every rate of the servo") {
-  class Stiff final : public device::ForceSource {
-   public:
-    [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
-      const Vec3 p = sample.position_mm;
-      if (p.z >= 0.0) return {};
-      const auto valley = [](double x) { return -10.0 * (x - std::round(x)) / 5.0; };
-      return {valley(p.x), valley(p.y), -10.0 * p.z};
-    }
-  } stiff;
+  ForceBy stiff([](const device::DeviceSample& sample) -> Vec3 {
+    const Vec3 p = sample.position_mm;
+    if (p.z >= 0.0) return {};
+    const auto valley = [](double x) { return -10.0 * (x - std::round(x)) / 5.0; };
+    return {valley(p.x), valley(p.y), -10.0 * p.z};
+  });
   const double rate_hz = GENERATE(1000.0, 10'000.0);
   const auto script = [](double) { return at(10.3, 10.4, true); };
   const auto samples = run(script, stiff, std::llround(3.0 * rate_hz), rate_hz);
@@ -175,14 +154,8 @@ TEST_CASE("the stylus is stable on stiff walls and textures at every rate of the
 
 TEST_CASE("no pointer and no force moves the stylus faster than the servo lets a hand move") {
   RandomStream random(7, "hostile pointer");
-  class Noise final : public device::ForceSource {
-   public:
-    explicit Noise(RandomStream& random) : random_(random) {}
-    [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override {
-      return {random_.uniform() < 0.5 ? -3.0 : 3.0, random_.uniform() < 0.5 ? -3.0 : 3.0, 0.0};
-    }
-    RandomStream& random_;
-  } force(random);
+  const auto either = [&random] { return random.uniform() < 0.5 ? -3.0 : 3.0; };
+  ForceBy force([&](const device::DeviceSample&) { return Vec3{either(), either(), 0.0}; });
   device::VirtualClock clock;
   ScriptedPointer pointer(clock, [](double time_s) {
     return at(std::fmod(time_s, 0.4) < 0.2 ? -500.0 : 500.0, 0.0, true);
@@ -309,32 +282,16 @@ TEST_CASE("a smooth pull never leaves the range of its targets, whatever the ste
   }
 }
 
-/// Sets or removes a variable of the environment while this lives.
-class Variable {
- public:
-  Variable(const char* name, const char* value) : name_(name) {
-    if (const char* before = std::getenv(name)) before_ = before;
-    value == nullptr ? ::unsetenv(name) : ::setenv(name, value, 1);
-  }
-  ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  const char* name_;
-  std::optional<std::string> before_;
-};
-
 TEST_CASE("the mouse is present where there is a display, and says what is missing elsewhere") {
-  const Variable wayland("WAYLAND_DISPLAY", nullptr);
+  const EnvironmentVariable wayland("WAYLAND_DISPLAY", nullptr);
   {
-    const Variable display("DISPLAY", ":7");
+    const EnvironmentVariable display("DISPLAY", ":7");
     const device::DeviceListing listing = device::device_driver("mouse").list({}).at(0);
     CHECK(listing.present);
     CHECK(listing.where == ":7");
     CHECK(listing.missing.empty());
   }
-  const Variable no_display("DISPLAY", nullptr);
+  const EnvironmentVariable no_display("DISPLAY", nullptr);
   const device::DeviceListing listing = device::device_driver("mouse").list({}).at(0);
   CHECK_FALSE(listing.present);
   REQUIRE(listing.missing.size() == 1);

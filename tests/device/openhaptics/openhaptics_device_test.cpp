@@ -41,28 +41,6 @@ TEST_CASE("openhaptics: a named device is opened by that name alone") {
   CHECK_THROWS_WITH(device::OpenHapticsDevice(settings), holds_text("Lab Touch does not open"));
 }
 
-TEST_CASE("openhaptics: a device that does not answer is reported in the library's words") {
-  LoadedHd fake;
-  fake->opens_by = 0;
-  CHECK_THROWS_AS(device::OpenHapticsDevice(settings_of_fake()), DeviceError);
-  CHECK_THROWS_WITH(device::OpenHapticsDevice(settings_of_fake()),
-                    holds_text("no such device (0x300)") && holds_text("plug it in"));
-}
-
-TEST_CASE("openhaptics: a library without one of the functions is refused by the function's name") {
-  device::OpenHapticsSettings settings = settings_of_fake();
-  settings.library = TOUCHTRIAL_PARTIAL_HD;
-  CHECK_THROWS_WITH(device::OpenHapticsDevice(settings),
-                    holds_text("has no function hdUnschedule"));
-}
-
-TEST_CASE("openhaptics: a missing library is refused with the setting that names it") {
-  device::OpenHapticsSettings settings = settings_of_fake();
-  settings.library = "/nowhere/libHD.so";
-  CHECK_THROWS_WITH(device::OpenHapticsDevice(settings),
-                    holds_text("/nowhere/libHD.so") && holds_text("openhaptics.library"));
-}
-
 TEST_CASE("openhaptics: the device describes itself") {
   LoadedHd fake;
   const device::DeviceInfo info = device::OpenHapticsDevice(settings_of_fake()).info();
@@ -82,28 +60,17 @@ TEST_CASE("openhaptics: the device describes itself") {
   CHECK(info.workspace->greatest_mm == Vec3{80.0, 60.0, 30.0});
 }
 
-TEST_CASE("openhaptics: a library that does not know a limit of damping gives none") {
+TEST_CASE("openhaptics: what the library does not tell is no limit, the reach, or a usual size") {
   LoadedHd fake;
+  const auto info = [] { return device::OpenHapticsDevice(settings_of_fake()).info(); };
   fake->tells_damping = false;
-  CHECK(device::OpenHapticsDevice(settings_of_fake()).info().max_damping_n_s_per_mm == 0.0);
-}
-
-TEST_CASE("openhaptics: without a usable workspace the device has the one that it reaches") {
-  LoadedHd fake;
+  CHECK(info().max_damping_n_s_per_mm == 0.0);
   fake->tells_usable_workspace = false;
-  const auto workspace = device::OpenHapticsDevice(settings_of_fake()).info().workspace;
-  REQUIRE(workspace);
-  CHECK(workspace->least_mm == Vec3{-210.0, -110.0, -85.0});
-  CHECK(workspace->greatest_mm == Vec3{210.0, 205.0, 130.0});
-}
-
-TEST_CASE("openhaptics: without any workspace the device still has a frame of its own") {
-  LoadedHd fake;
-  fake->tells_usable_workspace = false;
+  CHECK(info().workspace.value().least_mm == Vec3{-210.0, -110.0, -85.0});
+  CHECK(info().workspace.value().greatest_mm == Vec3{210.0, 205.0, 130.0});
   fake->tells_max_workspace = false;
-  const auto workspace = device::OpenHapticsDevice(settings_of_fake()).info().workspace;
-  REQUIRE(workspace);
-  CHECK(workspace->greatest_mm - workspace->least_mm == Vec3{160.0, 120.0, 70.0});
+  const device::Workspace usual = info().workspace.value();
+  CHECK(usual.greatest_mm - usual.least_mm == Vec3{160.0, 120.0, 70.0});
 }
 
 TEST_CASE("openhaptics: position and buttons arrive as the library gives them") {
@@ -379,17 +346,22 @@ TEST_CASE("openhaptics: a library with references that nothing resolves is used 
   CHECK_THAT(listing_with(TOUCHTRIAL_UNRESOLVED_HD).model, holds_text("Touch"));
 }
 
-TEST_CASE("the list of openhaptics says what is missing: device, library, function") {
+TEST_CASE("openhaptics: what is missing is listed, and refused: device, library, function") {
   fakes::LoadedHd fake;
   fake->opens_by = 0;
   const auto [library, missing] = GENERATE(
-      table<const char*, const char*>({{TOUCHTRIAL_FAKE_HD, "plug it in"},
-                                       {"/nowhere/libHD.so", "install the vendor's OpenHaptics"},
+      table<const char*, const char*>({{TOUCHTRIAL_FAKE_HD, "no such device (0x300)"},
+                                       {TOUCHTRIAL_FAKE_HD, "plug it in"},
+                                       {"/nowhere/libHD.so", "openhaptics.library"},
                                        {TOUCHTRIAL_PARTIAL_HD, "has no function hdUnschedule"}}));
   const device::DeviceListing listing = listing_with(library);
   CHECK_FALSE(listing.present);
   REQUIRE(listing.missing.size() == 1);
   CHECK_THAT(listing.missing[0], holds_text(missing));
+  device::OpenHapticsSettings settings;
+  settings.library = library;
+  CHECK_THROWS_AS(device::OpenHapticsDevice(settings), DeviceError);
+  CHECK_THROWS_WITH(device::OpenHapticsDevice(settings), holds_text(missing));
 }
 
 TEST_CASE("openhaptics is opened through the registry by its name") {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "device/falcon/rig/falcon_rig.hpp"
+#include "device/passing_device.hpp"
 #include "device/plugin/plugin_device.hpp"
 #include "device/servo/servo_clock.hpp"
 
@@ -56,29 +57,18 @@ class LockstepClock final : public device::ServoClock {
 };
 
 /// The same clock for the servo's device: every `read` is a millisecond.
-class LockstepHaptics final : public device::HapticDevice {
+class LockstepHaptics final : public PassingDevice {
  public:
   /// \param device,clock  must outlive this
   LockstepHaptics(device::HapticDevice& device, LockstepClock& clock) noexcept
-      : device_(device), clock_(clock) {}
+      : PassingDevice(device), clock_(clock) {}
 
-  [[nodiscard]] device::DeviceInfo info() const override { return device_.info(); }
   [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
     clock_.pass_ms(1);
-    return device_.read(sample);
-  }
-  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
-    return device_.write(force_n);
-  }
-  void halt() noexcept override { device_.halt(); }
-  void rearm() noexcept override { device_.rearm(); }
-  [[nodiscard]] device::DeviceFault fault() const noexcept override { return device_.fault(); }
-  [[nodiscard]] device::DeviceReadiness readiness() const noexcept override {
-    return device_.readiness();
+    return PassingDevice::read(sample);
   }
 
  private:
-  device::HapticDevice& device_;
   LockstepClock& clock_;
 };
 

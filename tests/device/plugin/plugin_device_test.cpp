@@ -11,11 +11,11 @@
 #include "device/plugin/plugin_library.hpp"
 #include "device/registry.hpp"
 #include "support/catch.hpp"
+#include "support/environment.hpp"
 #include "support/temp_folder.hpp"
 
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 #include <thread>
 
@@ -29,15 +29,6 @@ device::PluginSettings example_with(const std::string& settings = "{}") {
 device::PluginSettings broken_by(const std::string& fault) {
   return {TOUCHTRIAL_BROKEN_PLUGIN, R"({"fault":")" + fault + R"("})"};
 }
-
-/// What the broken plug-in's library has wrong while this lives.
-class BrokenLibrary {
- public:
-  explicit BrokenLibrary(const char* how) { ::setenv("BROKEN_DEVICE", how, 1); }
-  ~BrokenLibrary() { ::unsetenv("BROKEN_DEVICE"); }
-  BrokenLibrary(const BrokenLibrary&) = delete;
-  BrokenLibrary& operator=(const BrokenLibrary&) = delete;
-};
 
 /// A plug-in's device in a test's time.
 struct PluginRig {
@@ -132,7 +123,7 @@ TEST_CASE("a plug-in gets no force before it is ready, after a halt, or without 
 }
 
 TEST_CASE("a plug-in that needs no enabling gets its forces, and zeros, all the same") {
-  const BrokenLibrary broken("no_enable");
+  const EnvironmentVariable broken("BROKEN_DEVICE", "no_enable");
   PluginRig rig({TOUCHTRIAL_BROKEN_PLUGIN, "{}"});
   rig.clock.pass_ms(1);
   CHECK(rig.motors_after({0.0, 1.0, 0.0}) == Vec3{0.0, 1.0, 0.0});
@@ -165,7 +156,7 @@ TEST_CASE("a library that is no plug-in, or half of one, is refused with what it
        {"no_name", "has no name of 1 to 32 letters"},
        {"control_name", "has no name of 1 to 32 letters"},
        {"long_name", "has no name of 1 to 32 letters"}}));
-  const BrokenLibrary broken(how);
+  const EnvironmentVariable broken("BROKEN_DEVICE", how);
   CHECK_THROWS_AS(device::PluginDevice({TOUCHTRIAL_BROKEN_PLUGIN, "{}"}), DeviceError);
   CHECK_THROWS_WITH(
       device::PluginDevice({TOUCHTRIAL_BROKEN_PLUGIN, "{}"}),

@@ -4,6 +4,7 @@
 #include "core/files.hpp"
 #include "device/flat_wall.hpp"
 #include "device/registry.hpp"
+#include "device/servo_fakes.hpp"
 #include "device/simulated/simulated_hand.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
@@ -14,21 +15,20 @@ namespace touchtrial {
 namespace {
 
 /// A wall with a damper, so that the force depends on velocity too.
-class DampedWall final : public device::ForceSource {
- public:
-  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
+ForceBy damped_wall() {
+  return ForceBy([](const device::DeviceSample& sample) -> Vec3 {
     if (sample.position_mm.z >= 0.0) return {};
     const Vec3& v = sample.velocity_mm_s;
     return {-0.001 * v.x, -0.001 * v.y, -0.4 * sample.position_mm.z - 0.0005 * v.z};
-  }
-};
+  });
+}
 
 std::vector<device::ServoSample> stroke_damped_wall() {
   RandomStream random(3, "replay_device_test");
   const device::HandOptions options{.explore_s = 4.0};
   device::SimulatedHand hand(options,
                              device::ExplorationPath({0.2, 500, 500}, {.duration_s = 4.0}, random));
-  DampedWall wall;
+  ForceBy wall = damped_wall();
   KeptSamples kept;
   REQUIRE(device::run_servo_in_virtual_time(hand, wall, kept, {}).end ==
           device::ServoEnd::hand_stopped);
@@ -40,7 +40,7 @@ TEST_CASE("a recorded session replayed through the servo gives the same forces")
   std::vector<Vec3> positions_mm;
   for (const device::ServoSample& sample : original) positions_mm.push_back(sample.position_mm);
   device::ReplayDevice replay({positions_mm, device::kServoRateHz});
-  DampedWall wall;
+  ForceBy wall = damped_wall();
   KeptSamples kept;
   const device::ServoReport report = device::run_servo_in_virtual_time(replay, wall, kept, {});
   CHECK(report.end == device::ServoEnd::hand_stopped);

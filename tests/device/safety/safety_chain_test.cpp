@@ -9,21 +9,6 @@
 namespace touchtrial {
 namespace {
 
-TEST_CASE("a force within the limit passes unchanged") {
-  device::SafetyChain safety(norm_limit_alone());
-  const device::SafeForce safe = safety.check({1.0, -2.0, 2.0}, {});
-  CHECK(safe.verdict == device::SafetyVerdict::passed);
-  CHECK(safe.force_n == Vec3{1.0, -2.0, 2.0});
-}
-
-TEST_CASE("a force past the limit is shortened in its direction") {
-  device::SafetyChain safety(norm_limit_alone(2.5));
-  const device::SafeForce safe = safety.check({3.0, 0.0, 4.0}, {});
-  CHECK(safe.verdict == device::SafetyVerdict::limited);
-  CHECK(safe.force_n == Vec3{1.5, 0.0, 2.0});
-  CHECK_FALSE(safety.faulted());
-}
-
 TEST_CASE("a force that is not finite sends zero and latches until it is re-armed") {
   const double bad = GENERATE(std::numeric_limits<double>::quiet_NaN(),
                               -std::numeric_limits<double>::infinity(), 1e300);
@@ -154,18 +139,6 @@ TEST_CASE("after re-arming, gate and ramp start again from where the hand is now
   CHECK_FALSE(safety.faulted());
 }
 
-TEST_CASE("motors that are warm get less than the norm limit") {
-  device::SafetyChain safety(
-      {.max_force_n = 3.0, .continuous_force_n = 1.0, .thermal_budget_s = 1.0});
-  Readings device;
-  REQUIRE(engage(safety, device, {0.0, 0.0, 3.0}) == Vec3{0.0, 0.0, 3.0});
-  for (int tick = 0; tick < 60'000; ++tick) {
-    static_cast<void>(safety.check({0.0, 0.0, 3.0}, device.next()));
-  }
-  CHECK(safety.sent_n().z == Approx(1.0).epsilon(0.05));
-  CHECK_FALSE(safety.faulted());
-}
-
 TEST_CASE("the force changes by at most the slew limit, also after an overrun") {
   device::SafetyChain safety({.max_slew_n_per_s = 200.0});
   Readings device;
@@ -252,21 +225,6 @@ TEST_CASE("norm and slew limits hold for the rendered force alone, and the suppo
       REQUIRE(safe.force_n.y == 3.0);
     }
   }
-}
-
-TEST_CASE("motors that carry a support keep less for the rendered force once they are warm") {
-  device::SafetyChain safety({.max_force_n = 3.0,
-                              .continuous_force_n = 1.0,
-                              .thermal_budget_s = 1.0,
-                              .max_support_n = 0.4});
-  Readings device;
-  static_cast<void>(engage(safety, device, {}));
-  device::SafeForce safe;
-  for (int tick = 0; tick < 60'000; ++tick) {
-    safe = safety.check({0.0, 0.0, 3.0}, device.next(), 1, {0.0, 0.0, 0.4});
-  }
-  CHECK(safe.force_n.z == Approx(1.0).epsilon(0.05));
-  CHECK(safe.rendered_n.z == Approx(0.6).epsilon(0.1));
 }
 
 TEST_CASE("a support that is not finite is a fault, and a fault takes the support away") {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <thread>
 
 namespace touchtrial {
 namespace {
@@ -116,54 +115,6 @@ TEST_CASE("an emergency stop, or a stall, sends zero at the very next tick and l
   REQUIRE(stopped.written.size() == stopped.asked_at + 2);
   CHECK(norm(stopped.written[stopped.asked_at]) > 1.0);
   CHECK(stopped.written.back() == Vec3{});
-}
-
-/// Keeps no list, as the run may last as long as another thread takes.
-class MeasuringDevice final : public device::HapticDevice {
- public:
-  [[nodiscard]] device::DeviceInfo info() const override { return {"measuring", "", 3.3, true}; }
-  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
-    sample.sequence = ++readings_;
-    if (readings_ == 1000) {
-      largest_change_n = 0.0;
-      under_force.store(true);
-    }
-    return device::DeviceStatus::ok;
-  }
-  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
-    largest_change_n = std::max(largest_change_n, norm(force_n - sent_n));
-    sent_n = force_n;
-    return device::DeviceStatus::ok;
-  }
-  void halt() noexcept override {}
-  void rearm() noexcept override {}
-
-  std::atomic<bool> under_force{false};
-  Vec3 sent_n;
-  double largest_change_n = 0.0;
-
- private:
-  std::uint64_t readings_ = 0;
-};
-
-TEST_CASE("a comfort stop between two threads ends the run without a step") {
-  MeasuringDevice device;
-  device::ServoControl control;
-  TextureForce force(1000.0, 0.0);
-  NoSamples sink;
-  device::VirtualClock clock;
-  device::ServoHooks hooks;
-  hooks.control = &control;
-  std::thread person([&] {
-    while (!device.under_force.load()) std::this_thread::yield();
-    control.comfort_stop();
-  });
-  const device::ServoOptions options{.limit_ticks = std::int64_t{1} << 60};
-  const device::ServoReport report = device::run_servo(device, force, sink, options, clock, hooks);
-  person.join();
-  CHECK(report.end == device::ServoEnd::comfort_stop);
-  CHECK(device.sent_n == Vec3{});
-  CHECK(device.largest_change_n < 0.02);
 }
 
 }  // namespace

@@ -140,25 +140,16 @@ TEST_CASE("to the watchdog a pause of the whole machine is no silence of the ser
   CHECK(watched.is_stopped());
 }
 
-/// Stands still at a tick until the watchdog has seen it.
-class StallingForce final : public device::ForceSource {
- public:
-  explicit StallingForce(const device::ServoControl& control) : control_(control) {}
-  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
-    while (sample.sequence == 200 && !control_.stall_seen()) std::this_thread::yield();
-    return {0.0, 0.0, 0.4};
-  }
-
- private:
-  const device::ServoControl& control_;
-};
-
 TEST_CASE("a run whose callback stands still ends as stalled, on the system's clock") {
   RestingDevice device;
   device::ServoControl control;
   std::atomic<std::int64_t> heartbeat{0};
   device::Watchdog watchdog(device, control, heartbeat, milliseconds(50));
-  StallingForce force(control);
+  // Stands still at a tick until the watchdog has seen it.
+  ForceBy force([&control](const device::DeviceSample& sample) {
+    while (sample.sequence == 200 && !control.stall_seen()) std::this_thread::yield();
+    return Vec3{0.0, 0.0, 0.4};
+  });
   NoSamples sink;
   device::VirtualClock clock;
   device::ServoHooks hooks;

@@ -2,25 +2,13 @@
 
 #include "device/flat_wall.hpp"
 #include "device/registry.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
-#include <cmath>
+#include <array>
 
 namespace touchtrial {
 namespace {
-
-class SteadyForce final : public device::ForceSource {
- public:
-  explicit SteadyForce(double z_n) : z_n_(z_n) {}
-  [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override {
-    ++asked;
-    return {0.0, 0.0, z_n_};
-  }
-  int asked = 0;
-
- private:
-  double z_n_;
-};
 
 /// Runs a sequence tick by tick and sends its forces unchanged.
 std::vector<double> forces_of(device::ForceSequence& sequence, std::int64_t ticks) {
@@ -34,8 +22,15 @@ std::vector<double> forces_of(device::ForceSequence& sequence, std::int64_t tick
 
 TEST_CASE(
     "a sequence of forces goes smoothly from one to the other and asks only the one that acts") {
-  SteadyForce first(1.0);
-  SteadyForce second(3.0);
+  std::array<int, 2> asked{};
+  const auto counted = [&asked](std::size_t which, double z_n) {
+    return ForceBy([&asked, which, z_n](const device::DeviceSample&) {
+      ++asked.at(which);
+      return Vec3{0.0, 0.0, z_n};
+    });
+  };
+  ForceBy first = counted(0, 1.0);
+  ForceBy second = counted(1, 3.0);
   device::ForceSequence sequence(first, second, 100, 200);
   const std::vector<double> forces = forces_of(sequence, 400);
   CHECK(forces[99] == 1.0);
@@ -48,13 +43,12 @@ TEST_CASE(
     greatest_step = std::max(greatest_step, forces[i] - forces[i - 1]);
   }
   CHECK(greatest_step < 1.51 * 2.0 / 200.0);
-  CHECK(first.asked == 300);
-  CHECK(second.asked == 300);
+  CHECK(asked == std::array{300, 300});
 }
 
 TEST_CASE("a sequence of forces reports what the hand met of each") {
-  SteadyForce first(0.0);
-  SteadyForce second(2.0);
+  ConstantForce first({0.0, 0.0, 0.0});
+  ConstantForce second({0.0, 0.0, 2.0});
   device::ForceSequence sequence(first, second, 30, 1);
   (void)forces_of(sequence, 50);
   CHECK(sequence.first().ticks == 30);
@@ -65,8 +59,8 @@ TEST_CASE("a sequence of forces reports what the hand met of each") {
 }
 
 TEST_CASE("the change from one force to the other counts the ticks that an overrun left out") {
-  SteadyForce first(1.0);
-  SteadyForce second(3.0);
+  ConstantForce first({0.0, 0.0, 1.0});
+  ConstantForce second({0.0, 0.0, 3.0});
   device::ForceSequence sequence(first, second, 10, 10);
   sequence.record({{}, {}, 50});
   CHECK(sequence.force_n({}).z == 3.0);

@@ -10,6 +10,7 @@
 #include "device/servo/flight_recorder.hpp"
 #include "device/servo/sample_ring.hpp"
 #include "device/servo/servo_clock.hpp"
+#include "device/servo_fakes.hpp"
 #include "device/simulated/simulated_hand.hpp"
 #include "support/catch.hpp"
 
@@ -30,17 +31,12 @@ device::SimulatedHand stroking_hand() {
 }
 
 /// A wall that also calls a function.
-class BusyWall final : public device::ForceSource {
- public:
-  explicit BusyWall(std::function<void()> work) : work_(std::move(work)) {}
-  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
-    work_();
+ForceBy busy_wall(std::function<void()> work) {
+  return ForceBy([work = std::move(work)](const device::DeviceSample& sample) {
+    work();
     return FlatWall().force_n(sample);
-  }
-
- private:
-  std::function<void()> work_;
-};
+  });
+}
 
 RealtimeOffences offences_of(device::HapticDevice& device, device::ForceSource& force,
                              device::ServoClock& clock, std::int64_t ticks) {
@@ -98,18 +94,18 @@ TEST_CASE("a force source that takes memory in the loop is caught") {
   device::VirtualClock clock;
   SECTION("by growing") {
     std::vector<std::string> grown;
-    BusyWall wall([&] { grown.emplace_back(100, 'x'); });
+    ForceBy wall = busy_wall([&] { grown.emplace_back(100, 'x'); });
     CHECK(offences_of(hand, wall, clock, 10).allocations >= 100);
   }
   SECTION("by malloc") {
     void* volatile block = nullptr;
-    BusyWall wall([&] { block = block == nullptr ? std::malloc(10) : block; });
+    ForceBy wall = busy_wall([&] { block = block == nullptr ? std::malloc(10) : block; });
     CHECK(offences_of(hand, wall, clock, 10).allocations == 1);
     std::free(block);
   }
   SECTION("by giving it back") {
     void* volatile block = std::malloc(10);
-    BusyWall wall([&] {
+    ForceBy wall = busy_wall([&] {
       std::free(block);
       block = nullptr;
     });
@@ -123,12 +119,12 @@ TEST_CASE("a force source that locks in the loop is caught") {
   device::VirtualClock clock;
   SECTION("a mutex") {
     std::mutex mutex;
-    BusyWall wall([&] { const std::lock_guard lock(mutex); });
+    ForceBy wall = busy_wall([&] { const std::lock_guard lock(mutex); });
     CHECK(offences_of(hand, wall, clock, 10).locks >= 10);
   }
   SECTION("a shared mutex") {
     std::shared_mutex mutex;
-    BusyWall wall([&] { const std::shared_lock lock(mutex); });
+    ForceBy wall = busy_wall([&] { const std::shared_lock lock(mutex); });
     CHECK(offences_of(hand, wall, clock, 10).locks >= 10);
   }
 }

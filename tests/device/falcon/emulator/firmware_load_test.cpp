@@ -35,59 +35,6 @@ int load(FalconHost& host, const Bytes& image, std::size_t block_size = 62) {
   return -1;
 }
 
-TEST_CASE("emulated falcon: firmware loads block by block and then answers packets") {
-  FalconEmulator falcon({.boot_loader = {.image = dummy_image()}});
-  FalconHost host(falcon);
-  CHECK_FALSE(falcon.firmware_runs());
-  CHECK(load(host, dummy_image()) == -1);
-  CHECK(falcon.firmware_runs());
-  CHECK(falcon.image() == dummy_image());
-  CHECK(falcon.loads() == 1);
-  CHECK(host.exchange({}));
-  CHECK(falcon.complaints().empty());
-  CHECK(falcon.requests().size() == 15);
-  CHECK(falcon.requests().front() == ControlRequest{0x40, 0, 1, 0});
-  CHECK(falcon.requests()[3] == ControlRequest{0x40, 3, 0x4138, 0});
-}
-
-TEST_CASE("emulated falcon: without firmware no packet is answered") {
-  FalconEmulator falcon;
-  FalconHost host(falcon);
-  CHECK_FALSE(host.exchange({}));
-  host.set_up_for_running();
-  CHECK_FALSE(host.exchange({}));
-  CHECK_FALSE(falcon.firmware_runs());
-}
-
-TEST_CASE("emulated falcon: it may ignore greetings, and begin its answer with a zero") {
-  FalconEmulator falcon({.boot_loader = {.unanswered_greetings = 3, .leading_zero = true}});
-  FalconHost host(falcon);
-  host.set_up_for_greeting();
-  for (int i = 0; i < 3; ++i) CHECK(host.answer_to(kGreeting).empty());
-  CHECK(host.answer_to(kGreeting) == Bytes{0x00, 0x0A, 0x44, 0x2C, 0x0D});
-}
-
-TEST_CASE("emulated falcon: bad loads have a wrong echo or none, and a later one succeeds") {
-  const bool silent = GENERATE(false, true);
-  FalconEmulator falcon({.boot_loader = {.bad_loads = 2, .bad_block = 5, .silent_block = silent}});
-  FalconHost host(falcon);
-  CHECK(load(host, dummy_image()) == 5);
-  CHECK(load(host, dummy_image()) == 5);
-  CHECK_FALSE(falcon.firmware_runs());
-  CHECK(load(host, dummy_image()) == -1);
-  CHECK(falcon.firmware_runs());
-  CHECK(falcon.loads() == 3);
-  CHECK(falcon.complaints().empty());
-}
-
-TEST_CASE("emulated falcon: bytes that are not its firmware are echoed and do not run") {
-  FalconEmulator falcon({.boot_loader = {.image = dummy_image()}});
-  FalconHost host(falcon);
-  CHECK(load(host, dummy_image(7913)) == -1);
-  CHECK_FALSE(falcon.firmware_runs());
-  CHECK_FALSE(host.exchange({}));
-}
-
 TEST_CASE("emulated falcon: blocks of more than 62 bytes are cut and cause a complaint") {
   FalconEmulator falcon;
   FalconHost host(falcon);

@@ -65,17 +65,6 @@ struct Rig {
   FlatWallServo servo;
 };
 
-TEST_CASE("hand on falcon: homing moves every axis far enough, and the grip returns to rest") {
-  Rig rig(kTable, false);
-  rig.hand.home();
-  CHECK_FALSE(rig.hand.at_rest());
-  for (int i = 0; i < 1000; ++i) rig.servo.tick();
-  CHECK(rig.falcon.all_homed());
-  CHECK(rig.hand.at_rest());
-  CHECK(norm(rig.falcon.position_mm() - Vec3{0.0, 15.0, 0.0}) < 1e-9);
-  CHECK(rig.falcon.complaints().empty());
-}
-
 TEST_CASE("hand on falcon: a wall through packets and legs feels like a wall written directly") {
   const device::PlanePlacement placement = GENERATE(kTable, kWall);
   Rig rig(placement, true);
@@ -104,22 +93,6 @@ TEST_CASE("hand on falcon: a wall through packets and legs feels like a wall wri
   for (int i = 500; i < 1000; i += 10) {
     REQUIRE(norm(*(landed + i) - *(landed_directly + i)) < 0.3);
   }
-}
-
-TEST_CASE("hand on falcon: one exploration after another, without a jump") {
-  Rig rig(kTable, true);
-  Vec3 last = rig.falcon.position_mm();
-  for (int round = 1; round <= 3; ++round) {
-    rig.hand.explore(hand_for(0.3));
-    for (int i = 0; !rig.hand.at_rest(); ++i) {
-      REQUIRE(i < 10000);
-      rig.servo.tick();
-      REQUIRE(norm(rig.falcon.position_mm() - last) < 1.0);
-      last = rig.falcon.position_mm();
-    }
-    CHECK(rig.hand.explorations() == round);
-  }
-  CHECK(norm(last - Vec3{0.0, 15.0, 0.0}) < 1e-9);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "device/falcon/emulator/falcon_emulator.hpp"
 #include "device/falcon/falcon_device.hpp"
 #include "device/falcon/ftdi_transport.hpp"
+#include "device/passing_device.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -81,32 +82,18 @@ class Lockstep {
 
 /// The same device, with one exchange for each tick of the servo: every `read` runs one, which
 /// sends the force of the last `write`.
-class LockstepDevice : public device::HapticDevice {
+class LockstepDevice : public PassingDevice {
  public:
   /// \param device,lockstep  must outlive this
   LockstepDevice(device::HapticDevice& device, Lockstep& lockstep) noexcept
-      : device_(device), lockstep_(lockstep) {}
+      : PassingDevice(device), lockstep_(lockstep) {}
 
-  [[nodiscard]] device::DeviceInfo info() const override { return device_.info(); }
   [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
     lockstep_.step();
-    return device_.read(sample);
-  }
-  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
-    return device_.write(force_n);
-  }
-  [[nodiscard]] Vec3 support_force_n(const device::DeviceSample& sample) noexcept override {
-    return device_.support_force_n(sample);
-  }
-  void halt() noexcept override { device_.halt(); }
-  void rearm() noexcept override { device_.rearm(); }
-  [[nodiscard]] device::DeviceFault fault() const noexcept override { return device_.fault(); }
-  [[nodiscard]] device::DeviceReadiness readiness() const noexcept override {
-    return device_.readiness();
+    return PassingDevice::read(sample);
   }
 
  private:
-  device::HapticDevice& device_;
   Lockstep& lockstep_;
 };
 

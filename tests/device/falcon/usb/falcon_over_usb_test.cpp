@@ -221,12 +221,6 @@ TEST_CASE("a Falcon that is unplugged while it is opened is reported as gone") {
   CHECK(falcon.usb.open_handles() == 0);
 }
 
-TEST_CASE("a Falcon that one program has open cannot be opened by a second one") {
-  PluggedFalcon falcon;
-  const FalconDevice device(open_usb_falcon(""), {});
-  CHECK_THROWS_WITH(open_usb_falcon(""), holds_text("another program uses it"));
-}
-
 TEST_CASE("the registry lists a Falcon with what is missing, and opens it") {
   device::DeviceSettings settings;
   const device::DeviceDriver& driver = device::device_driver("falcon");

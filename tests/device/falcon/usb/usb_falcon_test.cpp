@@ -294,20 +294,5 @@ TEST_CASE(
   CHECK(device.open_handles() == 0);
 }
 
-TEST_CASE("a Falcon that is plugged in again is found and opened again") {
-  Loopback model;
-  ShimmedUsbDevice device(model);
-  auto transport = open_usb_falcon("");
-  Collector collector;
-  transport->start_stream(collector);
-  device.unplug();
-  CHECK(find_usb_falcons().empty());
-  device.plug();
-  CHECK(find_usb_falcons().at(0).where == "USB bus 1 port 2, address 8");
-  CHECK(serve_until(*transport, [&] { return transport->lost(); }));
-  transport = open_usb_falcon("");
-  CHECK(transport->send(std::array<std::uint8_t, 1>{9}, milliseconds(1000)) == 1);
-}
-
 }  // namespace
 }  // namespace touchtrial::device::falcon
