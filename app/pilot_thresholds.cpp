@@ -3,6 +3,8 @@
 #include "analysis/results.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
+#include "device/registry.hpp"
+#include "device/simulated/simulated_hand.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/stimulus_levels.hpp"
@@ -85,7 +87,29 @@ std::vector<std::pair<std::string, double>> means_by_standard(const design::Stud
   return means;
 }
 
-double pilots_db(const design::Study& study, const device::DeviceModel& device) {
+/// Thresholds hold for the device on which they were measured.
+void require_device(const design::Study& study, const store::StudyStore& store,
+                    const design::Study& pilots, const device::DeviceModel& device) {
+  const device::DeviceDriver* const driver = device::driver_of_model(device.name);
+  std::string other;
+  for (const store::SessionRow& session : store.sessions()) {
+    if (session.erased || session.excluded || !session.replaced_by.empty()) continue;
+    const bool is_same = session.simulated ? session.device == device::words_of_simulated(device)
+                                           : driver == nullptr || session.device == driver->name;
+    if (!is_same) other = session.device;
+  }
+  if (other.empty() && !pilots.device.empty()) {
+    const std::string stated = simulation::device_of(pilots).name;
+    if (stated != device.name) other = stated;
+  }
+  if (other.empty()) return;
+  refuse(study, fmt::format("its thresholds were measured on '{}', and this study is for {}; "
+                            "measure them on that device, or change /rendering/device",
+                            other, device.name));
+}
+
+simulation::LevelCurve pilots_curve(const design::Study& study,
+                                    const device::DeviceModel& device) {
   const std::filesystem::path database = study.folder / study.level->curve;
   const store::StudyStore store =
       store::StudyStore::open(database, store::StudyStore::Access::read_only);
@@ -93,7 +117,11 @@ double pilots_db(const design::Study& study, const device::DeviceModel& device) 
     refuse(study, "has no key beside it; put the key of its study there as " +
                       key_path_for(database, {}).string());
   }
+  if (const auto fault = store.first_fault(store::TraceCheck::skip)) {
+    refuse(study, "is damaged or was altered; `touchtrial verify` says where");
+  }
   const design::StudyKey key = key_of_database(store, database, {});
+  require_device(study, store, key.study, device);
   const auto means = means_by_standard(study, report_of(study, store, key));
   const engine::Pack pack(key.pack_folder);
   const session::StimulusSource source(pack, key.study.rendering);
@@ -108,7 +136,9 @@ double pilots_db(const design::Study& study, const device::DeviceModel& device) 
     // The level of the whole gain is what the threshold lies below it.
     sum += measured_db + levels.levels[place].front().db;
   }
-  return sum / static_cast<double>(means.size());
+  return {.curve = engine::ThresholdCurve::israr_2006,
+          .pilots_db = sum / static_cast<double>(means.size()),
+          .simulated_pilots = store.commitment().simulated};
 }
 
 }  // namespace
@@ -118,7 +148,7 @@ simulation::LevelCurve curve_of(const design::Study& study, const device::Device
     if (study.level.value().curve == engine::name_of(curve)) return {curve, {}};
   }
   try {
-    return {engine::ThresholdCurve::israr_2006, pilots_db(study, device)};
+    return pilots_curve(study, device);
   } catch (const StudyError&) {
     throw;
   } catch (const Error& error) {

@@ -40,6 +40,9 @@ constexpr const char* kWhatPilotsSay =
     "its device, would tell it from the blank plane in 79 % of three intervals: the thresholds of "
     "its detection study (/rendering/gains/curve), carried to these stimuli by a modelled device "
     "in a simulated hand. The blank plane itself: power above the curve.";
+constexpr const char* kWhatSimulatedPilotsSay =
+    "SIMULATED: decibels above what simulated pilots would tell from the blank plane in 79 % of "
+    "three intervals, a rehearsal of the detection study that people must take.";
 constexpr const char* kWhoseItIs =
     "Provisional: until a detection study of pilots takes the curve's place (docs/perception.md). "
     "The curves are other people's, passive and steady; active movement raises thresholds. Whether "
@@ -105,8 +108,9 @@ std::string gain_needed(const StimulusLevels& levels, const std::string& device)
 
 analysis::Table table_in_all(const design::Study& study, const StimulusLevels& levels) {
   analysis::Table table{"levels",
-                        levels.provisional ? "Provisional levels above the threshold, dB"
-                                           : "Levels above the laboratory's threshold, dB",
+                        levels.simulated_pilots ? "Levels above simulated pilots' threshold, dB"
+                        : levels.provisional    ? "Provisional levels above the threshold, dB"
+                                                : "Levels above the laboratory's threshold, dB",
                         {{"stimulus", analysis::Align::left}}};
   const std::vector<std::string> devices = devices_of(levels);
   for (const std::string& device : devices) table.columns.push_back({device});
@@ -117,7 +121,9 @@ analysis::Table table_in_all(const design::Study& study, const StimulusLevels& l
     gains.emplace_back(gain_needed(levels, device));
   }
   table.rows.push_back(std::move(gains));
-  table.notes = {{levels.provisional ? kWhatItIs : kWhatPilotsSay},
+  table.notes = {{levels.simulated_pilots ? kWhatSimulatedPilotsSay
+                  : levels.provisional    ? kWhatItIs
+                                          : kWhatPilotsSay},
                  {"With the gains times the number in the last row, every stimulus would stand 10 "
                   "dB up, as far as motors and stability allow."}};
   if (study.trials.rove_db > 0.0) {
@@ -448,7 +454,7 @@ std::vector<std::string> level_warnings(const design::Study& study, const Stimul
       study.rendering.gains ? "gains" : "pitch_mm", weak, levels.stimuli.size(),
       simulation::kMinLevelDb, device, name_of_stimulus(study, levels.stimuli[weakest]),
       range_cell(levels.levels[weakest], device),
-      study.rendering.gains ? "raise them" : "double it, with crops of half the side")};
+      study.rendering.gains ? "raise them" : "double it and filter_mm, with crops of half the side")};
 }
 
 std::string range_words(const PlaneLevels& levels) {

@@ -115,8 +115,9 @@ std::string levers(const design::Study& study, std::span<const engine::FieldView
   constexpr double kWider = 2.0;
   std::vector<engine::FieldView> wider(views.begin(), views.end());
   for (engine::FieldView& view : wider) view.geometry.pitch_mm *= kWider;
-  name(fmt::format("/rendering/pitch_mm {:g} with crops of half the side",
-                   kWider * study.rendering.pitch_mm),
+  // The filter's pixels stay, as the fields are not extracted anew.
+  name(fmt::format("/rendering/pitch_mm {:g} and filter_mm {:g} with crops of half the side",
+                   kWider * study.rendering.pitch_mm, kWider * study.rendering.filter_mm),
        largest(wider, study.rendering, device, bound));
   return text;
 }
@@ -135,7 +136,7 @@ void apply(const LevelCurve& curve, StimulusLevels& levels) {
       if (level.db != kNoLevelDb) level.db = curve.level(level.db);
     }
   }
-  levels.provisional = false;
+  levels.provisional = levels.simulated_pilots = curve.simulated_pilots;
 }
 
 LevelledGains gains_at_level(const design::StudyCodes& key,

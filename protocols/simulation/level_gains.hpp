@@ -25,6 +25,7 @@ struct LevelCurve {
   /// How much less sensitive the people of this laboratory were on this device, dB; nothing: it has
   /// measured no thresholds.
   std::optional<double> pilots_db;
+  bool simulated_pilots = false;  ///< those were simulated people
 
   /// \return a level by the curve as one by this
   [[nodiscard]] double level(double db) const noexcept { return db - pilots_db.value_or(0.0); }

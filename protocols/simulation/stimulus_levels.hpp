@@ -52,6 +52,7 @@ struct StimulusLevels {
   PlaneLevels blank;                           ///< of the same wall without a texture
   /// By curves of other people; false: by thresholds that the laboratory measured on its device.
   bool provisional = true;
+  bool simulated_pilots = false;  ///< by thresholds of simulated people
 };
 
 /// Below this a stimulus is warned of.

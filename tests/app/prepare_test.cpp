@@ -180,15 +180,16 @@ TEST_CASE("thresholds of pilots take the curve's place, and a file that is none 
   replace_file(study.path() / "pilots.json", pilots.dump());
   study.done("simulate @pilots.json --on ideal --participants 4 --db @pilots.db");
   json wanted = study_of("classification");
-  const auto prepare = [&](const std::string& curve) {
-    wanted["rendering"] = {{"device", "ideal"}, {"gains", {{"level_db", 3}, {"curve", curve}}}};
+  const auto prepare = [&](const std::string& curve, const std::string& device = "ideal") {
+    wanted["rendering"] = {{"device", device}, {"gains", {{"level_db", 3}, {"curve", curve}}}};
     replace_file(study.path() / "cloths.json", wanted.dump());
     return study.type("prepare @cloths.json --json");
   };
   const ProgramResult by_pilots = succeeded(prepare("pilots.db"));
   const json prepared = json::parse(by_pilots.output);
-  CHECK(prepared["provisional"] == false);
+  CHECK(prepared["provisional"] == true);  // as the pilots are simulated
   CHECK(prepared["stimuli"][0]["levels"][0]["db"] == prepared["stimuli"][0]["levels"][1]["db"]);
+  check_refused(prepare("pilots.db", "touch"), 2, {"/rendering/gains/curve", "/rendering/device"});
   const ProgramResult missing = prepare("missing.db");
   CHECK(missing.exit_code != 0);
   CHECK_THAT(missing.errors, holds_text("missing.db"));
