@@ -5,12 +5,15 @@
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "device/acceptance/rehearsal.hpp"
+#include "device/platform/dynamic_library.hpp"
 #include "device/registry.hpp"
 #include "protocols/design/refusal.hpp"
 #include "support/catch.hpp"
+#include "support/temp_folder.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -323,6 +326,21 @@ TEST_CASE("a stand-in is called one, and its file settles no fact") {
   const BringUp read = device::parse_bring_up(device::bring_up_json(record), "marked");
   CHECK(read.stand_in == "an emulator");
   for (const device::UnverifiedFact& fact : falcon_facts()) CHECK_FALSE(read.settles(fact));
+}
+
+TEST_CASE("a loaded stand-in is marked under any name") {
+  const TempFolder folder;
+  device::DeviceInfo info;
+  info.name = "openhaptics";
+  device::DeviceSettings settings;
+  for (const auto& [library, name] : {std::pair{TOUCHTRIAL_FAKE_HD, "libHD.so.3.4"},
+                                      std::pair{TOUCHTRIAL_MAKER_DHD, "libdhd.so.3"}}) {
+    settings.openhaptics.library = folder.path() / name;
+    std::filesystem::copy_file(library, settings.openhaptics.library);
+    CHECK(device::stand_in_of(info, settings).empty());
+    const device::DynamicLibrary loaded(settings.openhaptics.library, device::Unload::never, "");
+    CHECK_FALSE(device::stand_in_of(info, settings).empty());
+  }
 }
 
 TEST_CASE("a file settles no fact by what was never found") {
