@@ -80,7 +80,7 @@ TEST_CASE("device fit accepts any plane for a device without a frame of its own"
 }
 
 TEST_CASE("device fit does not say that a plane fits a model without a workspace") {
-  const ProgramResult result = succeeded(FitFolder(600, 600).fit({"--device", "premium"}));
+  const ProgramResult result = succeeded(FitFolder(600, 600).fit({"--device", "premium_1_5"}));
   CHECK_THAT(result.output, holds_text("has no workspace") && !holds_text("fits"));
 }
 
