@@ -74,7 +74,7 @@ std::string identity_line(const device::BringUp& record) {
   if (!record.firmware.empty()) text += ", firmware " + record.firmware;
   if (!record.library.empty()) text += ", library " + record.library;
   if (!record.device_mark.empty()) text += ", mark " + record.device_mark;
-  return text + "; touchtrial " + record.program + "\n";
+  return text + "; " + record.program + "\n";
 }
 
 std::string facts_text(const std::vector<const device::UnverifiedFact*>& facts,
@@ -111,15 +111,15 @@ int read_file_of_bring_up(const BringUpArguments& arguments) {
   const Verdict verdict = verdict_of(record);
   if (arguments.json) {
     print(json_text(nlohmann::ordered_json{{"driver", record.driver},
-                                           {"stand_in", record.stand_in},
+                                           {"stand_in", stand_in_of(record)},
                                            {"ended", name_of(record.ended)},
                                            {"settled", ids_of(verdict.settled)},
                                            {"open", ids_of(verdict.open)}}));
     return 0;
   }
   std::string text = identity_line(record);
-  if (!record.stand_in.empty()) {
-    text += "STAND-IN, NO HARDWARE: " + record.stand_in + "; it settles no fact\n";
+  if (const std::string stand_in = stand_in_of(record); !stand_in.empty()) {
+    text += "STAND-IN, NO HARDWARE: " + stand_in + "; it settles no fact\n";
   }
   text += fmt::format("ended: {}{}{}\n", name_of(record.ended), record.why.empty() ? "" : ": ",
                       record.why);

@@ -82,6 +82,10 @@ std::string source_words(const StudyFit& fit) {
 }
 
 std::string workspace_text(const StudyFit& fit) {
+  if (!fit.workspace && fit.model) {
+    return "not compared with a frame: the device model " + *fit.model +
+           " has no workspace; connect the device, or give a model file with a workspace\n";
+  }
   if (!fit.workspace) return "accepts any plane: it has no frame of its own\n";
   const Vec3 size = fit.workspace->greatest_mm - fit.workspace->least_mm;
   return fmt::format("workspace {:.1f} x {:.1f} x {:.1f} mm{}, {}\n", size.x, size.y, size.z,
@@ -224,6 +228,7 @@ std::string fit_text(const StudyFit& fit) {
                   fit.plane.height_px, fit.plane.pitch_mm, fit.device);
   text += workspace_text(fit) + stiffness_text(fit);
   if (!fit.fit.fits) return text;
+  if (!fit.workspace && fit.model) return text;
   if (!fit.fit.placement) return text + "fits\n";
   const Vec3 origin = fit.fit.placement->origin_mm;
   return text + fmt::format(

@@ -21,6 +21,18 @@ std::string folded(std::string_view name) {
   return text;
 }
 
+std::string without_signs(std::string_view name) {
+  std::string text = folded(name);
+  std::erase_if(text, [](char c) { return c == '_' || c == '.'; });
+  return text;
+}
+
+std::string digits_of(std::string_view name) {
+  std::string text(name);
+  std::erase_if(text, [](char c) { return c < '0' || c > '9'; });
+  return text;
+}
+
 }  // namespace
 
 int edit_distance(std::string_view a_name, std::string_view b_name) {
@@ -53,6 +65,23 @@ std::optional<std::string_view> nearest_name(std::string_view name,
     smallest = distance;
   }
   return nearest;
+}
+
+std::optional<std::string_view> nearest_product(std::string_view name,
+                                                std::span<const std::string_view> known) {
+  if (name.size() > kLongestName) return std::nullopt;
+  const std::string wanted = without_signs(name);
+  const std::string number = digits_of(name);
+  std::vector<std::string_view> candidates;
+  for (const std::string_view candidate : known) {
+    if (without_signs(candidate) == wanted) return candidate;
+    const std::string other = digits_of(candidate);
+    if (number.empty() || other.empty() || number == other) candidates.push_back(candidate);
+  }
+  const std::string family = wanted.substr(0, wanted.find_last_not_of("0123456789") + 1);
+  const auto is_family = [&](std::string_view one) { return without_signs(one) == family; };
+  const auto found = std::ranges::find_if(candidates, is_family);
+  return found != candidates.end() ? *found : nearest_name(name, candidates);
 }
 
 }  // namespace touchtrial

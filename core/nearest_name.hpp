@@ -17,4 +17,9 @@ namespace touchtrial {
 [[nodiscard]] std::optional<std::string_view> nearest_name(std::string_view name,
                                                            std::span<const std::string_view> known);
 
+/// The same among names of products and models: dots, dashes and blanks do not count, a name that
+/// differs by these alone comes first, then the family of a numbered name; never another number.
+[[nodiscard]] std::optional<std::string_view> nearest_product(
+    std::string_view name, std::span<const std::string_view> known);
+
 }  // namespace touchtrial

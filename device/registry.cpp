@@ -81,7 +81,7 @@ const DeviceDriver& device_driver(const std::string& name) {
     const std::vector<std::string_view> names = known.names();
     if (std::ranges::find(names, name) != names.end()) return known;
   }
-  const auto nearest = nearest_name(name, device_names());
+  const auto nearest = nearest_product(name, device_names());
   throw UsageError(one_line(
       name + ": there is no such device or driver; " +
       (nearest ? "did you mean " + std::string(*nearest) + "?" : "see touchtrial device list")));
@@ -104,7 +104,7 @@ DeviceModel model_of_device(const std::string& name) {
   const std::vector<std::string> known = modelled_names();
   if (is_file || std::ranges::find(known, name) != known.end()) return device_model(name);
   const std::vector<std::string_view> views(known.begin(), known.end());
-  const auto nearest = nearest_name(name, views);
+  const auto nearest = nearest_product(name, views);
   throw UsageError(one_line(fmt::format(
       "{}: there is no model of such a device; {}known are {}, and files that end in .json", name,
       nearest ? "did you mean " + std::string(*nearest) + "? " : "", fmt::join(known, ", "))));

@@ -104,6 +104,9 @@ struct BringUp {
 ///   says so
 [[nodiscard]] std::string stand_in_of(const DeviceInfo& device, const DeviceSettings& settings);
 
+/// \return the same of what a file says of its device, its own mark first
+[[nodiscard]] std::string stand_in_of(const BringUp& record);
+
 /// \return what a file may say of a device: the serial number's hash, cut to 16 bits, which tells
 ///   two devices apart and fits thousands of serial numbers; texts in which the number was replaced
 [[nodiscard]] BringUp bring_up_of(const DeviceInfo& device);

@@ -12,7 +12,9 @@
 #include <span>
 #include <system_error>
 
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <link.h>
 
 namespace touchtrial::device {
 namespace {
@@ -97,6 +99,34 @@ Finding& noted(std::vector<Finding>& findings, const std::string& name) {
   return findings.back();
 }
 
+/// Whether numbers of a finding can have been measured.
+bool is_possible(const Finding& finding, Evidence evidence) {
+  const std::vector<double>& n = finding.numbers;
+  switch (evidence) {
+    case Evidence::lengths:
+      return n.size() == 1 && n[0] >= 1.0 && n[0] <= 500.0;
+    case Evidence::range:
+      return n.size() == 2 && n[0] < n[1];
+    case Evidence::weight:
+      return n.size() == 2 && n[0] > 0.0 && n[1] >= 0.0;
+    default:
+      return n.size() == 1 && n[0] > 0.0;
+  }
+}
+
+/// Whether readings of a way or a push, not the end alone, say that a sign is wrong.
+bool found_wrong(const BringUp& record) {
+  return std::ranges::any_of(kDeviceAxes, [&](DeviceAxis axis) {
+    const bool was_carried = norm(vec_of(record.find("carried " + std::string(name_of(axis))))) > 0;
+    const auto is_wrong = [&](int sign) {
+      const Finding* const moved = record.find("moved " + signed_name(sign, axis));
+      return moved != nullptr && moved->numbers.size() == 3 &&
+             sign_of_push(record, axis, sign) == PushSign::wrong;
+    };
+    return (was_carried && !was_carried_right(record, axis)) || is_wrong(1) || is_wrong(-1);
+  });
+}
+
 bool names_a_stand_in(std::string text) {
   std::ranges::transform(text, text.begin(), [](char letter) {
     return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
@@ -110,6 +140,26 @@ std::filesystem::path library_of(const std::string& driver, const DeviceSettings
   if (driver == "dhd") return settings.dhd.library;
   if (driver == "openhaptics") return settings.openhaptics.library;
   return driver == "plugin" ? settings.plugin.library : std::filesystem::path();
+}
+
+struct LoadedLibrary {
+  std::filesystem::path named;  ///< by the settings
+  std::filesystem::path file;   ///< canonical, of what the process has loaded by that name
+  bool says_so = false;         ///< it has the symbol of a stand-in
+};
+
+LoadedLibrary loaded_library(const std::filesystem::path& named) {
+  LoadedLibrary library{named, named};
+  if (named.empty()) return library;
+  std::error_code none;
+  if (void* const handle = dlopen(named.c_str(), RTLD_LAZY | RTLD_NOLOAD)) {
+    link_map* map = nullptr;
+    if (dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0) library.file = map->l_name;
+    library.says_so = dlsym(handle, "touchtrial_stand_in") != nullptr;
+    dlclose(handle);
+  }
+  library.file = std::filesystem::weakly_canonical(library.file, none);
+  return library;
 }
 
 /// A bus of umockdev, or of the kernel's own emulator of USB devices. A bus over a network is none:
@@ -194,13 +244,21 @@ bool BringUp::signs_confirmed() const {
 }
 
 bool BringUp::settles(const UnverifiedFact& fact) const {
-  if (!stand_in.empty() || fact.evidence == Evidence::none) return false;
-  if (fact.evidence == Evidence::answer) return find(fact.id) != nullptr;
-  if (fact.evidence == Evidence::signs) return signs_confirmed() || ended == BringUpEnd::wrong_sign;
+  if (!stand_in_of(*this).empty() || fact.evidence == Evidence::none) return false;
+  if (fact.evidence == Evidence::answer) {
+    return outcome(questions) == StepOutcome::done && find(fact.id) != nullptr;
+  }
+  if (fact.evidence == Evidence::signs) {
+    const bool all_done = outcome(ways) == StepOutcome::done && outcome(push) == StepOutcome::done;
+    return (all_done && signs_confirmed()) ||
+           (ended == BringUpEnd::wrong_sign && found_wrong(*this));
+  }
   const Evidence evidence = fact.evidence == Evidence::opened ? Evidence::readings : fact.evidence;
   return std::ranges::any_of(findings, [&](const Finding& finding) {
     const FindingKind* const kind = kind_of(finding.name);
-    return finding.step != questions && kind != nullptr && kind->shows == evidence;
+    return finding.step != questions && kind != nullptr && kind->shows == evidence &&
+           outcome(finding.step) == StepOutcome::done &&
+           (kind->words.empty() ? is_possible(finding, evidence) : !finding.word.empty());
   });
 }
 
@@ -210,10 +268,19 @@ std::string stand_in_of(const DeviceInfo& device, const DeviceSettings& settings
   for (const std::string& text : {device.model, device.firmware, device.library, device.serial}) {
     if (names_a_stand_in(text)) return "the device or its library calls itself a stand-in";
   }
-  if (names_a_stand_in(library_of(device.name, settings).filename().string())) {
-    return "the library's file has a stand-in's name";
+  const LoadedLibrary library = loaded_library(library_of(device.name, settings));
+  if (library.says_so) return "the library says that it is a stand-in";
+  if (names_a_stand_in(library.named.string()) || names_a_stand_in(library.file.string())) {
+    return "the library's file or folder has a stand-in's name";
   }
   return usb_is_emulated() ? "a USB bus of the machine is emulated" : "";
+}
+
+std::string stand_in_of(const BringUp& record) {
+  if (!record.stand_in.empty()) return record.stand_in;
+  const bool is_named = names_a_stand_in(record.model) || names_a_stand_in(record.firmware) ||
+                        names_a_stand_in(record.library);
+  return is_named ? "the device or its library calls itself a stand-in" : "";
 }
 
 BringUp bring_up_of(const DeviceInfo& device) {

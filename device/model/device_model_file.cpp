@@ -360,7 +360,7 @@ DeviceModel device_model(const std::string& name) {
   if (name.find('/') != std::string::npos || name.ends_with(".json")) {
     return read_device_model(name);
   }
-  const auto nearest = nearest_name(name, names);
+  const auto nearest = nearest_product(name, names);
   throw UsageError(
       one_line(name + ": there is no such device model; " +
                (nearest ? "did you mean " + std::string(*nearest) + "?"

@@ -79,6 +79,11 @@ TEST_CASE("device fit accepts any plane for a device without a frame of its own"
   CHECK_THAT(result.output, holds_text("120.0 x 120.0 mm") && holds_text("fits"));
 }
 
+TEST_CASE("device fit does not say that a plane fits a model without a workspace") {
+  const ProgramResult result = succeeded(FitFolder(600, 600).fit({"--device", "premium_1_5"}));
+  CHECK_THAT(result.output, holds_text("has no workspace") && !holds_text("fits"));
+}
+
 TEST_CASE("device fit compares a study's stiffness with what the device says that it renders") {
   const auto fit = [](const std::string& wall, std::vector<std::string> more) {
     more.insert(more.end(), {"--device", "openhaptics"});

@@ -45,4 +45,14 @@ TEST_CASE("nearest_name finds a misspelt name, and nothing for an unrelated one"
   CHECK(nearest_name(std::string(100'000, 'g'), kKnown) == std::nullopt);
 }
 
+TEST_CASE("nearest_product prefers a name that differs by signs alone, and no other number") {
+  constexpr std::array<std::string_view, 5> kKnown = {"touch", "touch_x", "omega", "delta",
+                                                      "omega_3"};
+  CHECK(nearest_product("touchx", kKnown) == "touch_x");
+  CHECK(nearest_product("omega.3", kKnown) == "omega_3");
+  CHECK(nearest_product("delta.3", kKnown) == "delta");
+  CHECK(nearest_product("omega.7", kKnown) == "omega");
+  CHECK(nearest_product("omega.7", std::array<std::string_view, 1>{"omega_3"}) == std::nullopt);
+}
+
 }  // namespace touchtrial

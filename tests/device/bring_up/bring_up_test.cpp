@@ -5,12 +5,15 @@
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "device/acceptance/rehearsal.hpp"
+#include "device/platform/dynamic_library.hpp"
 #include "device/registry.hpp"
 #include "protocols/design/refusal.hpp"
 #include "support/catch.hpp"
+#include "support/temp_folder.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -316,14 +319,58 @@ TEST_CASE("a stand-in is called one, and its file settles no fact") {
   CHECK(is_stand_in([](auto& info, auto&) { info.model = "omega Simulator"; }));
   CHECK(is_stand_in([](auto& info, auto&) { info.library = "3.17 (EMULATED)"; }));
   CHECK(is_stand_in([](auto&, auto& settings) { settings.dhd.library = "/opt/libfake_dhd.so"; }));
-  CHECK_FALSE(
-      is_stand_in([](auto&, auto& settings) { settings.dhd.library = "/opt/fake/libdhd.so"; }));
+  CHECK(is_stand_in([](auto&, auto& settings) { settings.dhd.library = "/opt/fake/libdhd.so"; }));
 
   BringUp record = device::parse_bring_up(whole_file(), "whole");
   record.stand_in = "an emulator";
   const BringUp read = device::parse_bring_up(device::bring_up_json(record), "marked");
   CHECK(read.stand_in == "an emulator");
   for (const device::UnverifiedFact& fact : falcon_facts()) CHECK_FALSE(read.settles(fact));
+}
+
+TEST_CASE("a loaded stand-in is marked under any name") {
+  const TempFolder folder;
+  device::DeviceInfo info;
+  info.name = "openhaptics";
+  device::DeviceSettings settings;
+  for (const auto& [library, name] : {std::pair{TOUCHTRIAL_FAKE_HD, "libHD.so.3.4"},
+                                      std::pair{TOUCHTRIAL_MAKER_DHD, "libdhd.so.3"}}) {
+    settings.openhaptics.library = folder.path() / name;
+    std::filesystem::copy_file(library, settings.openhaptics.library);
+    CHECK(device::stand_in_of(info, settings).empty());
+    const device::DynamicLibrary loaded(settings.openhaptics.library, device::Unload::never, "");
+    CHECK_FALSE(device::stand_in_of(info, settings).empty());
+  }
+}
+
+TEST_CASE("a file settles no fact by what was never found") {
+  const auto is_settled = [](const std::string& id, auto&& change) {
+    BringUp record = device::parse_bring_up(whole_file(), "whole");
+    change(record);
+    return record.settles(fact_of("falcon", id));
+  };
+  CHECK(is_settled("lengths", [](BringUp&) {}));
+  CHECK_FALSE(is_settled("signs", [](BringUp& record) {
+    record.findings.clear();
+    record.outcomes = {};
+    record.ended = BringUpEnd::wrong_sign;
+  }));
+  CHECK_FALSE(is_settled("lengths", [](BringUp& r) { r.model = "omega.3 simulator"; }));
+  const device::UnverifiedFact readings{"readings", "", device::Evidence::readings};
+  for (const std::vector<double>& numbers : {std::vector{0.0}, std::vector{-5.0}, {}}) {
+    BringUp record = device::parse_bring_up(whole_file(), "whole");
+    CHECK(record.settles(readings));
+    record.note("new readings", numbers);
+    CHECK_FALSE(record.settles(readings));
+  }
+  for (const StepOutcome outcome : {StepOutcome::left_out, StepOutcome::failed}) {
+    BringUp record = device::parse_bring_up(whole_file(), "whole");
+    record.outcome(BringUpStep::rest) = outcome;
+    CHECK_FALSE(record.settles(readings));
+  }
+  CHECK_FALSE(is_settled("lengths", [](BringUp& record) {
+    for (const std::string axis : {"x", "y", "z"}) record.note("ruler " + axis, {0.0});
+  }));
 }
 
 TEST_CASE("a hostile file of a bring-up is refused at its place") {

@@ -217,6 +217,10 @@ using namespace touchtrial::fakes;  // NOLINT: what follows is the library's C i
 
 extern "C" {
 
+/// Tells a bring-up that this is no hardware.
+extern const int touchtrial_stand_in;
+const int touchtrial_stand_in = 1;
+
 FakeDhdExports* fake_dhd_exports() {
   static FakeDhdExports exports{state,
                                 reset,

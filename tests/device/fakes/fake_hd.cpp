@@ -156,6 +156,10 @@ using namespace touchtrial::fakes;  // NOLINT: what follows is the library's C i
 
 extern "C" {
 
+/// Tells a bring-up that this is no hardware.
+extern const int touchtrial_stand_in;
+const int touchtrial_stand_in = 1;
+
 struct FakeErrorInfo {
   std::uint32_t code;
   int internal;

@@ -537,6 +537,10 @@ using namespace touchtrial::fakes;  // NOLINT: what follows is the library's C i
 
 extern "C" {
 
+/// Tells a bring-up that this is no hardware.
+extern const int touchtrial_stand_in;
+const int touchtrial_stand_in = 1;
+
 MakerDhdExports* maker_dhd_exports() {
   static MakerDhdExports exports{state,
                                  reset,
