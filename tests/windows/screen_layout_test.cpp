@@ -474,6 +474,7 @@ TEST_CASE("while one of several planes is on, the screen says which and how far 
   device::PointerExchange pointer;
   const std::atomic<bool> pressed{false};
   std::atomic<int> explored{0};
+  const std::atomic<bool> has_lifted{GENERATE(true, false)};
   const session::IntervalStep interval{.trial = 1, .interval = 2, .of = 3, .hand_off = hand_off};
   app::ExploringScreen screen({practice ? &felt : nullptr,
                                mouse ? &pointer : nullptr,
@@ -481,7 +482,8 @@ TEST_CASE("while one of several planes is on, the screen says which and how far 
                                nullptr,
                                {1.0, 900, 900},
                                interval,
-                               &explored},
+                               &explored,
+                               &has_lifted},
                               context);
   const app::Canvas canvas = paper.draw(screen);
   CHECK(faults_of(canvas) == "");
