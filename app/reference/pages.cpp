@@ -303,8 +303,8 @@ std::vector<const CLI::App*> every_command(const CLI::App& command) {
 std::vector<const CLI::Option*> options_of(const CLI::App& command) {
   std::vector<const CLI::Option*> options =
       command.get_options([](const CLI::Option* option) { return !option->get_group().empty(); });
-  std::ranges::stable_partition(options,
-                                [](const auto* option) { return !option->nonpositional(); });
+  std::stable_partition(options.begin(), options.end(),
+                        [](const auto* option) { return !option->nonpositional(); });
   return options;
 }
 
