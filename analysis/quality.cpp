@@ -247,12 +247,10 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
                         {"stopped", sessions.stopped},     {"excluded", sessions.excluded},
                         {"replaced", sessions.replaced},   {"erased", sessions.erased},
                         {"withdrawn", sessions.withdrawn}, {"pilot", sessions.pilot}};
-  object["responses"] = {{"presented", quality.presented},
-                         {"answered", quality.answered},
-                         {"no_response", quality.no_response},
-                         {"paused", quality.paused},
-                         {"interrupted", quality.interrupted},
-                         {"not_repeated", quality.not_repeated}};
+  object["responses"] = {
+      {"presented", quality.presented},     {"answered", quality.answered},
+      {"no_response", quality.no_response}, {"paused", quality.paused},
+      {"interrupted", quality.interrupted}, {"not_repeated", quality.not_repeated}};
   object["validity"] = {
       {"trials", quality.with_trace},
       {"valid", quality.valid},

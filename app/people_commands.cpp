@@ -119,7 +119,8 @@ int note(const PeopleArguments& arguments) {
 constexpr const char* kOtherCopies =
     "destroy every other copy of the database too (backups, snapshots, files that were sent): the "
     "participant's data can still be read in them\n"
-    "if the database was sent to a server, run `touchtrial sync` now, which names the rows that hold "
+    "if the database was sent to a server, run `touchtrial sync` now, which names the rows that "
+    "hold "
     "the key there: until their owner deletes them it is there, and in the server's backups\n";
 /// Goes into the withdrawal's event.
 constexpr const char* kNotErased =

@@ -108,8 +108,7 @@ void require_device(const design::Study& study, const store::StudyStore& store,
                             other, device.name));
 }
 
-simulation::LevelCurve pilots_curve(const design::Study& study,
-                                    const device::DeviceModel& device) {
+simulation::LevelCurve pilots_curve(const design::Study& study, const device::DeviceModel& device) {
   const std::filesystem::path database = study.folder / study.level->curve;
   const store::StudyStore store =
       store::StudyStore::open(database, store::StudyStore::Access::read_only);

@@ -100,7 +100,9 @@ Meanings of_trials() {
       {"samples", {"Samples in the trial's trace"}},
       {"sampling_hz", {"Sampling rate of the trial's trace", "Hz"}},
       {"overruns", {"Servo ticks that came too late"}},
-      {"paused", {"Whether the session was paused while the answer was awaited, so that it has no reaction times"}},
+      {"paused",
+       {"Whether the session was paused while the answer was awaited, so that it has no reaction "
+        "times"}},
       {"gain_db", {"Gain at which the plane was presented, re the prepared one", "dB"}},
       {"track",
        {"Track that the trial belongs to, from 1; none for a catch trial and with the hand off"}},

@@ -454,7 +454,8 @@ std::vector<std::string> level_warnings(const design::Study& study, const Stimul
       study.rendering.gains ? "gains" : "pitch_mm", weak, levels.stimuli.size(),
       simulation::kMinLevelDb, device, name_of_stimulus(study, levels.stimuli[weakest]),
       range_cell(levels.levels[weakest], device),
-      study.rendering.gains ? "raise them" : "double it and filter_mm, with crops of half the side")};
+      study.rendering.gains ? "raise them"
+                            : "double it and filter_mm, with crops of half the side")};
 }
 
 std::string range_words(const PlaneLevels& levels) {

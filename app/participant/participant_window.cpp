@@ -454,9 +454,9 @@ struct ParticipantWindow::State {
   // Between threads.
   std::atomic<int> gone{-1};
   std::atomic<bool> exploring{false};
-  std::atomic<bool> between{false};    ///< it is said which of a trial's planes comes next
-  std::atomic<bool> has_clock{false};  ///< the plane ends by itself
-  std::atomic<int> explored{0};        ///< of the interval, in steps of its bar
+  std::atomic<bool> between{false};        ///< it is said which of a trial's planes comes next
+  std::atomic<bool> has_clock{false};      ///< the plane ends by itself
+  std::atomic<int> explored{0};            ///< of the interval, in steps of its bar
   std::atomic<Clock::duration> lost_at{};  ///< when another program got the focus; 0: none has it
   std::atomic<bool> lost_at_plane{false};
   std::atomic<bool> comfort_asked{false};

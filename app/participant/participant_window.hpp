@@ -130,7 +130,8 @@ class ParticipantWindow final : public session::Participant {
   ///@{
   [[nodiscard]] std::optional<WindowGone> gone() const noexcept;
   /// How long no key has reached the session, because a window of another program has the focus; 0
-  /// while keys do, and before they first did. While a plane is on, the window takes the focus back.
+  /// while keys do, and before they first did. While a plane is on, the window takes the focus
+  /// back.
   [[nodiscard]] std::chrono::milliseconds out_of_reach() const noexcept;
   /// Whether that happened while a plane was on, once.
   [[nodiscard]] bool take_out_of_reach() noexcept;

@@ -91,9 +91,10 @@ std::string rescue(const fs::path& database, const store::StudyStore& store) {
     if (is_there(name)) continue;
     try {
       store.copy_to(name);
-      return fmt::format("what was recorded is in {}; find out which file is the study's before "
-                         "the next session",
-                         one_line(name.string()));
+      return fmt::format(
+          "what was recorded is in {}; find out which file is the study's before "
+          "the next session",
+          one_line(name.string()));
     } catch (const Error& error) {
       return fmt::format("what was recorded could not be saved ({})", error.what());
     }

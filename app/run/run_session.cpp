@@ -115,9 +115,9 @@ std::optional<session::ExperimenterRequest> wait_to_record(PatientSink& sink) {
   const auto waited = sink.take_waited();
   if (!waited) return std::nullopt;
   const double seconds = std::chrono::duration<double>(*waited).count();
-  return session::ExperimenterRequest{session::ExperimenterRequest::Kind::deviation,
-                                      fmt::format("locked for {:.0f} s by another program", seconds),
-                                      "database-locked"};
+  return session::ExperimenterRequest{
+      session::ExperimenterRequest::Kind::deviation,
+      fmt::format("locked for {:.0f} s by another program", seconds), "database-locked"};
 }
 
 /// Pauses the session while a plane is on and the participant's keys do not reach it, and goes on

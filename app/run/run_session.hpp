@@ -32,11 +32,11 @@ struct RunOptions {
   bool pilot = false;
   OnExisting on_existing = OnExisting::refuse;
   HeadOptions heads;
-  int enrolment = 0;      ///< 0: the station's next number
-  int visit = 1;          ///< of the participant
+  int enrolment = 0;           ///< 0: the station's next number
+  int visit = 1;               ///< of the participant
   std::string accept_clock{};  ///< why a visit follows one that a wrong clock put into the future
-  bool yes = false;       ///< go on without asking about an unusual id or number
-  std::string station{};  ///< of a study with several; empty: its only one
+  bool yes = false;            ///< go on without asking about an unusual id or number
+  std::string station{};       ///< of a study with several; empty: its only one
   /// A simulated participant instead of a person: a model file, or "default".
   std::optional<std::filesystem::path> subject;
   std::string on;          ///< model of the device that a simulated hand holds; empty: ideal

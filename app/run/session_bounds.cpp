@@ -179,10 +179,11 @@ EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunD
   const double days = design::days_between(before, utc_now());
   const bool is_clock_wrong = in_days && days < 0.0;
   if (is_clock_wrong && options.accept_clock.empty()) {
-    refuse(fmt::format("visit {} was opened at {}, and this machine's clock shows {}: one of the "
-                       "two was wrong; set the clock if it is this one, or else give "
-                       "--accept-clock REASON, which is recorded",
-                       last.visit, utc_words(before), utc_words(utc_now())));
+    refuse(
+        fmt::format("visit {} was opened at {}, and this machine's clock shows {}: one of the "
+                    "two was wrong; set the clock if it is this one, or else give "
+                    "--accept-clock REASON, which is recorded",
+                    last.visit, utc_words(before), utc_words(utc_now())));
   }
   if (in_days && !is_clock_wrong && days < plan.least_days) {
     const auto least = std::chrono::duration<double, std::ratio<86'400>>(plan.least_days);
@@ -194,9 +195,9 @@ EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunD
   }
   EnteredSession entered = new_session(options, study, database, last.enrolment, describe);
   if (is_clock_wrong) {
-    entered.session->deviate({}, {"wrong-clock", fmt::format("visit {} was opened at {}: {}",
-                                                             last.visit, utc_words(before),
-                                                             options.accept_clock)});
+    entered.session->deviate(
+        {}, {"wrong-clock", fmt::format("visit {} was opened at {}: {}", last.visit,
+                                        utc_words(before), options.accept_clock)});
   }
   if (in_days && plan.most_days && days > *plan.most_days) {
     const std::string late = fmt::format("{:.1f} days after visit {}, at most {} in the study",
@@ -274,9 +275,10 @@ void record_clock(const RunOptions& options, nanoseconds away, EnteredSession& e
   if (is_virtual || away >= -kSmall) return;
   const auto back = std::chrono::duration_cast<std::chrono::seconds>(-away).count();
   entered.session->deviate(
-      entered.clock, {"clock-set-back", fmt::format("this machine's clock shows {}, {} s before the "
-                                                    "session's last event",
-                                                    utc_words(utc_now()), back)});
+      entered.clock,
+      {"clock-set-back", fmt::format("this machine's clock shows {}, {} s before the "
+                                     "session's last event",
+                                     utc_words(utc_now()), back)});
 }
 
 EnteredSession resumed_session(const RunOptions& options, const RunStudy& study,
@@ -536,8 +538,9 @@ int conclude_session(const RunOptions& options, int session, const session::Sess
     trouble = one_line(options.database.string()) + " was changed while the session ran";
   }
   if (!trouble.empty()) {
-    throw StoreError(fmt::format("{}, and does not hold session {} of participant {} to its end; {}", trouble, session,
-                                 options.participant, rescue(options.database, store)));
+    throw StoreError(
+        fmt::format("{}, and does not hold session {} of participant {} to its end; {}", trouble,
+                    session, options.participant, rescue(options.database, store)));
   }
   const bool is_complete =
       store.session_of(options.participant)->state == store::SessionState::completed;

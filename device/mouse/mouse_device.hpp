@@ -60,7 +60,8 @@ struct MouseOptions {
   double greatest_speed_mm_s = 800.0;  ///< at which the stylus follows the pointer, > 0
   double push_n = 0.7;                 ///< on the plane while the button is held, > 0
   double push_time_s = 0.1;            ///< in which the push rises and falls, > 0
-  /// Above the plane while the button is not held, > 0: higher than where a stylus counts as landed.
+  /// Above the plane while the button is not held, > 0: higher than where a stylus counts as
+  /// landed.
   double hover_mm = 3.5;
 };
 

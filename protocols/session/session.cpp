@@ -329,10 +329,9 @@ void Session::pause(Time at, const std::string& reason) {
 
 void Session::resume(Time at) {
   require(Input::resume, at);
-  recorder_.resumed(
-      at, {.after = "pause",
-           .away_s = std::chrono::duration<double>(at - last_).count(),
-           .trial = trial_under_way()});
+  recorder_.resumed(at, {.after = "pause",
+                         .away_s = std::chrono::duration<double>(at - last_).count(),
+                         .trial = trial_under_way()});
   move_to(before_pause_, at);
 }
 

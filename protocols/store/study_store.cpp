@@ -232,9 +232,8 @@ std::optional<SealedTrace> StudyStore::sealed_trace(int session, int trial) cons
     Query query = impl_->database().query("SELECT box FROM traces WHERE session = ? AND trial = ?");
     query.bind(session).bind(trial);
     if (!query.step()) return std::nullopt;
-    return SealedTrace{.session = impl_->study.session(session).own_session,
-                       .trial = trial,
-                       .box = query.blob(0)};
+    return SealedTrace{
+        .session = impl_->study.session(session).own_session, .trial = trial, .box = query.blob(0)};
   });
 }
 

@@ -64,7 +64,8 @@ TEST_CASE("simulated participants come as often as the study says") {
   }
 }
 
-TEST_CASE("after a visit with a wrong clock the next one goes on with a reason, which is recorded") {
+TEST_CASE(
+    "after a visit with a wrong clock the next one goes on with a reason, which is recorded") {
   const VisitFolder study;
   ::setenv("FAKE_CLOCK_AHEAD_S", "100000000", 1);
   ::setenv("LD_PRELOAD", TOUCHTRIAL_FAKE_MACHINE, 1);

@@ -231,7 +231,9 @@ TEST_CASE("the console's buttons request what they say") {
     room.type("h o t space 2 BackSpace 3 Return");
     CHECK(is(room.request(), Kind::note, "hot 3"));
     room.click(button_of(picture, What::deviation));
-    room.type("n o minus c u r t a i n Return f e l l Return");
+    // Not in one go: GLFW takes one key pressed twice within a millisecond for one press.
+    room.type("n o minus c u r t a i n Return");
+    room.type("f e l l Return");
     CHECK(is(room.request(), Kind::deviation, "fell", "no-curtain"));
     CHECK_FALSE(room.desk.request());
   });

@@ -266,7 +266,8 @@ TEST_CASE("a comfort stop interrupts the trial, and force comes back only with c
   CHECK(lab.all(store::EventKind::answered).size() == 5);
 }
 
-/// A participant whose servo stands still in each exploration until the experimenter opens the gate.
+/// A participant whose servo stands still in each exploration until the experimenter opens the
+/// gate.
 class Waiting final : public PersonAtStation {
  public:
   Waiting(Laboratory& lab, std::atomic<bool>& gate)

@@ -241,9 +241,8 @@ TEST_CASE("only remarks are recorded as remarks") {
   BufferedEvents events;
   SessionRecorder recorder(1, participant_key(1), events);
   recorder.opened(seconds(1), opening(1), "{}");
-  for (const EventKind kind :
-       {EventKind::calibrated, EventKind::instructed, EventKind::ticked, EventKind::break_taken,
-        EventKind::stopped, EventKind::noted}) {
+  for (const EventKind kind : {EventKind::calibrated, EventKind::instructed, EventKind::ticked,
+                               EventKind::break_taken, EventKind::stopped, EventKind::noted}) {
     recorder.remarked(seconds(1), kind, "text");
     REQUIRE(events.events.back().kind == kind);
     REQUIRE(opened(events.events.back()).body == R"({"text":"text"})");
