@@ -5,7 +5,6 @@
 #include "analysis/json_figures.hpp"
 #include "analysis/statistics/confusion.hpp"
 #include "analysis/text_figures.hpp"
-#include "analysis/text_table.hpp"
 #include "analysis/verification/chain_notes.hpp"
 
 #include <algorithm>
@@ -115,84 +114,6 @@ nlohmann::ordered_json hands_json(const Collection& collection) {
   return hands;
 }
 
-std::string sessions_text(const QualityReport& report) {
-  TextTable table(
-      {"sessions", "completed", "open", "stopped", "excluded", "replaced", "erased", "pilot"});
-  const SessionCounts& counts = report.sessions;
-  table.add({"", std::to_string(counts.completed), std::to_string(counts.open),
-             std::to_string(counts.stopped), std::to_string(counts.excluded),
-             std::to_string(counts.replaced), std::to_string(counts.erased),
-             std::to_string(counts.pilot)});
-  std::string text = heading("sessions", report.simulated) + table.text();
-  for (const std::string& note : people_notes(report.collection)) text += wrapped("  ", note);
-  return text;
-}
-
-/// How answers are spread, by session: somebody who always presses one key shows here.
-std::string answers_text(const QualityReport& report) {
-  TextTable table({"session", "answers", "different", "largest share", "longest run", "median"});
-  for (const SessionRecord& session : report.collection.sessions) {
-    if (!session.answers) continue;
-    const store::AnswerSummary& answers = *session.answers;
-    table.add({std::to_string(session.row.session), std::to_string(answers.n),
-               std::to_string(answers.different), percent(100.0 * answers.largest_share, 1),
-               std::to_string(answers.longest_run), fmt::format("{:.1f} s", answers.median_s)});
-  }
-  return heading("answers by session", report.simulated) + table.text();
-}
-
-/// The trials in which the hand was outside a window, by session: somebody who does not press or
-/// does not move shows here.
-std::string hands_text(const QualityReport& report) {
-  TextTable table({"session", "with a trace", "contact", "path", "force", "speed", "saturated"});
-  for (const SessionRecord& session : report.collection.sessions) {
-    const HandCounts& outside = session.outside;
-    if (outside.trials == 0) continue;
-    table.add({std::to_string(session.row.session), std::to_string(outside.trials),
-               std::to_string(outside.contact), std::to_string(outside.path),
-               std::to_string(outside.force), std::to_string(outside.speed),
-               session.saturated ? std::to_string(*session.saturated) : "-"});
-  }
-  return heading("trials outside a window, by session", report.simulated) + table.text();
-}
-
-std::string health_text(const QualityReport& report) {
-  const TrialQuality& quality = report.quality;
-  std::string text = heading("trials", report.simulated);
-  text += fmt::format(
-      "  presented {}, answered {}{}, no response {}, interrupted {}{}\n", quality.presented,
-      quality.answered,
-      quality.paused > 0 ? fmt::format(" ({} after a pause, without a time)", quality.paused) : "",
-      quality.no_response, quality.interrupted,
-      quality.not_repeated > 0 ? fmt::format(" ({} not repeated)", quality.not_repeated) : "");
-  text += fmt::format("  valid {} of {} with a trace ({})\n", quality.valid, quality.with_trace,
-                      percent_of({quality.with_trace, quality.valid}));
-  text += fmt::format("  servo overruns {} in {}", quality.overruns,
-                      counted(quality.with_overruns, "trial"));
-  if (quality.lowest_rate_hz) {
-    text += fmt::format(", lowest rate of a trace {:.1f} Hz", *quality.lowest_rate_hz);
-  }
-  return text + '\n';
-}
-
-/// A lateness as text. It can reach a second, so only values below 10 us get a decimal.
-std::string microseconds(double time_us) {
-  return fmt::format("{:.{}f} us", time_us, time_us < 10.0 ? 1 : 0);
-}
-
-std::string servo_text(const QualityReport& report) {
-  const ServoQuality& servo = *report.servo;
-  TextTable table({"servo", "trials", "lowest had rate", "late p99", "highest p99", "worst",
-                   "overruns", "lost"});
-  table.add({"", std::to_string(servo.trials), fmt::format("{:.1f} Hz", servo.lowest_rate_hz),
-             microseconds(servo.median_p99_us), microseconds(servo.highest_p99_us),
-             microseconds(servo.worst_us), std::to_string(report.quality.overruns),
-             std::to_string(servo.lost)});
-  std::string text = heading("servo in real time", report.simulated) + table.text();
-  for (const std::string& had : servo.scheduling) text += "  scheduling: " + had + '\n';
-  return text;
-}
-
 }  // namespace
 
 std::string name_of(const store::StudyState& state) {
@@ -268,28 +189,6 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
 
 std::string quality_json(const QualityReport& report) {
   return json_text(quality_object(report));
-}
-
-std::string quality_text(const QualityReport& report) {
-  std::string text =
-      report.simulated ? simulated_on_line(simulated_devices(report.collection)) : "";
-  text += simulated_line(report.simulated);
-  text += fmt::format("{} ({}): {}, {}; {}\n", report.study, report.protocol,
-                      counted(report.participants, "participant"), counted(report.trials, "trial"),
-                      name_of(report.state));
-  if (!report.state.unblinded) {
-    text += wrapped("", "Blinded: outcomes are shown once the study has been unblinded.");
-  }
-  if (report.pilot) text += wrapped("", "PILOT: not to be pooled with the study's data.");
-  if (report.visual) {
-    text += wrapped("", "Seen on a screen, not felt: never to be pooled with what was felt.");
-  }
-  text += sessions_text(report) + health_text(report);
-  if (report.servo) text += servo_text(report);
-  text += answers_text(report) + hands_text(report);
-  for (const std::string& note : report.notes) text += wrapped("", "Note: " + note);
-  if (report.simulated) text += '\n' + simulated_line(report.simulated);
-  return text;
 }
 
 }  // namespace touchtrial::analysis

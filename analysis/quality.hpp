@@ -77,7 +77,4 @@ struct QualityReport {
 /// One JSON object, indented, ending with a line feed.
 [[nodiscard]] std::string quality_json(const QualityReport& report);
 
-/// A page for a terminal, ending with a line feed.
-[[nodiscard]] std::string quality_text(const QualityReport& report);
-
 }  // namespace touchtrial::analysis

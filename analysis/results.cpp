@@ -40,8 +40,7 @@ class QuestionAlone final : public Results {
   const StudyHead& head() const override { return head_; }
   std::string json() const override { return framed_json(head_, "{}"); }
   Document document(const Provenance& provenance, const Pictures&) const override {
-    std::vector<Section> quality =
-        quality_document(quality_, head_.collection, provenance).sections;
+    std::vector<Section> quality = quality_document(quality_, provenance).sections;
     std::erase_if(quality, [](const Section& one) { return one.id == "participants"; });
     return framed_document(head_, {"result", "Result", {}}, std::move(quality), provenance);
   }

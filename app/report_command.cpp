@@ -63,13 +63,14 @@ void refuse_while_blind(const store::StudyState& state, const ReportArguments& a
 
 int report_quality(const store::StudyStore& store, const ReportArguments& arguments) {
   const analysis::QualityReport quality = analysis::make_quality(store);
-  if (arguments.folder.empty()) {
-    print(arguments.json ? analysis::quality_json(quality) : analysis::quality_text(quality));
-    return 0;
+  const std::string json = analysis::quality_json(quality);
+  const analysis::Document document =
+      analysis::quality_document(quality, provenance_for(store, arguments));
+  if (!arguments.folder.empty()) {
+    write_report(arguments, analysis::report_files(document, json));
+  } else {
+    print(arguments.json ? json : analysis::document_text(document, columns_of_output()));
   }
-  const analysis::Document document = analysis::quality_document(
-      quality, analysis::load_collection(store), provenance_for(store, arguments));
-  write_report(arguments, analysis::report_files(document, analysis::quality_json(quality)));
   return 0;
 }
 

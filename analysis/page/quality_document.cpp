@@ -124,9 +124,9 @@ std::vector<std::string> banners_of(const QualityReport& report) {
   return banners;
 }
 
-Section servo_section(const QualityReport& report, const Collection& collection) {
+Section servo_section(const QualityReport& report) {
   Section section{"servo", "Servo", {}};
-  if (auto servo = servo_table(collection)) {
+  if (auto servo = servo_table(report.collection)) {
     section.blocks.emplace_back(std::move(*servo));
   } else {
     section.blocks.emplace_back(
@@ -142,8 +142,7 @@ Section servo_section(const QualityReport& report, const Collection& collection)
 
 }  // namespace
 
-Document quality_document(const QualityReport& report, const Collection& collection,
-                          const Provenance& provenance) {
+Document quality_document(const QualityReport& report, const Provenance& provenance) {
   Document document;
   document.title = "Quality of the study " + report.study;
   document.stamp = report.simulated ? "SIMULATED" : "";
@@ -161,10 +160,11 @@ Document quality_document(const QualityReport& report, const Collection& collect
   document.sections = {{"counts",
                         "Sessions and trials",
                         {sessions_table(report.sessions), trials_table(report.quality)}},
-                       participants_section(collection),
-                       {"answers", "Answers by session", {answers_table(collection)}},
-                       {"hands", "Hands by session", {hands_table(collection)}},
-                       servo_section(report, collection)};
+                       participants_section(report.collection),
+                       {"answers", "Answers by session", {answers_table(report.collection)}},
+                       {"hands", "Hands by session", {hands_table(report.collection)}},
+                       servo_section(report)};
+  if (!report.notes.empty()) document.sections.push_back(warnings_section(report.notes));
   document.colophon = fmt::format("{}touchtrial {}, {}, event {} of the file's chain",
                                   simulated_line(report.simulated), provenance.program_version,
                                   provenance.database, provenance.head.length);

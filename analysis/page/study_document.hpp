@@ -47,7 +47,6 @@ using Pictures = std::vector<Picture>;
                                        bool figures_missing = false);
 
 /// The report before unblinding: how data collection proceeds, and nothing about outcomes.
-[[nodiscard]] Document quality_document(const QualityReport& report, const Collection& collection,
-                                        const Provenance& provenance);
+[[nodiscard]] Document quality_document(const QualityReport& report, const Provenance& provenance);
 
 }  // namespace touchtrial::analysis

@@ -128,10 +128,10 @@ TEST_CASE("page: the report before unblinding tells nothing about outcomes") {
   QualityReport quality;
   quality.study = "hand-made";
   quality.quality.answered = 12;
+  quality.collection = hand_made_report().collection;
   Provenance provenance = hand_made_provenance();
   provenance.state = {};
-  const std::string page =
-      page_html(quality_document(quality, hand_made_report().collection, provenance));
+  const std::string page = page_html(quality_document(quality, provenance));
   CHECK(faults_of_page(page) == std::vector<std::string>());
   CHECK_THAT(page, holds_text("BLIND"));
   for (const char* word : {"accuracy", "Accuracy", "correct", "confusion", "d′", "adaptive"}) {
