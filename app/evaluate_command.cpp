@@ -1,4 +1,3 @@
-#include "analysis/figures/gnuplot.hpp"
 #include "analysis/measures/evaluation_report.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
@@ -21,7 +20,6 @@ struct EvaluateArguments {
   std::vector<fs::path> images;
   bool sweep = false;
   bool json = false;
-  fs::path picture;
 };
 
 analysis::EvaluatedImage evaluated(const fs::path& path, bool sweep,
@@ -49,11 +47,7 @@ std::vector<analysis::EvaluatedImage> evaluated(const EvaluateArguments& argumen
 }
 
 int evaluate(const EvaluateArguments& arguments) {
-  if (!arguments.picture.empty()) analysis::require_gnuplot();
   const std::vector<analysis::EvaluatedImage> images = evaluated(arguments);
-  if (!arguments.picture.empty()) {
-    analysis::draw_with_gnuplot(analysis::order_sweep_script(images), arguments.picture);
-  }
   print(arguments.json ? analysis::evaluation_json(images) : analysis::evaluation_text(images));
   return 0;
 }
@@ -65,13 +59,8 @@ void add_evaluate_command(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand(
       "evaluate", "Co-occurrence statistics of images and their textures; the order sweep");
   command->add_option("IMAGE", arguments->images, "PNG, JPEG, TIFF, BMP or PGM")->required();
-  CLI::Option* sweep = command->add_flag("--sweep", arguments->sweep,
-                                         "Compare the adaptive texture with fixed orders, 0.05 "
-                                         "to 0.95, by MS-SSIM");
-  command
-      ->add_option("--picture", arguments->picture,
-                   "Draw the curves of the sweep as PNG (needs gnuplot)")
-      ->needs(sweep);
+  command->add_flag("--sweep", arguments->sweep,
+                    "Compare the adaptive texture with fixed orders, 0.05 to 0.95, by MS-SSIM");
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return evaluate(*arguments); }; });
 }

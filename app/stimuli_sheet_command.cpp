@@ -1,5 +1,4 @@
 // stimuli sheet: a contact sheet of a prepared study.
-#include "analysis/figures/gnuplot.hpp"
 #include "analysis/planning/level_report.hpp"
 #include "analysis/sheet/stimulus_sheet.hpp"
 #include "app/commands.hpp"
@@ -34,13 +33,6 @@ struct SheetArguments {
   fs::path pack;
 };
 
-std::string kind_of(const fs::path& output) {
-  const std::string ending = ending_of(output);
-  if (ending == ".png" || ending == ".pdf" || ending == ".html") return ending;
-  throw UsageError("stimuli sheet: " + one_line(output.string()) +
-                   ": sheets are PNG, PDF or HTML; give a name that ends in .png, .pdf or .html");
-}
-
 void refuse_input(const fs::path& output, const fs::path& input) {
   std::error_code ignored;
   if (!fs::equivalent(output, input, ignored)) return;
@@ -66,13 +58,15 @@ design::StudyKey key_of(const design::Study& study, const fs::path& path) {
 /// Checks everything that may be missing before the pictures take hours.
 void check_output(const SheetArguments& arguments, const design::Study& study,
                   const fs::path& key) {
-  const std::string kind = kind_of(arguments.output);
+  if (ending_of(arguments.output) != ".html") {
+    throw UsageError("stimuli sheet: " + one_line(arguments.output.string()) +
+                     ": a sheet is HTML; give a name that ends in .html");
+  }
   refuse_input(arguments.output, arguments.study);
   refuse_input(arguments.output, key);
   for (const design::StudyClass& one : study.classes) {
     for (const fs::path& image : one.images) refuse_input(arguments.output, study.folder / image);
   }
-  if (kind != ".html") analysis::require_gnuplot();
 }
 
 /// How strong each stimulus is on the study's device, and the blank plane beside it.
@@ -100,15 +94,11 @@ int draw_sheet(const SheetArguments& arguments) {
   check_output(arguments, study, key_path);
   const design::StudyKey key = key_of(study, key_path);
   design::check_images_exist(key.study);
-  const std::string kind = kind_of(arguments.output);
   const int side_px = key.stimuli.size() > kMany ? kSideOfManyPx : kSidePx;
   analysis::StimulusSheet sheet = analysis::make_stimulus_sheet(key, engine::Pack(place.pack),
                                                                 side_px, progress_bar("drawing"));
   add_levels(key, place.pack, sheet);
-  if (kind == ".png") analysis::draw_sheet_png(sheet, arguments.output);
-  if (kind == ".pdf") analysis::draw_sheet_pdf(sheet, arguments.output);
-  if (kind == ".html")
-    replace_file(arguments.output, analysis::sheet_html(sheet), FileMode::owner_only);
+  replace_file(arguments.output, analysis::sheet_html(sheet), FileMode::owner_only);
   print("sheet " + arguments.output.string() +
         " (it unblinds everybody who reads it; keep it with the key)\n");
   return 0;
@@ -121,8 +111,7 @@ void add_stimuli_sheet_command(CLI::App& stimuli, Action& action) {
   CLI::App* command = stimuli.add_subcommand(
       "sheet", "Draw a contact sheet of a prepared study for the lab book; it unblinds");
   add_study_argument(*command, arguments->study);
-  command->add_option("-o,--output", arguments->output, "PNG, PDF or HTML file to write")
-      ->required();
+  command->add_option("-o,--output", arguments->output, "HTML file to write")->required();
   add_key_option(*command, arguments->key, "Key of the study (default: beside the pack)");
   add_pack_option(*command, arguments->pack);
   command->callback([=, &action] { action = [=] { return draw_sheet(*arguments); }; });

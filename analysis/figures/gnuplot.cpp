@@ -180,13 +180,6 @@ std::string gnuplot_remedy() {
          "SVG, PDF and PNG by itself, as that of gnuplot-nox does";
 }
 
-void draw_with_gnuplot(const std::string& script, const std::filesystem::path& picture,
-                       FileMode mode) {
-  const std::string drawn = GnuplotProcess("", script).result();
-  if (drawn.empty()) throw Error("gnuplot: drew nothing" + gnuplot_remedy());
-  replace_file(picture, drawn, mode);
-}
-
 std::string gnuplot_string(const std::string& text) {
   std::string quoted = "'";
   for (const char c : one_line(text)) quoted += c == '\'' ? std::string("''") : std::string(1, c);

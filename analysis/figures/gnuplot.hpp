@@ -1,9 +1,6 @@
 /// \file Running gnuplot, which must be installed only if a figure is wanted.
 #pragma once
 
-#include "core/files.hpp"
-
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -43,15 +40,6 @@ void require_gnuplot();
 /// version that it says it has. Begins with "; ".
 /// \throws Error as require_gnuplot
 [[nodiscard]] std::string gnuplot_remedy();
-
-/// Runs a script and writes the picture that it prints to its standard output.
-/// \param script  sets a terminal, and no output file
-/// \param mode  who may read the picture
-/// \throws Error if gnuplot is not installed or refuses the script
-/// \throws FileError if the picture cannot be written
-/// Thread-safe.
-void draw_with_gnuplot(const std::string& script, const std::filesystem::path& picture,
-                       FileMode mode = FileMode::everyone);
 
 /// A text as a gnuplot string: on one line, in quotes. Whether gnuplot interprets mark-up is up to
 /// the script ("noenhanced").

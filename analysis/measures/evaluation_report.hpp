@@ -1,5 +1,4 @@
-/// \file The evaluation of images as text, JSON and a gnuplot script: Table 1 and Fig. 3 of the
-/// paper.
+/// \file The evaluation of images as text and JSON: Table 1 and Fig. 3 of the paper.
 #pragma once
 
 #include "engine/evaluation.hpp"
@@ -21,10 +20,5 @@ struct EvaluatedImage {
 /// {"images":[{"image","original","adaptive","orders"}]}; "orders" exists only after a sweep.
 /// docs/data-dictionary.md explains the numbers.
 [[nodiscard]] std::string evaluation_json(std::span<const EvaluatedImage> images);
-
-/// A gnuplot script that prints a PNG: entropy and MS-SSIM over the fixed order, with a colour for
-/// each image.
-/// \pre every image was swept
-[[nodiscard]] std::string order_sweep_script(std::span<const EvaluatedImage> images);
 
 }  // namespace touchtrial::analysis

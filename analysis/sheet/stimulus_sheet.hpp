@@ -64,16 +64,7 @@ struct StimulusSheet {
     const design::StudyKey& key, const engine::Pack& pack, int side_px,
     const std::function<void(int done, int of)>& progress = {});
 
-/// One HTML document that needs no other file and no network.
+/// One HTML document that needs no other file and no network; printed, one A4 page for each line.
 [[nodiscard]] std::string sheet_html(const StimulusSheet& sheet);
-
-/// Draws the sheet as one tall PNG, which only its owner may read.
-/// \throws UsageError if it would be too tall for most programs
-/// \throws Error, FileError as draw_with_gnuplot
-void draw_sheet_png(const StimulusSheet& sheet, const std::filesystem::path& path);
-
-/// Draws the sheet as a PDF of A4 pages, one for each line; only its owner may read it.
-/// \throws Error, FileError as draw_with_gnuplot
-void draw_sheet_pdf(const StimulusSheet& sheet, const std::filesystem::path& path);
 
 }  // namespace touchtrial::analysis

@@ -1,5 +1,6 @@
 #include "analysis/figures/gnuplot.hpp"
 
+#include "analysis/figures/figure.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
@@ -37,6 +38,11 @@ class Variable {
   std::string before_;
 };
 
+/// What gnuplot prints on its terminal of letters.
+std::string printed_by(const std::string& script) {
+  return GnuplotProcess("", "set terminal dumb 40 10\n" + script).result();
+}
+
 /// What is said when a program of that name stands for gnuplot.
 /// \param script  of a shell
 std::string complaint_about(const std::string& script) {
@@ -46,7 +52,8 @@ std::string complaint_about(const std::string& script) {
   std::filesystem::permissions(program, std::filesystem::perms::owner_all);
   const Variable path("PATH", folder.path().string() + ":/usr/bin:/bin");
   try {
-    draw_with_gnuplot("set terminal dumb\nplot x\n", folder.path() / "picture.txt");
+    static_cast<void>(
+        drawn({.id = "x", .caption = {}, .alt = {}, .script = "plot x\n"}, FigureFormat::svg));
   } catch (const Error& error) {
     return error.what();
   }
@@ -55,26 +62,9 @@ std::string complaint_about(const std::string& script) {
 
 }  // namespace
 
-TEST_CASE("gnuplot draws what a script prints") {
-  const TempFolder folder;
-  const auto picture = folder.path() / "it's a picture.txt";
-  draw_with_gnuplot("set terminal dumb 40 10\nplot x\n", picture);
-  CHECK(text_of(read_file(picture)).find('*') != std::string::npos);
-}
-
-TEST_CASE("a script that gnuplot refuses leaves no picture and one line") {
-  const TempFolder folder;
-  const auto picture = folder.path() / "picture.txt";
-  std::string message;
-  try {
-    draw_with_gnuplot("set terminal dumb\nplot nonsense(\n", picture);
-  } catch (const Error& error) {
-    message = error.what();
-  }
-  CHECK_THAT(message, holds_text("gnuplot: failed ("));
-  CHECK(message.find('\n') == std::string::npos);
-  CHECK_FALSE(std::filesystem::exists(picture));
-  CHECK_THROWS_AS(draw_with_gnuplot("", picture), Error);
+TEST_CASE("a script that gnuplot refuses is named in one line") {
+  CHECK_THROWS_WITH(printed_by("plot nonsense(\n"), holds_text("gnuplot: failed ("));
+  CHECK_THROWS_WITH(printed_by("plot nonsense(\n"), !holds_text("\n"));
 }
 
 TEST_CASE("a text becomes one gnuplot string whatever is in it") {
@@ -99,14 +89,11 @@ TEST_CASE("an older gnuplot is told from one that fails for another reason") {
 
 TEST_CASE("gnuplot's temporary files lie where TMPDIR says") {
   const TempFolder folder;
-  const auto picture = folder.path() / "picture.txt";
   {
     const Variable nowhere("TMPDIR", (folder.path() / "nowhere").string());
-    CHECK_THROWS_WITH(
-        draw_with_gnuplot("set terminal dumb\nplot x\n", picture),
-        holds_text("temporary folder: cannot be written") && holds_text("set TMPDIR"));
+    CHECK_THROWS_WITH(printed_by("plot x\n"), holds_text("temporary folder: cannot be written") &&
+                                                  holds_text("set TMPDIR"));
   }
   const Variable own("TMPDIR", folder.path().string());
-  draw_with_gnuplot("set terminal dumb\nplot x\n", picture);
-  CHECK(std::filesystem::exists(picture));
+  CHECK_THAT(printed_by("plot x\n"), holds_text("*"));
 }

@@ -62,13 +62,3 @@ TEST_CASE("the evaluation's text names the paper's entropy and the closest fixed
   const std::vector<EvaluatedImage> unswept = {example(false)};
   CHECK(evaluation_text(unswept).find("fixed order") == std::string::npos);
 }
-
-TEST_CASE("the sweep's script contains every number, and no name that gnuplot could misread") {
-  const std::vector<EvaluatedImage> images = {example(true), example(true)};
-  const std::string script = order_sweep_script(images);
-  CHECK_THAT(script, holds_text("set terminal pngcairo"));
-  CHECK_THAT(script, holds_text("0.1 3 0.995 0.999\n"));
-  CHECK_THAT(script, holds_text("$sweep1 using 1:3"));
-  CHECK_THAT(script, holds_text("title 'it''s'"));
-  CHECK(script.find("$sweep2") == std::string::npos);
-}
