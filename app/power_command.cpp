@@ -1,14 +1,12 @@
-// power: simulates a study many times, in one process or in shards.
-#include "analysis/planning/power_progress.hpp"
+// power: simulates a study many times.
 #include "analysis/planning/power_report.hpp"
+#include "analysis/planning/power_runs.hpp"
 #include "analysis/planning/rehearsed_study.hpp"
 #include "analysis/planning/stated_people.hpp"
 #include "analysis/planning/uncertain_subject.hpp"
-#include "analysis/planning/what_if.hpp"
 #include "analysis/text_figures.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/power_files.hpp"
 #include "app/study_inputs.hpp"
 #include "app/threshold_power.hpp"
 #include "core/errors.hpp"
@@ -42,15 +40,11 @@ struct PowerArguments {
   fs::path study;
   fs::path subject;
   fs::path fit;
-  fs::path other;  ///< subject of --what-if
   std::string on;
   fs::path folder;
-  std::vector<fs::path> combine;
   std::vector<std::string> methods;
   std::string sizes = "8,12,16,20,30";
   std::optional<double> margin;
-  std::string shard;
-  bool has_shard = false;
   std::optional<double> effect;
   std::optional<double> mean;
   double sd_between = 0.0;
@@ -59,8 +53,6 @@ struct PowerArguments {
   ThresholdPowerArguments of_thresholds;
   std::vector<std::string> given;  ///< the options that were given, by name
   int jobs = 1;
-  bool no_early_stop = false;
-  bool resume = false;
   bool json = false;
 };
 
@@ -89,7 +81,6 @@ struct PowerPreparation {
                          : subject_for(arguments.subject, study, arguments.on)),
         key(simulated_key(study, arguments.study)) {
     if (stated) return;
-    // Shards begin at the same time and share the pack.
     prepare_simulated_pack(key);
     pack.emplace(key.pack_folder);
   }
@@ -154,99 +145,55 @@ struct PowerPreparation {
 };
 
 std::unique_ptr<const planning::Feelings> feelings_for(const PowerPreparation& prepared,
-                                                       const simulation::SubjectModel& subject,
                                                        const planning::PowerPlan& plan, int jobs,
-                                                       const simulation::LabelledFields& fields,
-                                                       const design::Progress& progress = {}) {
+                                                       const simulation::LabelledFields& fields) {
   if (plan.servo) {
-    return std::make_unique<planning::ServoFeelings>(fields, prepared.study, subject);
+    return std::make_unique<planning::ServoFeelings>(fields, prepared.study, prepared.subject);
   }
   const planning::BankedFeelingsOptions options{plan.explorations, plan.trainings, plan.seed, jobs};
-  return std::make_unique<planning::BankedFeelings>(fields, prepared.study, subject, options,
-                                                    progress);
+  return std::make_unique<planning::BankedFeelings>(fields, prepared.study, prepared.subject,
+                                                    options, progress_bar("feeling"));
 }
 
-fs::path file_of(const PowerArguments& arguments, const planning::Shard& shard) {
-  return arguments.has_shard ? shard_file(arguments.folder, shard)
-                             : progress_file(arguments.folder);
-}
-
-void make_missing_runs(const PowerPreparation& prepared, const PowerArguments& arguments,
-                       planning::PowerProgress& progress) {
-  std::optional<ProgressKeeper> keeper;
-  if (!arguments.folder.empty()) {
-    keeper.emplace(file_of(arguments, progress.shard));
-    // This finds out now whether the folder can be written; a shard without runs needs a file too.
-    keeper->keep(progress);
-  }
-  if (planning::is_complete(progress)) return;
-  planning::PowerWork work{.jobs = arguments.jobs, .progress = progress_bar("simulating")};
-  if (keeper) work.keep = [&](const planning::PowerProgress& so_far) { keeper->keep(so_far); };
-  const int most = progress.plan.participants.back();
+planning::PowerRuns made_runs(const PowerPreparation& prepared, const planning::PowerPlan& plan,
+                              int jobs) {
+  const auto bar = progress_bar("simulating");
+  const int largest = plan.participants.back();
   if (prepared.stated) {
-    const planning::StatedRehearsal study(prepared.study, *prepared.stated, prepared.test, most);
-    planning::make_runs(study, prepared.test, work, progress);
-    return;
+    const planning::StatedRehearsal study(prepared.study, *prepared.stated, prepared.test, largest);
+    return planning::make_runs(study, prepared.test, prepared.setting(), plan, jobs, bar);
   }
   const session::StimulusSource source(*prepared.pack, prepared.key.study.rendering);
   const simulation::LabelledFields fields(prepared.key, source);
-  const auto feelings = feelings_for(prepared, prepared.subject, progress.plan, arguments.jobs,
-                                     fields, progress_bar("feeling"));
-  planning::RehearsalOptions options{.first_half_loss = progress.plan.first_half_loss};
-  if (progress.plan.effect != 0.0) options.effect = progress.plan.effect;
+  const auto feelings = feelings_for(prepared, plan, jobs, fields);
+  planning::RehearsalOptions options{.first_half_loss = plan.first_half_loss};
+  if (plan.effect != 0.0) options.effect = plan.effect;
   if (prepared.fitted) options.draws = prepared.fitted->draws;
   const planning::RehearsedStudy study(prepared.study, prepared.subject, prepared.test, *feelings,
-                                       most, std::move(options));
-  planning::make_runs(study, prepared.test, work, progress);
+                                       largest, std::move(options));
+  return planning::make_runs(study, prepared.test, prepared.setting(), plan, jobs, bar);
 }
 
-void print_shard(const PowerArguments& arguments, const planning::PowerProgress& progress) {
-  const fs::path file = file_of(arguments, progress.shard);
-  const int runs = progress.shard.own_runs(progress.plan.runs);
-  print(analysis::simulated_on_line(progress.setting.device) +
-        fmt::format("SIMULATED: shard {}/{}: {} of {} runs of each of {} sizes\nfile     {}\n",
-                    progress.shard.number, progress.shard.count, runs, progress.plan.runs,
-                    progress.plan.participants.size(), file.string()));
-}
-
-int print_report(const PowerArguments& arguments, const planning::PowerProgress& progress) {
-  const planning::PowerReport report = planning::make_power_report(progress);
-  if (!arguments.folder.empty()) write_power_results(arguments.folder, report);
-  print(arguments.json ? planning::power_json(report) : planning::power_text(report));
-  return 0;
-}
-
-int combine(const PowerArguments& arguments) {
-  const planning::CombinedPower all = planning::combined(load_shards(arguments.combine));
-  for (const std::string& remark : all.remarks) spdlog::warn("{}", remark);
-  if (!arguments.folder.empty()) make_folder(arguments.folder);
-  return print_report(arguments, all.progress);
+/// Without gnuplot it warns, and leaves the figures out.
+void write_results(const fs::path& folder, const planning::PowerReport& report) {
+  replace_file(folder / "power.json", planning::power_json(report));
+  const analysis::Figure figure = planning::power_figure(report);
+  try {
+    for (const auto& [format, name] : {std::pair(analysis::FigureFormat::svg, "power.svg"),
+                                       std::pair(analysis::FigureFormat::pdf, "power.pdf")}) {
+      replace_file(folder / name, analysis::drawn(figure, format));
+    }
+  } catch (const FileError&) {
+    throw;
+  } catch (const Error& error) {
+    spdlog::warn("without figures: {}", error.what());
+  }
 }
 
 /// \throws UsageError if there would be no effect
 double require_effect(double effect) {
   if (effect != 0.0) return effect;
   throw UsageError("--effect: 0 is no effect; give another share");
-}
-
-int what_if(const PowerArguments& arguments, const PowerPreparation& prepared,
-            const planning::PowerPlan& plan) {
-  if (plan.participants.size() != 1) {
-    throw UsageError("--what-if: is for one size; give it with --participants, for instance 20");
-  }
-  simulation::SubjectModel other = simulation::load_subject_model(arguments.other);
-  other.check_labels(prepared.study);
-  const session::StimulusSource source(*prepared.pack, prepared.key.study.rendering);
-  const simulation::LabelledFields fields(prepared.key, source);
-  const planning::WhatIf result = planning::what_if(
-      prepared.study, prepared.test, prepared.subject,
-      planning::assumptions_about(prepared.subject, other), plan, prepared.setting(),
-      [&](const simulation::SubjectModel& subject) {
-        return feelings_for(prepared, subject, plan, arguments.jobs, fields);
-      },
-      arguments.jobs, progress_bar("assuming"));
-  print(arguments.json ? planning::what_if_json(result) : planning::what_if_text(result));
-  return 0;
 }
 
 /// Options of studies whose thresholds are planned, and those that such studies share with others.
@@ -270,17 +217,10 @@ void refuse_options_of_others(const design::Study& study, const PowerArguments& 
 }
 
 int power(PowerArguments arguments) {
-  if (!arguments.combine.empty()) return combine(arguments);
-  if (arguments.study.empty()) {
-    throw UsageError("power: STUDY is missing; give a study file, or shards with --combine");
-  }
   planning::PowerPlan plan = arguments.plan;
   plan.participants = numbers_named(arguments.sizes, "--participants", "a number of participants");
   if (arguments.effect) plan.effect = require_effect(*arguments.effect);
-  plan.stop_early = !arguments.no_early_stop;
   planning::settle(plan);
-  const planning::Shard shard =
-      arguments.has_shard ? shard_named(arguments.shard) : planning::Shard{};
   design::Study loaded = design::load_study(arguments.study);
   refuse_options_of_others(loaded, arguments);
   if (loaded.protocol_name() == "threshold") {
@@ -296,15 +236,12 @@ int power(PowerArguments arguments) {
   }
   plan.level = prepared.test.alpha;
   plan.margin = prepared.test.margin.value_or(0.0);
-  if (!arguments.other.empty()) return what_if(arguments, prepared, plan);
-  planning::PowerProgress progress = planning::new_progress(prepared.setting(), plan, shard);
-  if (!arguments.folder.empty()) {
-    make_folder(arguments.folder);
-    progress = taken_up(file_of(arguments, shard), std::move(progress), arguments.resume);
-  }
-  make_missing_runs(prepared, arguments, progress);
-  if (!arguments.has_shard) return print_report(arguments, progress);
-  print_shard(arguments, progress);
+  // Whether the folder can be made is known before the runs.
+  if (!arguments.folder.empty()) make_folder(arguments.folder);
+  const planning::PowerReport report =
+      planning::make_power_report(made_runs(prepared, plan, arguments.jobs));
+  if (!arguments.folder.empty()) write_results(arguments.folder, report);
+  print(arguments.json ? planning::power_json(report) : planning::power_text(report));
   return 0;
 }
 
@@ -374,13 +311,6 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
           ->type_name("FILE")
           ->excludes(command.get_option("--subject"))
           ->excludes(command.get_option("--on"));
-  CLI::Option* other =
-      command
-          .add_option("--what-if", arguments.other,
-                      "Change each assumption alone: other senses, hands and devices, and what "
-                      "this other subject file says; with one size of --participants")
-          ->type_name("FILE")
-          ->excludes(fit);
   add_stated_options(command, arguments);
   command
       .add_option("--methods", arguments.methods,
@@ -391,8 +321,6 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
                   "Test whether the first method is as good: worse by less than this difference of "
                   "accuracies (0.07: 7 points), in place of the registered question")
       ->type_name("SHARE");
-  command.add_flag("--no-early-stop", arguments.no_early_stop,
-                   "Make all runs, even if the result is already certain");
   command
       .add_option("--explorations", plan.explorations,
                   "Explorations of each stimulus from which trials draw")
@@ -415,8 +343,7 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
       "--servo", plan.servo,
       "Run every exploration through the servo, for comparison; some hundred times slower");
   add_threshold_options(command, arguments.of_thresholds);
-  command.get_option("--mean")->excludes(fit)->excludes(other);
-  other->excludes(command.get_option("--effect"))->excludes(command.get_option("--servo"));
+  command.get_option("--mean")->excludes(fit);
   // They describe people who feel.
   for (const char* option : {"--subject", "--on", "--explorations", "--trainings",
                              "--first-half-loss", "--effect", "--servo"}) {
@@ -443,38 +370,16 @@ void add_power_command(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand(
       "power",
       "Estimate a study's power, type-I error and interval widths by simulating it many times");
-  command->add_option("STUDY", arguments->study, "Study file");
+  add_study_argument(*command, arguments->study);
   add_plan_options(*command, *arguments);
-  const std::vector<CLI::Option*> of_a_run = command->get_options(
-      [&](const CLI::Option* option) { return option != command->get_help_ptr(); });
   add_jobs_option(*command, arguments->jobs);
-  CLI::Option* folder = command->add_option(
-      "-o,--out", arguments->folder,
-      "Folder for the progress, and for the results as JSON, CSV, Markdown, SVG and PDF");
-  CLI::Option* resume =
-      command
-          ->add_flag("--resume", arguments->resume, "Continue this run from its progress in --out")
-          ->needs(folder);
-  CLI::Option* shard =
-      command
-          ->add_option("--shard", arguments->shard,
-                       "Make one part of the runs, for --combine; never stops early")
-          ->type_name("I/N")
-          ->needs(folder);
-  CLI::Option* combine =
-      command
-          ->add_option("--combine", arguments->combine,
-                       "Combine all shards of a run, given as folders or files, instead of a study")
-          ->excludes(shard)
-          ->excludes(resume);
-  CLI::Option* other = command->get_option("--what-if");
-  for (CLI::Option* option : {folder, resume, shard}) other->excludes(option);
-  // Shards contain their plan.
-  for (CLI::Option* option : of_a_run) combine->excludes(option);
+  command
+      ->add_option("-o,--out", arguments->folder,
+                   "Folder for the results as JSON, and for their figure as SVG and PDF")
+      ->check(place_validator());
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] {
     refuse_empty_values(*command);
-    arguments->has_shard = shard->count() > 0;
     for (const CLI::Option* option : command->get_options()) {
       if (option->count() > 0) arguments->given.push_back(option->get_name());
     }

@@ -108,12 +108,12 @@ analysis::Figure power_figure(const PowerReport& report) {
   const analysis::Panels panels(axes.size(), 3, kHeight_cm, {1.55, 0.15, 0.6, 1.25}, true);
   analysis::Figure figure{.id = "power", .caption = {}, .alt = alt_of(report), .script = {}};
   figure.caption = fmt::format(
-      "{}. {}, {}. Left: share of significant studies, with its Monte-Carlo interval ({}, {:.4g} "
-      "%); dashed: 80 and 90 %. Middle: the same under the null (Wilson, 95 %); dashed: the "
+      "{}. {}, {}. Left: share of significant studies, with its Monte-Carlo interval (Wilson, "
+      "95 %); dashed: 80 and 90 %. Middle: the same under the null; dashed: the "
       "test's level. Right: width of the 95 % interval of the {}, mean over studies, and the "
       "range of the middle 80 % of studies.",
       power_stamp(report.setting), report.setting.study, report.setting.test,
-      power_interval_name(report.plan), 100.0 * power_level(report.plan), report.setting.estimate);
+      report.setting.estimate);
   figure.width_cm = panels.sheet().width_cm;
   figure.height_cm = panels.sheet().height_cm;
   figure.script = analysis::sheet_head(panels.sheet()) + "set multiplot\n";

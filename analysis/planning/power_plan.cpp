@@ -11,7 +11,6 @@
 namespace touchtrial::planning {
 namespace {
 
-constexpr int kFirstLook = 100;
 constexpr int kMostExplorations = 100'000;
 constexpr int kMostTrainings = 1'000;
 
@@ -37,18 +36,6 @@ void settle_sizes(PowerPlan& plan) {
   if (twice != plan.participants.end()) {
     throw UsageError(fmt::format("--participants: {} is given twice; give each size once", *twice));
   }
-}
-
-/// Bonferroni over the looks: together they err no more often than one look at the usual level.
-double level_of_a_look(const PowerPlan& plan) {
-  return 1.0 - (1.0 - analysis::kConfidenceLevel) / static_cast<double>(looks_of(plan).size());
-}
-
-bool is_certain(const PowerPlan& plan, analysis::Proportion significant) {
-  const analysis::Interval interval = power_interval(plan, significant);
-  return std::ranges::all_of(kPowerTargets, [&](double target) {
-    return interval.low > target || interval.high < target;
-  });
 }
 
 }  // namespace
@@ -79,39 +66,6 @@ std::uint64_t study_seed(std::uint64_t seed, int participants, Hypothesis hypoth
   const std::string purpose =
       fmt::format("power: {}, {} participants", name_of(hypothesis), participants);
   return RandomStream(seed, purpose, static_cast<std::uint64_t>(run)).bits();
-}
-
-std::vector<int> looks_of(const PowerPlan& plan) {
-  std::vector<int> looks;
-  if (plan.stop_early) {
-    for (int look = kFirstLook; look < plan.runs; look *= 2) looks.push_back(look);
-  }
-  looks.push_back(plan.runs);
-  return looks;
-}
-
-double power_level(const PowerPlan& plan) {
-  return plan.stop_early ? level_of_a_look(plan) : analysis::kConfidenceLevel;
-}
-
-const char* power_interval_name(const PowerPlan& plan) {
-  return plan.stop_early ? "Clopper-Pearson" : "Wilson";
-}
-
-analysis::Interval power_interval(const PowerPlan& plan, analysis::Proportion significant) {
-  return plan.stop_early ? analysis::clopper_pearson_interval(significant, power_level(plan))
-                         : analysis::wilson_interval(significant, power_level(plan));
-}
-
-std::optional<int> certain_after(const PowerPlan& plan, std::span<const PowerRun> runs) {
-  if (!plan.stop_early) return std::nullopt;
-  for (const int look : looks_of(plan)) {
-    if (static_cast<std::size_t>(look) > runs.size()) return std::nullopt;
-    const auto significant = std::ranges::count_if(
-        runs.first(look), [&](const PowerRun& run) { return is_significant(run, plan.level); });
-    if (is_certain(plan, {look, static_cast<int>(significant)})) return look;
-  }
-  return std::nullopt;
 }
 
 }  // namespace touchtrial::planning

@@ -1,5 +1,3 @@
-#include "analysis/exports/data_table.hpp"
-#include "analysis/page/document.hpp"
 #include "analysis/planning/power_report.hpp"
 #include "analysis/planning/primary_test.hpp"
 #include "analysis/statistics/chance_test.hpp"
@@ -8,7 +6,6 @@
 #include "core/strict_json.hpp"
 
 #include <algorithm>
-#include <cstdint>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -30,17 +27,6 @@ std::string given_words(const PowerSetting& setting) {
   if (!setting.feels()) return "given the stated accuracies";
   return setting.draws > 0 ? "over the uncertainty of a fit (assurance)"
                            : "given the assumed sensitivity";
-}
-
-std::string looks_sentence(const PowerPlan& plan) {
-  if (!plan.stop_early) {
-    return "Every size has all its runs; intervals of power are Wilson's at 95 %.";
-  }
-  return fmt::format(
-      "A size stops when its power's interval contains neither 80 nor 90 %, checked after {} "
-      "runs. Intervals are Clopper-Pearson's at {:.4g} %, so that all looks together are wrong in "
-      "5 % of sizes at most (Bonferroni). All studies under the null are made.",
-      fmt::join(looks_of(plan), ", "), 100.0 * power_level(plan));
 }
 
 std::string stated_null_sentence(const PowerReport& report) {
@@ -104,7 +90,7 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
   const PowerPlan& plan = report.plan;
   std::vector<std::string> sentences;
   sentences.push_back(fmt::format(
-      "Up to {} simulated studies of each size and hypothesis, seed {}; no participant is in two "
+      "{} simulated studies of each size and hypothesis, seed {}; no participant is in two "
       "of them; {}",
       plan.runs, plan.seed,
       !report.setting.feels()
@@ -121,7 +107,6 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
         "over what the fit leaves open, given its device and sense.",
         report.setting.draws));
   }
-  sentences.push_back(looks_sentence(plan));
   sentences.push_back(null_sentence(report));
   if (plan.effect != 0.0) {
     sentences.push_back(fmt::format(
@@ -145,7 +130,7 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
                         "is exactly {}.",
                         report.plan.level)
           : "Attainable: the level itself, which a t test of shares holds approximately.");
-  sentences.emplace_back("The Monte-Carlo interval of the type-I error is Wilson's at 95 %.");
+  sentences.emplace_back("Monte-Carlo intervals are Wilson's at 95 %.");
   sentences.push_back("Interval width: of the 95 % t interval of the mean over participants.");
   return sentences;
 }
@@ -154,8 +139,7 @@ std::string power_table(const PowerReport& report) {
   analysis::TextTable table({"participants", "runs", "power %", "MC interval", "type-I %", "MC 95%",
                              "attainable %", "error"});
   for (const PowerRow& row : report.rows) {
-    table.add({std::to_string(row.participants),
-               std::to_string(row.significant.n) + (row.stopped_early ? " (stopped)" : ""),
+    table.add({std::to_string(row.participants), std::to_string(row.significant.n),
                power_per_cent(row.estimated_power()), power_range(row.power),
                power_per_cent(row.estimated_error()), power_range(row.type_one),
                power_per_cent(row.attainable), std::string(name_of(verdict_of(row)))});
@@ -177,67 +161,6 @@ std::string width_table(const PowerReport& report) {
   return table.text();
 }
 
-std::vector<analysis::DataCell> csv_row(const PowerRow& row) {
-  return {std::int64_t{row.participants},
-          std::int64_t{row.significant.n},
-          std::int64_t{row.stopped_early ? 1 : 0},
-          row.estimated_power(),
-          row.power.low,
-          row.power.high,
-          std::int64_t{row.false_alarms.n},
-          row.estimated_error(),
-          row.type_one.low,
-          row.type_one.high,
-          row.attainable,
-          row.estimate,
-          row.estimate_sd,
-          row.width.mean,
-          row.width.standard_error,
-          row.width.lower,
-          row.width.median,
-          row.width.upper,
-          std::string("SIMULATED")};
-}
-
-std::vector<analysis::Cell> table_row(const PowerRow& row) {
-  return {std::to_string(row.participants),
-          std::to_string(row.significant.n) + (row.stopped_early ? ", stopped" : ""),
-          analysis::Cell(power_per_cent(row.estimated_power()), true),
-          power_range(row.power),
-          power_per_cent(row.estimated_error()),
-          power_range(row.type_one),
-          power_per_cent(row.attainable),
-          power_per_cent(row.estimate),
-          power_per_cent(row.width.mean),
-          power_range({row.width.lower, row.width.upper})};
-}
-
-analysis::Table table_of(const PowerReport& report) {
-  analysis::Table table{"power",
-                        "Power " + given_words(report.setting) +
-                            ", type-I error and interval width: " + report.setting.study + ", " +
-                            report.setting.test,
-                        {{"participants"},
-                         {"runs"},
-                         {"power (%)"},
-                         {"Monte-Carlo interval"},
-                         {"type-I error (%)"},
-                         {"Monte-Carlo 95%"},
-                         {"attainable (%)"},
-                         {report.setting.estimate + " (%)"},
-                         {"interval width (points)"},
-                         {"10 to 90% of studies"}}};
-  for (const PowerRow& row : report.rows) table.rows.push_back(table_row(row));
-  for (const std::string& sentence : target_sentences(report)) table.notes.push_back({sentence});
-  for (const std::string& warning : report.warnings) table.notes.push_back({warning});
-  if (!report.setting.device.empty()) {
-    table.notes.push_back({analysis::simulated_on(report.setting.device)});
-  }
-  table.notes.push_back({"Assumed: " + report.setting.subject + "."});
-  for (const std::string& sentence : method_sentences(report)) table.notes.push_back({sentence});
-  return table;
-}
-
 using nlohmann::ordered_json;
 
 ordered_json ends_of(const analysis::Interval& interval) {
@@ -249,8 +172,7 @@ ordered_json size_object(const PowerRow& row) {
   object["power"] = {{"runs", row.significant.n},
                      {"significant", row.significant.correct},
                      {"p", row.estimated_power()},
-                     {"interval", ends_of(row.power)},
-                     {"stopped_early", row.stopped_early}};
+                     {"interval", ends_of(row.power)}};
   object["type_one_error"] = {
       {"runs", row.false_alarms.n},   {"significant", row.false_alarms.correct},
       {"p", row.estimated_error()},   {"interval", ends_of(row.type_one)},
@@ -277,8 +199,6 @@ ordered_json plan_object(const PowerPlan& plan) {
   return {{"participants", plan.participants},
           {"runs", plan.runs},
           {"seed", plan.seed},
-          {"stop_early", plan.stop_early},
-          {"looks", looks_of(plan)},
           {"servo", plan.servo},
           {"explorations", plan.explorations},
           {"trainings", plan.trainings},
@@ -288,10 +208,8 @@ ordered_json plan_object(const PowerPlan& plan) {
 }
 
 ordered_json methods_object(const PowerReport& report) {
-  return {{"power_interval", power_interval_name(report.plan)},
-          {"power_level", power_level(report.plan)},
-          {"type_one_interval", "Wilson"},
-          {"type_one_level", analysis::kConfidenceLevel},
+  return {{"monte_carlo_interval", "Wilson"},
+          {"level", analysis::kConfidenceLevel},
           {"interval_width", "95 % t interval over participants"},
           {"sentences", method_sentences(report)}};
 }
@@ -321,20 +239,6 @@ std::string power_text(const PowerReport& report) {
   for (const std::string& sentence : method_sentences(report))
     text += analysis::wrapped("", sentence);
   return text + stamp;
-}
-
-std::string power_csv(const PowerReport& report) {
-  analysis::DataTable table{
-      {"participants", "runs", "stopped_early", "power", "power_low", "power_high", "null_runs",
-       "type_one_error", "type_one_low", "type_one_high", "attainable", "estimate", "estimate_sd",
-       "width_mean", "width_mean_se", "width_q10", "width_median", "width_q90", "stamp"},
-      {}};
-  for (const PowerRow& row : report.rows) table.rows.push_back(csv_row(row));
-  return analysis::csv_text(table);
-}
-
-std::string power_markdown(const PowerReport& report) {
-  return analysis::table_markdown(table_of(report), "SIMULATED");
 }
 
 std::string power_json(const PowerReport& report) {

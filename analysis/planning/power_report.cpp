@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -44,15 +43,14 @@ WidthFigures widths_of(const PowerCell& cell) {
           *analysis::quantile(widths, 0.9)};
 }
 
-PowerRow row_of(const PowerProgress& progress, const PowerCell& population, const PowerCell& null) {
-  const PowerPlan& plan = progress.plan;
+PowerRow row_of(const PowerRuns& power, const PowerCell& population, const PowerCell& null) {
+  const PowerPlan& plan = power.plan;
   PowerRow row;
-  row.has_fixed_counts = progress.setting.has_fixed_counts;
+  row.has_fixed_counts = power.setting.has_fixed_counts;
   row.level = plan.level;
   row.participants = population.participants;
   row.significant = significant_of(population, plan.level);
-  row.power = power_interval(plan, row.significant);
-  row.stopped_early = row.significant.n < plan.runs;
+  row.power = analysis::wilson_interval(row.significant);
   std::vector<double> estimates;
   for (const PowerRun& run : population.runs) estimates.push_back(run.estimate);
   const Moments moments = moments_of(estimates);
@@ -132,13 +130,10 @@ std::string_view name_of(ErrorVerdict verdict) {
   return name_in(kNames, verdict);
 }
 
-PowerReport make_power_report(const PowerProgress& progress) {
-  if (!progress.shard.is_all() || !is_complete(progress)) {
-    throw std::invalid_argument("make_power_report: the run is not complete");
-  }
-  PowerReport report{progress.setting, progress.plan, {}, {}, {}};
-  for (std::size_t i = 0; i + 1 < progress.cells.size(); i += 2) {
-    report.rows.push_back(row_of(progress, progress.cells[i], progress.cells[i + 1]));
+PowerReport make_power_report(const PowerRuns& power) {
+  PowerReport report{power.setting, power.plan, {}, {}, {}};
+  for (std::size_t i = 0; i + 1 < power.cells.size(); i += 2) {
+    report.rows.push_back(row_of(power, power.cells[i], power.cells[i + 1]));
   }
   for (const double target : kPowerTargets) {
     report.targets.push_back(target_size(report.rows, target));

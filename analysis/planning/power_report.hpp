@@ -3,7 +3,7 @@
 #pragma once
 
 #include "analysis/figures/figure.hpp"
-#include "analysis/planning/power_progress.hpp"
+#include "analysis/planning/power_runs.hpp"
 #include "analysis/statistics/proportion.hpp"
 
 #include <optional>
@@ -25,10 +25,9 @@ struct WidthFigures {
 struct PowerRow {
   int participants = 0;
   analysis::Proportion significant;  ///< runs with the population
-  analysis::Interval power{};        ///< power_interval
-  bool stopped_early = false;
-  double estimate = 0.0;     ///< mean over runs
-  double estimate_sd = 0.0;  ///< from run to run
+  analysis::Interval power{};        ///< Wilson, 95 %
+  double estimate = 0.0;             ///< mean over runs
+  double estimate_sd = 0.0;          ///< from run to run
   WidthFigures width;
   analysis::Proportion false_alarms;  ///< significant runs under the null
   analysis::Interval type_one{};      ///< Wilson, 95 %
@@ -65,9 +64,7 @@ struct PowerReport {
   std::vector<std::string> warnings;  ///< against misreadings, one line each
 };
 
-/// \param progress  complete, and of all shards
-/// \throws std::invalid_argument otherwise
-[[nodiscard]] PowerReport make_power_report(const PowerProgress& progress);
+[[nodiscard]] PowerReport make_power_report(const PowerRuns& power);
 
 /// Stamp of everything that comes from a power run: what its power is given.
 [[nodiscard]] std::string power_stamp(const PowerSetting& setting);
@@ -77,11 +74,9 @@ struct PowerReport {
 /// \return an interval of shares in per cent: "[80.9, 87.3]"
 [[nodiscard]] std::string power_range(const analysis::Interval& interval);
 
-/// Tables for a terminal. This and the other texts end with a line feed.
+/// Tables for a terminal. This and the JSON end with a line feed.
 [[nodiscard]] std::string power_text(const PowerReport& report);
 [[nodiscard]] std::string power_json(const PowerReport& report);
-[[nodiscard]] std::string power_csv(const PowerReport& report);
-[[nodiscard]] std::string power_markdown(const PowerReport& report);
 /// A figure of power, type-I error and interval width against the number of participants.
 [[nodiscard]] analysis::Figure power_figure(const PowerReport& report);
 

@@ -1,7 +1,7 @@
 #include "analysis/planning/uncertain_subject.hpp"
 
 #include "analysis/planning/fit_report.hpp"
-#include "analysis/planning/power_progress.hpp"
+#include "analysis/planning/power_runs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/hash.hpp"

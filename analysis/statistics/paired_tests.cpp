@@ -307,18 +307,6 @@ double mcnemar_mid_p(int first_only, int second_only) {
   return 2.0 * boost::math::cdf(half, fewer) - as_extreme;
 }
 
-Interval paired_share_interval(int pairs, int first_only, int second_only, double level) {
-  if (first_only < 0 || second_only < 0 || pairs < first_only || pairs - first_only < second_only) {
-    throw std::invalid_argument("a paired difference needs counts that fit among its pairs");
-  }
-  const double n = pairs + 2.0;
-  const double difference = (first_only - second_only) / n;
-  const double differing = (first_only + second_only + 1.0) / n;
-  const double z = boost::math::quantile(boost::math::normal_distribution<>(), 0.5 + level / 2.0);
-  const double half = z * std::sqrt((differing - difference * difference) / n);
-  return {std::max(difference - half, -1.0), std::min(difference + half, 1.0)};
-}
-
 std::optional<CochranQ> cochran_q(Occasions occasions) {
   if (occasions.empty()) return std::nullopt;
   const std::size_t methods = occasions.front().size();

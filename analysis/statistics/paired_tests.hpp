@@ -104,16 +104,6 @@ struct OddsRatio {
 /// \throws std::invalid_argument if a count is negative
 [[nodiscard]] double mcnemar_mid_p(int first_only, int second_only);
 
-/// The interval of a difference of two shares among the same pairs, first less second: Wald's after
-/// half a pair is added to each of the four kinds of pairs. Source: Agresti and Min 2005,
-/// doi:10.1002/sim.1781.
-/// \param pairs  all of them, >= first_only + second_only
-/// \param first_only  pairs in which only the first holds, >= 0; the other is its mirror
-/// \return a part of [-1, 1]
-/// \throws std::invalid_argument if a count is negative, or pairs are fewer than their parts
-[[nodiscard]] Interval paired_share_interval(int pairs, int first_only, int second_only,
-                                             double level = kConfidenceLevel);
-
 struct CochranQ {
   double q = 0.0;
   int degrees_of_freedom = 0;  ///< methods - 1

@@ -1,6 +1,6 @@
 #include "analysis/planning/changes_words.hpp"
 
-#include "analysis/planning/power_progress.hpp"
+#include "analysis/planning/power_runs.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>

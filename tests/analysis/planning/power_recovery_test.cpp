@@ -13,11 +13,8 @@ planning::PowerReport report_of(const RehearsedTinyStudy& study, std::vector<int
   planning::PowerPlan plan;
   plan.participants = std::move(sizes);
   plan.runs = runs;
-  plan.stop_early = false;
-  planning::PowerProgress progress = planning::new_progress({}, plan, {});
-  planning::make_runs(study.planned(bank, plan.participants.back(), first_half_loss), study.test,
-                      {.jobs = 2}, progress);
-  return planning::make_power_report(progress);
+  return planning::make_power_report(planning::make_runs(
+      study.planned(bank, plan.participants.back(), first_half_loss), study.test, {}, plan, 2));
 }
 
 /// The type-I error must lie within four Monte-Carlo standard errors of the attainable error.

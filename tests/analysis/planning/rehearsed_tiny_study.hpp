@@ -1,7 +1,7 @@
 /// \file A tiny study for many simulations.
 #pragma once
 
-#include "analysis/planning/power_progress.hpp"
+#include "analysis/planning/power_runs.hpp"
 #include "analysis/planning/rehearsed_study.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/session/tiny_study.hpp"

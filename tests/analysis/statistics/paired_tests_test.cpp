@@ -245,44 +245,6 @@ double p_by_listing(int first_only, int second_only) {
 
 }  // namespace
 
-// Fagerland, Lydersen, Laake 2013, table 1: 1 and 7 children improved with one treatment only.
-TEST_CASE(
-    "the interval of a paired difference holds the truth in 95 % of samples, by listing them") {
-  constexpr int kPairs = 40;
-  // Shares of pairs in which only the first, or only the second holds.
-  const auto [first, second] = GENERATE(std::pair(0.05, 0.05), std::pair(0.2, 0.05),
-                                        std::pair(0.3, 0.3), std::pair(0.5, 0.1));
-  double held = 0.0;
-  for (int a = 0; a <= kPairs; ++a) {
-    for (int b = 0; a + b <= kPairs; ++b) {
-      const int rest = kPairs - a - b;
-      const double log_ways = std::lgamma(kPairs + 1.0) - std::lgamma(a + 1.0) -
-                              std::lgamma(b + 1.0) - std::lgamma(rest + 1.0);
-      const double chance = std::exp(log_ways + a * std::log(first) + b * std::log(second) +
-                                     rest * std::log(1.0 - first - second));
-      const analysis::Interval interval = analysis::paired_share_interval(kPairs, a, b);
-      const double truth = first - second;
-      if (interval.low <= truth && truth <= interval.high) held += chance;
-    }
-  }
-  INFO(first << " and " << second << ": held in " << held);
-  CHECK(held > 0.93);
-  CHECK(held < 0.995);
-}
-
-TEST_CASE("the interval of a paired difference is mirrored by the order and stays in range") {
-  const analysis::Interval one = analysis::paired_share_interval(50, 12, 3);
-  const analysis::Interval other = analysis::paired_share_interval(50, 3, 12);
-  CHECK(one.low == -other.high);
-  CHECK(one.high == -other.low);
-  CHECK(analysis::paired_share_interval(2, 2, 0).high <= 1.0);
-  // By hand: 9 / 52 and 16 / 52, and a standard error of 0.07308.
-  CHECK(one.low == Approx(0.0298).margin(5e-5));
-  CHECK(one.high == Approx(0.3163).margin(5e-5));
-  CHECK_THROWS_AS(analysis::paired_share_interval(5, 3, 3), std::invalid_argument);
-  CHECK_THROWS_AS(analysis::paired_share_interval(5, -1, 3), std::invalid_argument);
-}
-
 // Expected values: SciPy 1.10, 2 binom.cdf(b, b + c, 0.5) - binom.pmf(b, b + c, 0.5).
 TEST_CASE("mcnemar_mid_p gives the values of an independent implementation") {
   CHECK(analysis::mcnemar_mid_p(3, 12) == Approx(0.02127075195312501).epsilon(1e-12));

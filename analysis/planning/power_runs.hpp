@@ -1,0 +1,65 @@
+/// \file The runs of a power plan: the numbers of every simulated study.
+#pragma once
+
+#include "analysis/planning/power_plan.hpp"
+#include "analysis/planning/primary_test.hpp"
+#include "protocols/simulation/subject_model.hpp"
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial::planning {
+
+/// In place of the hash of fields: nobody feels anything.
+inline constexpr std::string_view kNoFields = "none";
+
+/// What a power run simulates. Two runs with equal settings and plans simulate the same studies.
+struct PowerSetting {
+  std::string study;     ///< its name
+  std::string protocol;  ///< its name
+  std::string test;      ///< words_of the primary test
+  std::string estimate;  ///< estimate_words
+  std::string seal;      ///< study_seal of the simulated key, hexadecimal: the whole study file
+  std::string fields;    ///< SHA-256 of the force fields that are felt, hexadecimal; or kNoFields
+  std::string subject;   ///< words_of the subject model, or of the stated people
+  std::string program;   ///< version
+  int draws = 0;         ///< of a fit, from which each study takes one; 0: nothing is uncertain
+  /// Whether every participant's order presents every class equally often. Otherwise the right
+  /// answers that a bias gives, and so all numbers, depend on the orders that the study's seed
+  /// draws.
+  bool has_fixed_counts = true;
+  std::string device{};  ///< analysis::device_words of what the subject holds
+
+  /// Whether people feel the study's textures; otherwise only how often they are right is stated.
+  [[nodiscard]] bool feels() const { return fields != kNoFields; }
+};
+
+/// \return a subject model on one line: "feature_noise 0.28 (spread 0.2), lapse 0.02 (spread 0), .."
+[[nodiscard]] std::string words_of(const simulation::SubjectModel& subject);
+
+/// The studies of one size and hypothesis.
+struct PowerCell {
+  int participants = 0;
+  Hypothesis hypothesis = Hypothesis::population;
+  std::vector<PowerRun> runs;  ///< in order
+
+  friend bool operator==(const PowerCell&, const PowerCell&) = default;
+};
+
+struct PowerRuns {
+  PowerSetting setting;
+  PowerPlan plan;                ///< settled
+  std::vector<PowerCell> cells;  ///< by size, the population before the null
+};
+
+/// Makes the runs of a plan. They depend on setting and plan alone, not on the number of threads.
+/// \param study  made for at least the plan's largest size
+/// \param jobs  threads, >= 1
+/// \param progress  called between blocks of runs, from one thread, with the share that is done
+[[nodiscard]] PowerRuns make_runs(const Rehearsal& study, const PrimaryTest& test,
+                                  PowerSetting setting, const PowerPlan& plan, int jobs,
+                                  const std::function<void(int done, int of)>& progress = {});
+
+}  // namespace touchtrial::planning

@@ -1,0 +1,114 @@
+#include "analysis/planning/power_runs.hpp"
+
+#include "analysis/planning/power_report.hpp"
+#include "analysis/planning/rehearsed_tiny_study.hpp"
+#include "support/catch.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+planning::PowerPlan small_plan(int runs) {
+  planning::PowerPlan plan;
+  plan.participants = {3, 5};
+  plan.runs = runs;
+  return plan;
+}
+
+/// The runs of a plan by hand: `run_of` makes each from its size, hypothesis and number.
+template <typename RunOf>
+planning::PowerRuns runs_by_hand(int runs, const RunOf& run_of) {
+  planning::PowerRuns power{{}, small_plan(runs), {}};
+  for (const int size : power.plan.participants) {
+    for (const auto hypothesis : {planning::Hypothesis::population, planning::Hypothesis::null}) {
+      planning::PowerCell& cell = power.cells.emplace_back();
+      cell.participants = size;
+      cell.hypothesis = hypothesis;
+      for (int run = 0; run < runs; ++run) cell.runs.push_back(run_of(cell, run));
+    }
+  }
+  return power;
+}
+
+TEST_CASE("a power run is the same with any number of threads, and keeps its first runs") {
+  TinyStudyOptions options;
+  options.side_px = 60;
+  options.trials = R"({"repeats":2})";
+  const RehearsedTinyStudy tiny(options);
+  const planning::BankedFeelings bank = tiny.bank();
+  const auto made = [&](int runs, int jobs) {
+    return planning::make_runs(tiny.planned(bank), tiny.test, {}, small_plan(runs), jobs).cells;
+  };
+  const std::vector<planning::PowerCell> one = made(130, 1);
+  CHECK(one == made(130, 3));
+  CHECK(one.size() == 4);
+  const std::vector<planning::PowerCell> fewer = made(20, 2);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    CHECK(std::equal(fewer[i].runs.begin(), fewer[i].runs.end(), one[i].runs.begin()));
+  }
+}
+
+TEST_CASE("a bank of feelings is the same with any number of threads") {
+  const RehearsedTinyStudy tiny;
+  const planning::BankedFeelings one = tiny.bank(3, 2, 1, 1);
+  const planning::BankedFeelings other = tiny.bank(3, 2, 1, 3);
+  for (std::uint64_t draw = 0; draw < 3; ++draw) {
+    CHECK(one.felt({1, 0, 0}, {5, 1, 1, draw}) == other.felt({1, 0, 0}, {5, 1, 1, draw}));
+  }
+  CHECK(one.felt({1, 0, 0}, {5, 1, 1, 0}) != one.felt({1, 0, 0}, {5, 1, 1, 1}));
+  CHECK(one.knowledge(7)->examples.front().features ==
+        other.knowledge(7)->examples.front().features);
+}
+
+TEST_CASE("to a power run another hand is another subject model") {
+  const simulation::SubjectModel usual;
+  simulation::SubjectModel grip;
+  grip.hand = device::HandKind::stylus_grip;
+  simulation::SubjectModel spread;
+  spread.hand_spread = 0.2;
+  CHECK(planning::words_of(grip) != planning::words_of(usual));
+  CHECK(planning::words_of(spread) != planning::words_of(usual));
+}
+
+TEST_CASE("the report of a power run agrees with its runs") {
+  const planning::PowerReport report = planning::make_power_report(
+      runs_by_hand(4, [](const planning::PowerCell& cell, int run) -> planning::PowerRun {
+        const double width = cell.participants == 3 ? 0.4 : 0.2;
+        const bool null = cell.hypothesis == planning::Hypothesis::null;
+        const double p = null ? 0.5 : run == 0 && cell.participants == 3 ? 0.06 : 0.01;
+        return {p, null ? 0.04 : 0.0, 0.5, 0.5 - width / 2, 0.5 + width / 2};
+      }));
+  REQUIRE(report.rows.size() == 2);
+  CHECK(report.rows[0].significant == (analysis::Proportion{4, 3}));
+  CHECK(report.rows[1].significant == (analysis::Proportion{4, 4}));
+  CHECK(report.rows[0].width.mean == Approx(0.4));
+  CHECK(report.rows[1].width.median == Approx(0.2));
+  CHECK(report.rows[0].false_alarms == (analysis::Proportion{4, 0}));
+  CHECK(report.rows[0].attainable == Approx(0.04));
+  CHECK(report.targets[0].smallest == 5);
+  CHECK_FALSE(report.targets[0].surely.has_value());
+  const auto json = nlohmann::json::parse(planning::power_json(report));
+  CHECK(json.at("simulated") == true);
+  CHECK(json.at("stamp") == "SIMULATED");
+  CHECK(json.at("sizes").at(1).at("power").at("p") == 1.0);
+  CHECK(json.at("targets").at(1).at("smallest") == 5);
+  const std::string text = planning::power_text(report);
+  CHECK(text.starts_with(planning::power_stamp(report.setting)));
+  CHECK(text.ends_with(planning::power_stamp(report.setting) + "\n"));
+}
+
+TEST_CASE("there is no verdict on the test's error for orders with unequal counts of classes") {
+  planning::PowerRuns power = runs_by_hand(100, [](const planning::PowerCell&, int) {
+    return planning::PowerRun{0.01, 0.04, 0.5, 0.4, 0.6};
+  });
+  const auto report = [&] { return planning::make_power_report(power); };
+  CHECK(planning::verdict_of(report().rows[0]) == planning::ErrorVerdict::excessive);
+  const std::size_t warnings = report().warnings.size();
+  power.setting.has_fixed_counts = false;
+  CHECK(planning::verdict_of(report().rows[0]) == planning::ErrorVerdict::conditional);
+  CHECK(report().warnings.size() == warnings - 2);  // one for each size
+}
+
+}  // namespace
+}  // namespace touchtrial
