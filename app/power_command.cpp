@@ -29,7 +29,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
 namespace {
@@ -41,7 +40,6 @@ struct PowerArguments {
   fs::path subject;
   fs::path fit;
   std::string on;
-  fs::path folder;
   std::vector<std::string> methods;
   std::string sizes = "8,12,16,20,30";
   std::optional<double> margin;
@@ -174,22 +172,6 @@ planning::PowerRuns made_runs(const PowerPreparation& prepared, const planning::
   return planning::make_runs(study, prepared.test, prepared.setting(), plan, jobs, bar);
 }
 
-/// Without gnuplot it warns, and leaves the figures out.
-void write_results(const fs::path& folder, const planning::PowerReport& report) {
-  replace_file(folder / "power.json", planning::power_json(report));
-  const analysis::Figure figure = planning::power_figure(report);
-  try {
-    for (const auto& [format, name] : {std::pair(analysis::FigureFormat::svg, "power.svg"),
-                                       std::pair(analysis::FigureFormat::pdf, "power.pdf")}) {
-      replace_file(folder / name, analysis::drawn(figure, format));
-    }
-  } catch (const FileError&) {
-    throw;
-  } catch (const Error& error) {
-    spdlog::warn("without figures: {}", error.what());
-  }
-}
-
 /// \throws UsageError if there would be no effect
 double require_effect(double effect) {
   if (effect != 0.0) return effect;
@@ -236,11 +218,8 @@ int power(PowerArguments arguments) {
   }
   plan.level = prepared.test.alpha;
   plan.margin = prepared.test.margin.value_or(0.0);
-  // Whether the folder can be made is known before the runs.
-  if (!arguments.folder.empty()) make_folder(arguments.folder);
   const planning::PowerReport report =
       planning::make_power_report(made_runs(prepared, plan, arguments.jobs));
-  if (!arguments.folder.empty()) write_results(arguments.folder, report);
   print(arguments.json ? planning::power_json(report) : planning::power_text(report));
   return 0;
 }
@@ -373,10 +352,6 @@ void add_power_command(CLI::App& program, Action& action) {
   add_study_argument(*command, arguments->study);
   add_plan_options(*command, *arguments);
   add_jobs_option(*command, arguments->jobs);
-  command
-      ->add_option("-o,--out", arguments->folder,
-                   "Folder for the results as JSON, and for their figure as SVG and PDF")
-      ->check(place_validator());
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] {
     refuse_empty_values(*command);

@@ -1,6 +1,5 @@
 #include "app/threshold_power.hpp"
 
-#include "analysis/planning/power_runs.hpp"
 #include "analysis/planning/threshold_plan.hpp"
 #include "analysis/text_figures.hpp"
 #include "app/console.hpp"

@@ -1,7 +1,7 @@
 /// \file What `power` does for a study of thresholds. Private to app.
 #pragma once
 
-#include "analysis/planning/power_plan.hpp"
+#include "analysis/planning/power_runs.hpp"
 #include "protocols/design/study.hpp"
 #include "protocols/simulation/subject_model.hpp"
 

@@ -1,4 +1,3 @@
-#include "analysis/planning/changes_words.hpp"
 #include "analysis/planning/subject_fit.hpp"
 
 #include <algorithm>
@@ -167,6 +166,25 @@ void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings)
 }
 
 }  // namespace
+
+std::string keys_that_fits_ignore(const simulation::SubjectModel& subject) {
+  using simulation::Training;
+  std::vector<std::string> keys;
+  if (subject.training == Training::own) keys.emplace_back("training");
+  if (subject.training != Training::none && subject.memory_noise > 0.0) {
+    keys.emplace_back("memory_noise");
+  }
+  if (subject.training == Training::none && subject.mapping_noise > 0.0) {
+    keys.emplace_back("mapping_noise");
+  }
+  if (subject.learning.factor > 1.0) keys.emplace_back("learning");
+  if (subject.period_noise_spread > 0.0) keys.emplace_back("period_noise_spread");
+  if (subject.serial.is_on()) keys.emplace_back("serial");
+  if (subject.fatigue.noise_per_min > 0.0 || subject.fatigue.lapse_per_min > 0.0) {
+    keys.emplace_back("fatigue");
+  }
+  return fmt::format("{}", fmt::join(keys, ", "));
+}
 
 std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit& fit,
                                       const FreeParameters& free, const FreeParameters& used) {

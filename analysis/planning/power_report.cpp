@@ -1,14 +1,19 @@
 #include "analysis/planning/power_report.hpp"
 
+#include "analysis/planning/primary_test.hpp"
 #include "analysis/statistics/chance_test.hpp"
 #include "analysis/statistics/descriptive.hpp"
+#include "analysis/text_figures.hpp"
+#include "analysis/text_table.hpp"
 #include "core/named.hpp"
+#include "core/strict_json.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace touchtrial::planning {
 namespace {
@@ -111,6 +116,198 @@ std::vector<std::string> warnings_of(const PowerReport& report) {
   return warnings;
 }
 
+/// What the power is given.
+std::string given_words(const PowerSetting& setting) {
+  if (!setting.feels()) return "given the stated accuracies";
+  return setting.draws > 0 ? "over the uncertainty of a fit (assurance)"
+                           : "given the assumed sensitivity";
+}
+
+std::string stated_null_sentence(const PowerReport& report) {
+  if (report.setting.estimate != kDifferenceWords) {
+    return "Type-I error: for people who guess, everybody.";
+  }
+  return report.plan.margin > 0.0
+             ? fmt::format(
+                   "Type-I error: for the same spread around {:.4g} points, by which the "
+                   "first method is then worse.",
+                   100.0 * report.plan.margin)
+             : std::string("Type-I error: for the same spread around no difference.");
+}
+
+std::string null_sentence(const PowerReport& report) {
+  if (!report.setting.feels()) return stated_null_sentence(report);
+  if (report.plan.margin > 0.0) {
+    return fmt::format(
+        "Power: for methods that feel alike; each presentation is felt as one of the two at "
+        "random. Type-I error: the same, but people miss so many of their right answers with the "
+        "first method that it is worse by the margin, {:.4g} points.",
+        100.0 * report.plan.margin);
+  }
+  return report.setting.estimate == kDifferenceWords
+             ? "Type-I error: for methods that feel alike; each presentation is felt as one of "
+               "the two at random."
+             : "Type-I error: for participants who feel a random texture, whatever is presented, "
+               "with the same biases and lapses.";
+}
+
+constexpr const char* kBankSentence =
+    "Monte-Carlo intervals do not include the error of these explorations and trainings, which "
+    "all studies share: other seeds show it, and more runs do not reduce it.";
+
+constexpr const char* kOrdersSentence =
+    "Orders of this study do not present every class equally often: all numbers, and above all "
+    "type-I errors, hold for the orders that this study's seed draws; another seed gives other "
+    "orders.";
+
+/// One sentence for each target.
+std::vector<std::string> target_sentences(const PowerReport& report) {
+  std::vector<std::string> sentences;
+  for (const TargetSize& target : report.targets) {
+    const std::string power = fmt::format("{:.0f} % power", 100.0 * target.target);
+    if (!target.smallest) {
+      sentences.push_back(power + ": no size given reaches it.");
+    } else if (target.surely == target.smallest) {
+      sentences.push_back(fmt::format("{}: {} participants.", power, *target.smallest));
+    } else {
+      sentences.push_back(fmt::format(
+          "{}: {} participants by the estimate; {}.", power, *target.smallest,
+          target.surely ? fmt::format("{} beyond Monte-Carlo error", *target.surely)
+                        : std::string("no size beyond Monte-Carlo error; more runs would decide")));
+    }
+  }
+  return sentences;
+}
+
+/// How the numbers were obtained.
+std::vector<std::string> method_sentences(const PowerReport& report) {
+  const PowerPlan& plan = report.plan;
+  std::vector<std::string> sentences;
+  sentences.push_back(fmt::format(
+      "{} simulated studies of each size and hypothesis, seed {}; no participant is in two "
+      "of them; {}",
+      plan.runs, plan.seed,
+      !report.setting.feels()
+          ? std::string("answers are drawn from the stated mean and spread. Nobody feels anything: "
+                        "neither device nor hand nor texture has part in the numbers.")
+      : plan.servo ? std::string("every exploration through the servo.")
+                   : fmt::format("feelings drawn from {} explorations of each stimulus and {} "
+                                 "trainings through the servo.",
+                                 plan.explorations, plan.trainings)));
+  if (report.setting.feels() && !plan.servo) sentences.push_back(kBankSentence);
+  if (report.setting.draws > 0) {
+    sentences.push_back(fmt::format(
+        "Assurance: each study has one of {} draws of the fit, so that the numbers are averages "
+        "over what the fit leaves open, given its device and sense.",
+        report.setting.draws));
+  }
+  sentences.push_back(null_sentence(report));
+  if (plan.effect != 0.0) {
+    sentences.push_back(fmt::format(
+        "The effect is not the assumed people's but the one asked for, {:.4g}: a share of "
+        "presentations, the same for everybody, is felt as under the null. The share comes from "
+        "16,000 simulated people, and intervals leave out its error; the table has the mean effect "
+        "of these studies.",
+        plan.effect));
+  }
+  if (plan.first_half_loss > 0.0) {
+    sentences.push_back(fmt::format(
+        "In the first half of their trials, people miss {:.4g} % of their right answers.",
+        100.0 * plan.first_half_loss));
+  }
+  if (!report.setting.has_fixed_counts) sentences.push_back(kOrdersSentence);
+  const bool is_exact = std::ranges::any_of(
+      report.rows, [](const PowerRow& row) { return row.attainable != row.level; });
+  sentences.push_back(
+      is_exact
+          ? fmt::format("Attainable: the exact type-I error; sign patterns are counted, so no p "
+                        "is exactly {}.",
+                        report.plan.level)
+          : "Attainable: the level itself, which a t test of shares holds approximately.");
+  sentences.emplace_back("Monte-Carlo intervals are Wilson's at 95 %.");
+  sentences.push_back("Interval width: of the 95 % t interval of the mean over participants.");
+  return sentences;
+}
+
+std::string power_table(const PowerReport& report) {
+  analysis::TextTable table({"participants", "runs", "power %", "MC interval", "type-I %", "MC 95%",
+                             "attainable %", "error"});
+  for (const PowerRow& row : report.rows) {
+    table.add({std::to_string(row.participants), std::to_string(row.significant.n),
+               power_per_cent(row.estimated_power()), power_range(row.power),
+               power_per_cent(row.estimated_error()), power_range(row.type_one),
+               power_per_cent(row.attainable), std::string(name_of(verdict_of(row)))});
+  }
+  return table.text();
+}
+
+std::string width_table(const PowerReport& report) {
+  const bool compares = report.setting.estimate == kDifferenceWords;
+  analysis::TextTable table({"participants", compares ? "difference" : "accuracy", "SD of studies",
+                             "width", "MC error", "10%", "median", "90%"});
+  for (const PowerRow& row : report.rows) {
+    const WidthFigures& width = row.width;
+    table.add({std::to_string(row.participants), power_per_cent(row.estimate),
+               power_per_cent(row.estimate_sd), power_per_cent(width.mean),
+               fmt::format("{:.2f}", 100.0 * width.standard_error), power_per_cent(width.lower),
+               power_per_cent(width.median), power_per_cent(width.upper)});
+  }
+  return table.text();
+}
+
+using nlohmann::ordered_json;
+
+ordered_json ends_of(const analysis::Interval& interval) {
+  return ordered_json::array({interval.low, interval.high});
+}
+
+ordered_json size_object(const PowerRow& row) {
+  ordered_json object{{"participants", row.participants}};
+  object["power"] = {{"runs", row.significant.n},
+                     {"significant", row.significant.correct},
+                     {"p", row.estimated_power()},
+                     {"interval", ends_of(row.power)}};
+  object["type_one_error"] = {
+      {"runs", row.false_alarms.n},   {"significant", row.false_alarms.correct},
+      {"p", row.estimated_error()},   {"interval", ends_of(row.type_one)},
+      {"attainable", row.attainable}, {"verdict", name_of(verdict_of(row))}};
+  object["estimate"] = {{"mean", row.estimate}, {"sd_between_studies", row.estimate_sd}};
+  object["interval_width"] = {
+      {"mean", row.width.mean},
+      {"standard_error", row.width.standard_error},
+      {"quantiles",
+       {{"0.1", row.width.lower}, {"0.5", row.width.median}, {"0.9", row.width.upper}}}};
+  return object;
+}
+
+ordered_json target_object(const TargetSize& target) {
+  const auto size = [](const std::optional<int>& participants) {
+    return participants ? ordered_json(*participants) : ordered_json(nullptr);
+  };
+  return {{"power", target.target},
+          {"smallest", size(target.smallest)},
+          {"surely", size(target.surely)}};
+}
+
+ordered_json plan_object(const PowerPlan& plan) {
+  return {{"participants", plan.participants},
+          {"runs", plan.runs},
+          {"seed", plan.seed},
+          {"servo", plan.servo},
+          {"explorations", plan.explorations},
+          {"trainings", plan.trainings},
+          {"margin", plan.margin},
+          {"first_half_loss", plan.first_half_loss},
+          {"effect", plan.effect}};
+}
+
+ordered_json methods_object(const PowerReport& report) {
+  return {{"monte_carlo_interval", "Wilson"},
+          {"level", analysis::kConfidenceLevel},
+          {"interval_width", "95 % t interval over participants"},
+          {"sentences", method_sentences(report)}};
+}
+
 }  // namespace
 
 ErrorVerdict verdict_of(const PowerRow& row) noexcept {
@@ -130,6 +327,14 @@ std::string_view name_of(ErrorVerdict verdict) {
   return name_in(kNames, verdict);
 }
 
+std::string power_per_cent(double share) {
+  return fmt::format("{:.1f}", 100.0 * share);
+}
+
+std::string power_range(const analysis::Interval& interval) {
+  return "[" + power_per_cent(interval.low) + ", " + power_per_cent(interval.high) + "]";
+}
+
 PowerReport make_power_report(const PowerRuns& power) {
   PowerReport report{power.setting, power.plan, {}, {}, {}};
   for (std::size_t i = 0; i + 1 < power.cells.size(); i += 2) {
@@ -140,6 +345,58 @@ PowerReport make_power_report(const PowerRuns& power) {
   }
   report.warnings = warnings_of(report);
   return report;
+}
+
+std::string power_stamp(const PowerSetting& setting) {
+  return "SIMULATED: power " + given_words(setting);
+}
+
+std::string power_text(const PowerReport& report) {
+  const std::string stamp = power_stamp(report.setting) + "\n";
+  std::string text = analysis::simulated_on_line(report.setting.device) + stamp;
+  text += analysis::wrapped("study    ", report.setting.study + ", " + report.setting.protocol);
+  text += analysis::wrapped("test     ", report.setting.test);
+  text += analysis::wrapped("assumed  ", report.setting.subject);
+  text +=
+      analysis::heading("Power and type-I error of the primary test", true) + power_table(report);
+  text += analysis::heading(
+              "Estimate, and width of its 95 % interval: mean, and quantiles over studies (points)",
+              true) +
+          width_table(report) + "\n";
+  for (const std::string& sentence : target_sentences(report))
+    text += analysis::wrapped("", sentence);
+  for (const std::string& warning : report.warnings) text += analysis::wrapped("! ", warning);
+  text += "\n";
+  for (const std::string& sentence : method_sentences(report))
+    text += analysis::wrapped("", sentence);
+  return text + stamp;
+}
+
+std::string power_json(const PowerReport& report) {
+  const PowerSetting& setting = report.setting;
+  ordered_json object;
+  object["simulated"] = true;
+  object["stamp"] = "SIMULATED";
+  object["simulated_on"] = setting.device;
+  object["claim"] = power_stamp(setting);
+  object["study"] = setting.study;
+  object["protocol"] = setting.protocol;
+  object["test"] = {
+      {"words", setting.test}, {"level", report.plan.level}, {"estimate", setting.estimate}};
+  object["assumed"] = setting.subject;
+  object["draws"] = setting.draws;
+  object["plan"] = plan_object(report.plan);
+  object["sizes"] = ordered_json::array();
+  for (const PowerRow& row : report.rows) object["sizes"].push_back(size_object(row));
+  object["targets"] = ordered_json::array();
+  for (const TargetSize& target : report.targets) {
+    object["targets"].push_back(target_object(target));
+  }
+  object["warnings"] = report.warnings;
+  object["methods"] = methods_object(report);
+  object["program"] = {
+      {"version", setting.program}, {"seal", setting.seal}, {"fields", setting.fields}};
+  return json_text(object);
 }
 
 }  // namespace touchtrial::planning

@@ -2,7 +2,6 @@
 /// sensitivity. Source: docs/power.md.
 #pragma once
 
-#include "analysis/figures/figure.hpp"
 #include "analysis/planning/power_runs.hpp"
 #include "analysis/statistics/proportion.hpp"
 
@@ -77,7 +76,5 @@ struct PowerReport {
 /// Tables for a terminal. This and the JSON end with a line feed.
 [[nodiscard]] std::string power_text(const PowerReport& report);
 [[nodiscard]] std::string power_json(const PowerReport& report);
-/// A figure of power, type-I error and interval width against the number of participants.
-[[nodiscard]] analysis::Figure power_figure(const PowerReport& report);
 
 }  // namespace touchtrial::planning

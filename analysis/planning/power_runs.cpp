@@ -1,8 +1,9 @@
 #include "analysis/planning/power_runs.hpp"
 
-#include "analysis/planning/changes_words.hpp"
+#include "core/errors.hpp"
 #include "core/hash.hpp"
 #include "core/parallel.hpp"
+#include "core/random.hpp"
 #include "core/strict_json.hpp"
 #include "device/simulated/simulated_hand.hpp"
 
@@ -15,6 +16,33 @@
 namespace touchtrial::planning {
 namespace {
 
+constexpr int kMostExplorations = 100'000;
+constexpr int kMostTrainings = 1'000;
+
+void require_range(const char* option, int value, int low, int high) {
+  if (value >= low && value <= high) return;
+  throw UsageError(fmt::format("{}: {} is out of range; give {} to {}", option, value, low, high));
+}
+
+void settle_sizes(PowerPlan& plan) {
+  if (plan.participants.empty()) {
+    throw UsageError("--participants: no size is given; give one or more, for instance 8,12,16");
+  }
+  if (plan.participants.size() > kMostPowerSizes) {
+    throw UsageError(fmt::format("--participants: {} sizes are given; give {} at most",
+                                 plan.participants.size(), kMostPowerSizes));
+  }
+  for (const int size : plan.participants) {
+    // One participant gives no interval over participants.
+    require_range("--participants", size, 2, kMostPowerParticipants);
+  }
+  std::ranges::sort(plan.participants);
+  const auto twice = std::ranges::adjacent_find(plan.participants);
+  if (twice != plan.participants.end()) {
+    throw UsageError(fmt::format("--participants: {} is given twice; give each size once", *twice));
+  }
+}
+
 std::string with_spread(const char* name, double value, double spread) {
   return std::string(name) + " " + number_text(value) + " (spread " + number_text(spread) + ")";
 }
@@ -26,6 +54,47 @@ std::string digest_of(const simulation::SubjectModel& subject) {
   hasher.add(simulation::subject_model_json(subject));
   hasher.add(device::device_model_json(subject.device));
   return to_hex(hasher.finish()).substr(0, kShown);
+}
+
+/// How people learn, with a comma before it.
+std::string words_of_training(const simulation::SubjectModel& subject) {
+  std::string words;
+  if (subject.training == simulation::Training::own) words += ", each by a training of their own";
+  if (subject.training == simulation::Training::none) {
+    return fmt::format(", untrained, mapping noise {}", number_text(subject.mapping_noise));
+  }
+  if (subject.memory_noise > 0.0) words += ", memory noise " + number_text(subject.memory_noise);
+  return words;
+}
+
+/// Each change from trial to trial, with a comma before it, and whether power ignores it.
+std::string words_of_changes(const simulation::SubjectModel& subject) {
+  std::string words = words_of_training(subject);
+  if (subject.learning.factor > 1.0) {
+    words += fmt::format(
+        ", noise at first {} times as large (spread {}), over {} trials, {} "
+        "forgotten between visits",
+        number_text(subject.learning.factor), number_text(subject.learning.spread),
+        number_text(subject.learning.trials), number_text(subject.learning.forgotten));
+  }
+  if (subject.period_noise_spread > 0.0) {
+    words += ", period noise spread " + number_text(subject.period_noise_spread);
+  }
+  if (const simulation::SerialDependence& serial = subject.serial; serial.is_on()) {
+    words += fmt::format(
+        ", leans on the last answer by {} (spread {}) and stimulus by {} (spread "
+        "{})",
+        number_text(serial.answer), number_text(serial.answer_spread), number_text(serial.stimulus),
+        number_text(serial.stimulus_spread));
+  }
+  if (subject.fatigue.noise_per_min > 0.0 || subject.fatigue.lapse_per_min > 0.0) {
+    words += fmt::format(", tires by {} (lapses {}) a minute, of which a break takes {} away",
+                         number_text(subject.fatigue.noise_per_min),
+                         number_text(subject.fatigue.lapse_per_min),
+                         number_text(subject.fatigue.recovered));
+  }
+  if (subject.thought) words += ", thinks longer about hard trials (without effect on power)";
+  return words;
 }
 
 /// The number of runs between two reports of progress.
@@ -44,6 +113,34 @@ void make_block(const Rehearsal& study, const PrimaryTest& test, const PowerPlan
 }
 
 }  // namespace
+
+void settle(PowerPlan& plan) {
+  settle_sizes(plan);
+  require_range("--runs", plan.runs, 1, kMostPowerRuns);
+  require_range("--explorations", plan.explorations, 1, kMostExplorations);
+  require_range("--trainings", plan.trainings, 1, kMostTrainings);
+  if (!(plan.effect >= -1.0 && plan.effect <= 1.0)) {
+    throw UsageError(
+        fmt::format("--effect: {:.4g} is out of range; give a share from -1 to 1", plan.effect));
+  }
+  if (!(plan.first_half_loss >= 0.0 && plan.first_half_loss <= 1.0)) {
+    throw UsageError(fmt::format("--first-half-loss: {} is out of range; give a share from 0 to 1",
+                                 plan.first_half_loss));
+  }
+  const std::int64_t all =
+      static_cast<std::int64_t>(plan.participants.size()) * std::int64_t{plan.runs};
+  if (all > kMostPowerRunsInAll) {
+    throw UsageError(fmt::format(
+        "--runs: {} runs of {} sizes are {} in all; give fewer runs or sizes, {} in all at most",
+        plan.runs, plan.participants.size(), all, kMostPowerRunsInAll));
+  }
+}
+
+std::uint64_t study_seed(std::uint64_t seed, int participants, Hypothesis hypothesis, int run) {
+  const std::string purpose =
+      fmt::format("power: {}, {} participants", name_of(hypothesis), participants);
+  return RandomStream(seed, purpose, static_cast<std::uint64_t>(run)).bits();
+}
 
 std::string words_of(const simulation::SubjectModel& subject) {
   std::string words =

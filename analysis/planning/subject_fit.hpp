@@ -83,6 +83,10 @@ using FitProgress = std::function<void(double share)>;
                                      const simulation::SubjectModel& subject,
                                      const FitOptions& options, const FitProgress& progress = {});
 
+/// What a fit, which takes all trials of all people as alike, ignores of the model: the keys with
+/// commas between them; "" if it ignores nothing.
+[[nodiscard]] std::string keys_that_fits_ignore(const simulation::SubjectModel& subject);
+
 /// What the data of a finished fit cannot tell, one line each.
 /// \param free  parameters that were to be estimated
 /// \param used  parameters that could be estimated

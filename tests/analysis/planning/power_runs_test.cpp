@@ -2,24 +2,71 @@
 
 #include "analysis/planning/power_report.hpp"
 #include "analysis/planning/rehearsed_tiny_study.hpp"
+#include "core/errors.hpp"
 #include "support/catch.hpp"
+
+#include <algorithm>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
 namespace touchtrial {
 namespace {
 
-planning::PowerPlan small_plan(int runs) {
+planning::PowerPlan plan_of(const std::vector<int>& sizes, int runs = 1000) {
   planning::PowerPlan plan;
-  plan.participants = {3, 5};
+  plan.participants = sizes;
   plan.runs = runs;
   return plan;
+}
+
+std::string refusal(planning::PowerPlan plan) {
+  try {
+    planning::settle(plan);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_CASE("sizes may be in any order, but each only once") {
+  planning::PowerPlan plan = plan_of({20, 8, 12});
+  planning::settle(plan);
+  CHECK(plan.participants == std::vector<int>{8, 12, 20});
+  CHECK_THAT(refusal(plan_of({8, 12, 8})), holds_text("8 is given twice"));
+}
+
+TEST_CASE("an impossible plan is refused with the option and its range") {
+  CHECK_THAT(refusal(plan_of({})), holds_text("--participants"));
+  CHECK_THAT(refusal(plan_of({1, 8})), holds_text("1 is out of range"));
+  CHECK_THAT(refusal(plan_of({8, 1000000000})), holds_text("1000000000"));
+  CHECK_THAT(refusal(plan_of({8}, 0)), holds_text("--runs"));
+  CHECK_THAT(refusal(plan_of({8}, -5)), holds_text("--runs"));
+  CHECK_THAT(refusal(plan_of({8}, 2000000000)), holds_text("--runs"));
+  CHECK_THAT(refusal(plan_of(std::vector<int>(65, 8))), holds_text("65 sizes"));
+  std::vector<int> many;
+  for (int i = 2; i < 40; ++i) many.push_back(i);
+  CHECK_THAT(refusal(plan_of(many, 100000)), holds_text("in all"));
+}
+
+TEST_CASE("every simulated study has a seed of its own") {
+  std::set<std::uint64_t> seeds;
+  for (const int size : {8, 12}) {
+    for (const planning::Hypothesis hypothesis :
+         {planning::Hypothesis::population, planning::Hypothesis::null}) {
+      for (int run = 0; run < 100; ++run) {
+        seeds.insert(planning::study_seed(1, size, hypothesis, run));
+        seeds.insert(planning::study_seed(2, size, hypothesis, run));
+      }
+    }
+  }
+  CHECK(seeds.size() == 800);
 }
 
 /// The runs of a plan by hand: `run_of` makes each from its size, hypothesis and number.
 template <typename RunOf>
 planning::PowerRuns runs_by_hand(int runs, const RunOf& run_of) {
-  planning::PowerRuns power{{}, small_plan(runs), {}};
+  planning::PowerRuns power{{}, plan_of({3, 5}, runs), {}};
   for (const int size : power.plan.participants) {
     for (const auto hypothesis : {planning::Hypothesis::population, planning::Hypothesis::null}) {
       planning::PowerCell& cell = power.cells.emplace_back();
@@ -38,7 +85,8 @@ TEST_CASE("a power run is the same with any number of threads, and keeps its fir
   const RehearsedTinyStudy tiny(options);
   const planning::BankedFeelings bank = tiny.bank();
   const auto made = [&](int runs, int jobs) {
-    return planning::make_runs(tiny.planned(bank), tiny.test, {}, small_plan(runs), jobs).cells;
+    return planning::make_runs(tiny.planned(bank), tiny.test, {}, plan_of({3, 5}, runs), jobs)
+        .cells;
   };
   const std::vector<planning::PowerCell> one = made(130, 1);
   CHECK(one == made(130, 3));
