@@ -164,7 +164,7 @@ planning::PowerRuns made_runs(const PowerPreparation& prepared, const planning::
   const session::StimulusSource source(*prepared.pack, prepared.key.study.rendering);
   const simulation::LabelledFields fields(prepared.key, source);
   const auto feelings = feelings_for(prepared, plan, jobs, fields);
-  planning::RehearsalOptions options{.first_half_loss = plan.first_half_loss};
+  planning::RehearsalOptions options;
   if (plan.effect != 0.0) options.effect = plan.effect;
   if (prepared.fitted) options.draws = prepared.fitted->draws;
   const planning::RehearsedStudy study(prepared.study, prepared.subject, prepared.test, *feelings,
@@ -312,20 +312,14 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
                   "accuracy, or of two methods a difference of accuracies, as a share")
       ->type_name("SHARE")
       ->excludes(command.get_option("--margin"));
-  command
-      .add_option("--first-half-loss", plan.first_half_loss,
-                  "Share of right answers that people miss in the first half of their trials, as "
-                  "they learn; 0 to 1")
-      ->type_name("SHARE")
-      ->capture_default_str();
   command.add_flag(
       "--servo", plan.servo,
       "Run every exploration through the servo, for comparison; some hundred times slower");
   add_threshold_options(command, arguments.of_thresholds);
   command.get_option("--mean")->excludes(fit);
   // They describe people who feel.
-  for (const char* option : {"--subject", "--on", "--explorations", "--trainings",
-                             "--first-half-loss", "--effect", "--servo"}) {
+  for (const char* option :
+       {"--subject", "--on", "--explorations", "--trainings", "--effect", "--servo"}) {
     command.get_option("--mean")->excludes(command.get_option(option));
   }
 }

@@ -210,11 +210,6 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
         "of these studies.",
         plan.effect));
   }
-  if (plan.first_half_loss > 0.0) {
-    sentences.push_back(fmt::format(
-        "In the first half of their trials, people miss {:.4g} % of their right answers.",
-        100.0 * plan.first_half_loss));
-  }
   if (!report.setting.has_fixed_counts) sentences.push_back(kOrdersSentence);
   const bool is_exact = std::ranges::any_of(
       report.rows, [](const PowerRow& row) { return row.attainable != row.level; });
@@ -297,7 +292,6 @@ ordered_json plan_object(const PowerPlan& plan) {
           {"explorations", plan.explorations},
           {"trainings", plan.trainings},
           {"margin", plan.margin},
-          {"first_half_loss", plan.first_half_loss},
           {"effect", plan.effect}};
 }
 

@@ -123,10 +123,6 @@ void settle(PowerPlan& plan) {
     throw UsageError(
         fmt::format("--effect: {:.4g} is out of range; give a share from -1 to 1", plan.effect));
   }
-  if (!(plan.first_half_loss >= 0.0 && plan.first_half_loss <= 1.0)) {
-    throw UsageError(fmt::format("--first-half-loss: {} is out of range; give a share from 0 to 1",
-                                 plan.first_half_loss));
-  }
   const std::int64_t all =
       static_cast<std::int64_t>(plan.participants.size()) * std::int64_t{plan.runs};
   if (all > kMostPowerRunsInAll) {

@@ -28,13 +28,12 @@ struct PowerPlan {
   std::vector<int> participants;  ///< sizes, rising, each once
   int runs = 1000;                ///< simulated studies of each size and hypothesis
   std::uint64_t seed = 1;
-  bool servo = false;            ///< use ServoFeelings
-  int explorations = 1000;       ///< BankedFeelingsOptions
-  int trainings = 16;            ///< BankedFeelingsOptions
-  double level = 0.05;           ///< of the primary test
-  double margin = 0.0;           ///< of the primary test; 0: none
-  double first_half_loss = 0.0;  ///< RehearsalOptions
-  double effect = 0.0;           ///< RehearsalOptions; 0: the subject's own
+  bool servo = false;       ///< use ServoFeelings
+  int explorations = 1000;  ///< BankedFeelingsOptions
+  int trainings = 16;       ///< BankedFeelingsOptions
+  double level = 0.05;      ///< of the primary test
+  double margin = 0.0;      ///< of the primary test; 0: none
+  double effect = 0.0;      ///< RehearsalOptions; 0: the subject's own
 };
 
 /// Sorts the sizes and checks the plan.

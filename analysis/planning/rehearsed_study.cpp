@@ -145,9 +145,6 @@ RehearsedStudy::PlannedSchedule RehearsedStudy::planned_visit(const design::Stud
   for (const int class_index : planned.schedule.layout) {
     planned.pictures.push_back(study.classes[class_index].label);
   }
-  planned.scored = static_cast<int>(std::ranges::count(planned.schedule.presentations,
-                                                       design::PresentationKind::scored,
-                                                       &design::Presentation::kind));
   planned.order_block =
       design::order_block_of(study, key.stations, number, design::Draws::rehearsal);
   planned.course = simulation::course_of(study, planned.schedule);
@@ -179,13 +176,6 @@ double RehearsedStudy::estimand_of(Hypothesis hypothesis) const {
   const double first = accuracy_of(kPeople, kTogether, test_.first, hypothesis);
   if (test_.estimand == design::Estimand::mean_accuracy) return first;
   return first - accuracy_of(kPeople, kTogether, test_.second, hypothesis);
-}
-
-double RehearsedStudy::loss_of(const PlannedSchedule& planned, int place, int method,
-                               Hypothesis hypothesis) const {
-  const double early = 2 * place < planned.scored ? options_.first_half_loss : 0.0;
-  const bool is_worse = hypothesis == Hypothesis::null && method == test_.first;
-  return 1.0 - (1.0 - early) * (1.0 - (is_worse ? margin_loss_ : 0.0));
 }
 
 design::StimulusIndex RehearsedStudy::felt_stimulus(const design::StimulusIndex& presented,
@@ -234,7 +224,7 @@ int RehearsedStudy::lost(int position, double loss, Person& person, int right,
 void RehearsedStudy::add_participant(int number, const Answering& answering,
                                      analysis::Outcomes& outcomes) const {
   Person person(answering, number);
-  if (options_.first_half_loss + margin_loss_ > 0.0) {
+  if (margin_loss_ > 0.0) {
     person.losses.emplace(answering.study_seed, "power: losses",
                           static_cast<std::uint64_t>(number));
   }
@@ -253,7 +243,6 @@ void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answe
       completed_session(person.number, session, visit, planned.order_block));
   FeltTrial trial{answering.study_seed, person.number,
                   simulation::SimulatedParticipant::trials_before(visit), 0};
-  int scored = 0;
   for (std::size_t i = 0; i < planned.course.size(); ++i) {
     const design::Presentation& presentation = planned.schedule.presentations[i];
     const bool is_scored = presentation.kind == design::PresentationKind::scored;
@@ -276,8 +265,9 @@ void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answe
             .answer(feelings_.felt(felt, trial), seen, random, condition.before(begun, place.block))
             .position;
     if (is_scored) {
-      const double loss =
-          loss_of(planned, scored++, presentation.stimulus.method, answering.hypothesis);
+      const bool is_worse =
+          answering.hypothesis == Hypothesis::null && presentation.stimulus.method == test_.first;
+      const double loss = is_worse ? margin_loss_ : 0.0;
       position = lost(position, loss, person, presentation.stimulus.class_index, planned.schedule);
       outcomes.trials.push_back(
           answered_trial(person.number, session, visit, presentation, planned.schedule, position));

@@ -97,9 +97,6 @@ class ServoFeelings final : public Feelings {
 void require_answers(const design::Study& study, const simulation::SubjectModel& subject);
 
 struct RehearsalOptions {
-  /// Share of right answers that people miss in the first half of their scored trials, as an effect
-  /// of learning: 0 .. 1.
-  double first_half_loss = 0.0;
   /// The size of the test's estimand (primary_test.hpp) in the population, smaller than that of the
   /// subject: a share of presentations, the same for everybody, is then felt as under the null.
   /// Nothing: the subject's own. Not with a margin.
@@ -122,7 +119,7 @@ class RehearsedStudy final : public Rehearsal {
                  RehearsalOptions options = {});
 
   /// Outcomes of participants with the numbers and enrolment numbers 1 .. `participants`. With
-  /// `population` and ServoFeelings, without margin and loss, the scored trials are exactly those
+  /// `population` and ServoFeelings, without margin, the scored trials are exactly those
   /// of `simulate --seed study_seed`; times, evidence and unscored trials are left out.
   [[nodiscard]] analysis::Outcomes outcomes(int participants, Hypothesis hypothesis,
                                             std::uint64_t study_seed) const override;
@@ -132,7 +129,6 @@ class RehearsedStudy final : public Rehearsal {
   struct PlannedSchedule {
     design::Schedule schedule;
     std::vector<std::string> pictures;  ///< labels, by position
-    int scored = 0;                     ///< presentations
     int order_block = -1;               ///< analysis::SessionOutcome
     simulation::TrialCourse course;     ///< by presentation
     std::vector<bool> break_before;     ///< by presentation
@@ -155,10 +151,6 @@ class RehearsedStudy final : public Rehearsal {
                                                     Hypothesis hypothesis,
                                                     std::uint64_t draw) const;
 
-  /// The probability of missing a right answer.
-  /// \param place  among the participant's scored presentations, from 0
-  [[nodiscard]] double loss_of(const PlannedSchedule& planned, int place, int method,
-                               Hypothesis hypothesis) const;
   /// The accuracy of people with a method.
   /// \param together  people of one study, and so of one draw and training
   [[nodiscard]] double accuracy_of(int people, int together, int method,

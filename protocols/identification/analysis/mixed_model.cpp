@@ -3,66 +3,16 @@
 #include "analysis/exports/data_table.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/trial_tables.hpp"
-#include "analysis/json_figures.hpp"
 #include "core/errors.hpp"
 #include "core/text.hpp"
-#include "protocols/identification/analysis/counted_trials.hpp"
 
 #include <algorithm>
 #include <map>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace touchtrial::analysis::identification {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// "1 bark, 2 cloth", on one line.
-std::string numbered(const std::vector<std::string>& labels) {
-  int number = 0;
-  return listed(labels, ", ", [&number](const std::string& label) {
-    return fmt::format("{} {}", ++number, one_line(label));
-  });
-}
-
-ConfusionMatrix answers_of(int classes, const OwnTrials& trials) {
-  ConfusionMatrix answers(classes);
-  for (const TrialOutcome* trial : trials) answers.add(choice_of(*trial));
-  return answers;
-}
-
-/// The Stan program's data: one block of K rows for each method and participant with an answer, by
-/// method, participants in the order of sessions; trials that count and have a response.
-std::string choice_model_data(const Outcomes& outcomes) {
-  const CountedTrials counted = counted_by_method(outcomes);
-  const auto classes = static_cast<int>(outcomes.classes.size());
-  Json counts = Json::array();
-  Json felt = Json::array();
-  for (std::size_t method = 0; method < counted.trials.size(); ++method) {
-    for (const OwnTrials& trials : counted.trials[method]) {
-      const ConfusionMatrix answers = answers_of(classes, trials);
-      if (answers.answered() == 0) continue;
-      for (int i = 0; i < classes; ++i) {
-        Json row = Json::array();
-        for (int j = 0; j < classes; ++j) row.push_back(answers.count(i, j));
-        counts.push_back(std::move(row));
-      }
-      Json of_method = Json::array();
-      for (std::size_t m = 0; m < counted.trials.size(); ++m) {
-        of_method.push_back(m == method ? 1 : 0);
-      }
-      felt.push_back(std::move(of_method));
-    }
-  }
-  const std::size_t rows = felt.size();
-  return json_text(Json{{"K", classes},
-                        {"J", rows},
-                        {"M", counted.trials.size()},
-                        {"counts", std::move(counts)},
-                        {"felt", std::move(felt)}});
-}
 
 DataCell class_or_nothing(const Outcomes& outcomes, const std::optional<int>& index) {
   if (!index) return std::monostate{};
@@ -148,13 +98,6 @@ std::string what_of_images(const Outcomes& outcomes) {
       kFewestRandomImages, images);
 }
 
-/// Debian's Boost is not where rstan looks for it.
-constexpr const char* kStanCommand =
-    "    Rscript -e 'library(rstan); if (!file.exists(rstan_options(\"boost_lib\"))) "
-    "rstan_options(boost_lib = \"/usr/include\");\n"
-    "      fit <- stan(\"choice_model.stan\", data = jsonlite::fromJSON(\"choice_model.json\"));\n"
-    "      print(fit, c(\"similarity\", \"bias\", \"distance_sd\", \"preference_sd\"))'";
-
 std::string notes(const Outcomes& outcomes) {
   return fmt::format(
       "# Mixed model of {}\n\n{}`mixed_model.csv` has one row a trial that counts. `Rscript "
@@ -171,14 +114,9 @@ std::string notes(const Outcomes& outcomes) {
       "trial without a response is wrong. `period` is the place of a trial's block among its "
       "participant's blocks; `place` the trial's place among its participant's trials of the "
       "method; `previous_class` and `previous_response` are those of the previous presentation in "
-      "the same block.\n\n## Choice model in Stan\n\n`choice_model.stan` is the similarity choice "
-      "model with partial pooling over participants, `choice_model.json` its data (trials with a "
-      "response). With rstan:\n\n{}\n\n`similarity` and `bias` are those of the median "
-      "participant, one row a method; similarities of classes (1, 2), (1, 3), and so on. Quote "
-      "them "
-      "only with R-hat below 1.01 and without divergent transitions.\n",
+      "the same block.\n",
       outcomes.study, outcomes.simulated ? "SIMULATED: every participant is a program.\n\n" : "",
-      mixed_model_formula(outcomes), what_of_images(outcomes), kStanCommand);
+      mixed_model_formula(outcomes), what_of_images(outcomes));
 }
 
 /// One row for each counted trial, in the order of presentation, with the class and the answer of
@@ -217,16 +155,6 @@ std::string method_names(const Outcomes& outcomes) {
 
 }  // namespace
 
-std::string choice_model_script(const Outcomes& outcomes) {
-  return fmt::format(
-             "// Hierarchical choice model of the study {}{}. Data: choice_model.json. How to run "
-             "it: "
-             "mixed_model.md.\n// Classes: {}.\n// Methods: {}.\n\n",
-             one_line(outcomes.study), outcomes.simulated ? " (SIMULATED)" : "",
-             numbered(outcomes.classes), numbered(outcomes.methods)) +
-         std::string(choice_model_program());
-}
-
 std::string mixed_model_formula(const Outcomes& outcomes) {
   const bool several = outcomes.methods.size() > 1;
   const std::size_t images = images_of(outcomes);
@@ -247,8 +175,6 @@ std::vector<std::filesystem::path> export_mixed_model(const store::StudyStore& s
   return write_export(folder, {commitment.study, commitment.study_id, "r"},
                       {text_file("mixed_model.csv", csv_text(mixed_model_table(outcomes))),
                        text_file("mixed_model.R", mixed_model_script(outcomes)),
-                       text_file("choice_model.stan", choice_model_script(outcomes)),
-                       text_file("choice_model.json", choice_model_data(outcomes)),
                        text_file("mixed_model.md", notes(outcomes))});
 }
 

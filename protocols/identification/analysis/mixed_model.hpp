@@ -1,5 +1,5 @@
-/// \file Exports a long table for a mixed model in R with the script that fits it, and a Stan program
-/// of the hierarchical choice model with its data. Format: docs/exports.md.
+/// \file Exports a long table for a mixed model in R with the script that fits it. Format:
+/// docs/exports.md.
 #pragma once
 
 #include "analysis/outcomes.hpp"
@@ -11,12 +11,6 @@
 
 namespace touchtrial::analysis::identification {
 
-/// The part of the program that is the same for every study: choice_model_program.stan, built in.
-[[nodiscard]] std::string_view choice_model_program() noexcept;
-
-/// The text of choice_model.stan: the program, and what the study's numbers stand for.
-[[nodiscard]] std::string choice_model_script(const Outcomes& outcomes);
-
 /// The model that the script fits first, as an lme4 formula. Participants differ in everything that
 /// is compared; images are fixed effects if they are fewer than ten, and random ones otherwise.
 [[nodiscard]] std::string mixed_model_formula(const Outcomes& outcomes);
@@ -27,7 +21,7 @@ namespace touchtrial::analysis::identification {
 /// The text of mixed_model.R.
 [[nodiscard]] std::string mixed_model_script(const Outcomes& outcomes);
 
-/// Writes mixed_model.csv, mixed_model.R, choice_model.stan, choice_model.json and mixed_model.md.
+/// Writes mixed_model.csv, mixed_model.R and mixed_model.md.
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written, or the folder holds files of
 /// something else

@@ -86,30 +86,4 @@ TEST_CASE("The script of the mixed model holds all of its functions, and says wh
   CHECK(contains(notes, "nothing can be said of others"));
 }
 
-TEST_CASE("The choice model's data are the answers of each participant, by method") {
-  FakeStudy study(design::identification::comparison());
-  fill(study);
-  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
-  analysis::identification::export_mixed_model(study.store(), outcomes, study.folder() / "r");
-  const auto data = nlohmann::json::parse(text_of_file(study.folder() / "r" / "choice_model.json"));
-  const analysis::identification::StudyReport report =
-      analysis::identification::make_report(outcomes);
-  CHECK(data["K"] == 3);
-  CHECK(data["J"] == 2);  // one participant, two methods
-  CHECK(data["M"] == 2);
-  CHECK(data["felt"] == nlohmann::json({{1, 0}, {0, 1}}));
-  for (int method = 0; method < 2; ++method) {
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        CHECK(data["counts"][3 * method + i][j] == report.methods[method].confusion.count(i, j));
-      }
-    }
-  }
-  const std::string script = analysis::identification::choice_model_script(outcomes);
-  CHECK(contains(script, "(SIMULATED)"));
-  CHECK(contains(script, "// Methods: 1 adaptive, 2 tv-gabor."));
-  CHECK(script.ends_with(std::string(analysis::identification::choice_model_program())));
-  CHECK(contains(text_of_file(study.folder() / "r" / "mixed_model.md"), "choice_model.stan"));
-}
-
 }  // namespace touchtrial

@@ -313,18 +313,16 @@ TEST_CASE("under the null nobody feels what is presented") {
   CHECK(std::abs(correct - 500) < 90);
 }
 
-/// The share of right answers in many simulated studies, by half of the session and by method.
+/// The share of right answers in many simulated studies, by method.
 struct SharesRight {
-  analysis::Proportion half[2];
   analysis::Proportion method[2];
 
   SharesRight(const planning::RehearsedStudy& planned, planning::Hypothesis hypothesis) {
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
       for (const analysis::TrialOutcome& trial : planned.outcomes(12, hypothesis, seed).trials) {
-        for (analysis::Proportion* one : {&half[trial.row.block], &method[trial.stimulus.method]}) {
-          ++one->n;
-          one->correct += trial.correct() ? 1 : 0;
-        }
+        analysis::Proportion& one = method[trial.stimulus.method];
+        ++one.n;
+        one.correct += trial.correct() ? 1 : 0;
       }
     }
   }
@@ -340,17 +338,6 @@ RehearsedTinyStudy two_methods() {
   options.side_px = 60;
   options.trials = R"({"repeats":2})";
   return RehearsedTinyStudy(options);
-}
-
-TEST_CASE("people who learn miss right answers in the first half, whichever method it has") {
-  const RehearsedTinyStudy study = two_methods();
-  const planning::BankedFeelings bank = study.bank();
-  const SharesRight still(study.planned(bank), planning::Hypothesis::null);
-  const SharesRight learning(study.planned(bank, 12, 0.3), planning::Hypothesis::null);
-  // 4,800 answers each: standard errors of at most .0072, and .010 of a difference.
-  CHECK(share_right(learning.half[0]) == Approx(0.7 * share_right(still.half[0])).margin(0.03));
-  CHECK(learning.half[1] == still.half[1]);
-  CHECK(share_right(learning.method[0]) == Approx(share_right(learning.method[1])).margin(0.04));
 }
 
 TEST_CASE("with a margin, methods are alike, or the first is worse by the margin") {

@@ -46,9 +46,9 @@ struct RehearsedTinyStudy {
                                               std::uint64_t seed = 1, int jobs = 2) const {
     return {fields, tiny.key().study, subject, {explorations, trainings, seed, jobs}};
   }
-  [[nodiscard]] planning::RehearsedStudy planned(const planning::Feelings& feelings, int most = 12,
-                                                 double first_half_loss = 0.0) const {
-    return {tiny.key().study, subject, test, feelings, most, {.first_half_loss = first_half_loss}};
+  [[nodiscard]] planning::RehearsedStudy planned(const planning::Feelings& feelings,
+                                                 int most = 12) const {
+    return {tiny.key().study, subject, test, feelings, most};
   }
 
   TinyStudy tiny;
