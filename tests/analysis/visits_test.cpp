@@ -1,8 +1,8 @@
 /// Studies with several visits and groups: who counts, the primary test, breakdowns, exports, and
 /// what is verified.
+#include "analysis/checkers/checkers.hpp"
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/csv_reading.hpp"
-#include "analysis/exports/dataset_rules.hpp"
 #include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/fake_study.hpp"

@@ -1,7 +1,7 @@
+#include "analysis/checkers/checkers.hpp"
 #include "analysis/exports/bids/bids_motion.hpp"
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/csv_reading.hpp"
-#include "analysis/exports/dataset_rules.hpp"
 #include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/fake_study.hpp"
 #include "analysis/text_matching.hpp"

@@ -1,6 +1,6 @@
 // The page of a report: complete, harmless, and readable by a screen reader.
+#include "analysis/checkers/checkers.hpp"
 #include "analysis/page/document.hpp"
-#include "analysis/page/page_checker.hpp"
 #include "protocols/identification/analysis/hand_made_report.hpp"
 #include "support/catch.hpp"
 

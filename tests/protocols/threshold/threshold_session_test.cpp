@@ -1,7 +1,7 @@
 // Whole sessions of thresholds: what they present, store, and how they are checked.
+#include "analysis/checkers/checkers.hpp"
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/csv_reading.hpp"
-#include "analysis/exports/dataset_rules.hpp"
 #include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/outcomes.hpp"
 #include "analysis/sealed_sessions.hpp"

@@ -1,6 +1,6 @@
+#include "analysis/checkers/checkers.hpp"
 #include "analysis/exports/dataset.hpp"
 #include "analysis/figures/figure.hpp"
-#include "analysis/page/page_checker.hpp"
 #include "analysis/results.hpp"
 #include "protocols/threshold/analysis/figures/figures.hpp"
 #include "protocols/threshold/analysis/hand_made_tracks.hpp"
