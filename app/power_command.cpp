@@ -145,9 +145,6 @@ struct PowerPreparation {
 std::unique_ptr<const planning::Feelings> feelings_for(const PowerPreparation& prepared,
                                                        const planning::PowerPlan& plan, int jobs,
                                                        const simulation::LabelledFields& fields) {
-  if (plan.servo) {
-    return std::make_unique<planning::ServoFeelings>(fields, prepared.study, prepared.subject);
-  }
   const planning::BankedFeelingsOptions options{plan.explorations, plan.trainings, plan.seed, jobs};
   return std::make_unique<planning::BankedFeelings>(fields, prepared.study, prepared.subject,
                                                     options, progress_bar("feeling"));
@@ -312,14 +309,10 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
                   "accuracy, or of two methods a difference of accuracies, as a share")
       ->type_name("SHARE")
       ->excludes(command.get_option("--margin"));
-  command.add_flag(
-      "--servo", plan.servo,
-      "Run every exploration through the servo, for comparison; some hundred times slower");
   add_threshold_options(command, arguments.of_thresholds);
   command.get_option("--mean")->excludes(fit);
   // They describe people who feel.
-  for (const char* option :
-       {"--subject", "--on", "--explorations", "--trainings", "--effect", "--servo"}) {
+  for (const char* option : {"--subject", "--on", "--explorations", "--trainings", "--effect"}) {
     command.get_option("--mean")->excludes(command.get_option(option));
   }
 }

@@ -257,4 +257,15 @@ std::optional<Figure> servo_figure(const StudyHead& report) {
   return figure;
 }
 
+void stamp_figures(const std::string& stamp, std::vector<Figure>& figures) {
+  if (stamp.empty()) return;
+  for (Figure& figure : figures) {
+    const Sheet sheet{figure.width_cm, figure.height_cm, false};
+    figure.script = text_on_sheet(sheet, stamp, sheet.width_cm - 0.17, 0.6,
+                                  "left rotate by -90 textcolor rgb '#b3261e'") +
+                    figure.script;
+    figure.alt = stamp + ". " + figure.alt;
+  }
+}
+
 }  // namespace touchtrial::analysis

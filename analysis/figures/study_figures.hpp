@@ -5,6 +5,8 @@
 #include "analysis/study_head.hpp"
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace touchtrial::analysis {
 
@@ -12,5 +14,9 @@ namespace touchtrial::analysis {
 [[nodiscard]] std::optional<Figure> flow_figure(const StudyHead& report);
 /// The servo's lateness; nothing for studies in virtual time.
 [[nodiscard]] std::optional<Figure> servo_figure(const StudyHead& report);
+
+/// Stamps the right edges with upright text below SIMULATED, where every figure leaves room.
+/// \param stamp  empty: leaves the figures as they are
+void stamp_figures(const std::string& stamp, std::vector<Figure>& figures);
 
 }  // namespace touchtrial::analysis

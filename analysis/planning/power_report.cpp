@@ -190,11 +190,10 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
       !report.setting.feels()
           ? std::string("answers are drawn from the stated mean and spread. Nobody feels anything: "
                         "neither device nor hand nor texture has part in the numbers.")
-      : plan.servo ? std::string("every exploration through the servo.")
-                   : fmt::format("feelings drawn from {} explorations of each stimulus and {} "
-                                 "trainings through the servo.",
-                                 plan.explorations, plan.trainings)));
-  if (report.setting.feels() && !plan.servo) sentences.push_back(kBankSentence);
+          : fmt::format("feelings drawn from {} explorations of each stimulus and {} "
+                        "trainings through the servo.",
+                        plan.explorations, plan.trainings)));
+  if (report.setting.feels()) sentences.push_back(kBankSentence);
   if (report.setting.draws > 0) {
     sentences.push_back(fmt::format(
         "Assurance: each study has one of {} draws of the fit, so that the numbers are averages "
@@ -288,7 +287,6 @@ ordered_json plan_object(const PowerPlan& plan) {
   return {{"participants", plan.participants},
           {"runs", plan.runs},
           {"seed", plan.seed},
-          {"servo", plan.servo},
           {"explorations", plan.explorations},
           {"trainings", plan.trainings},
           {"margin", plan.margin},

@@ -28,7 +28,6 @@ struct PowerPlan {
   std::vector<int> participants;  ///< sizes, rising, each once
   int runs = 1000;                ///< simulated studies of each size and hypothesis
   std::uint64_t seed = 1;
-  bool servo = false;       ///< use ServoFeelings
   int explorations = 1000;  ///< BankedFeelingsOptions
   int trainings = 16;       ///< BankedFeelingsOptions
   double level = 0.05;      ///< of the primary test

@@ -67,19 +67,6 @@ engine::FeltFeatures BankedFeelings::felt(const design::StimulusIndex& stimulus,
   return bank_.felt(bank_.place_of(stimulus))[trial.draw % explorations];
 }
 
-std::shared_ptr<const simulation::FeltKnowledge> ServoFeelings::knowledge(
-    std::uint64_t study_seed) const {
-  return simulation::learn(fields_, study_, subject_, study_seed, 1);
-}
-
-engine::FeltFeatures ServoFeelings::felt(const design::StimulusIndex& stimulus,
-                                         const FeltTrial& trial) const {
-  const auto& all = fields_.all();
-  const auto field = std::ranges::find(all, stimulus, &simulation::LabelledField::stimulus);
-  return simulation::feel_trial(*field, trial.gain_db, fields_.plane(), study_, subject_,
-                                trial.study_seed, trial.participant, trial.nth);
-}
-
 /// What the participants of one simulated study share.
 struct RehearsedStudy::Answering {
   const simulation::SubjectModel& subject;

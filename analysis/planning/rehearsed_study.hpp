@@ -73,25 +73,6 @@ class BankedFeelings final : public Feelings {
   std::vector<std::shared_ptr<const simulation::FeltKnowledge>> trainings_;
 };
 
-/// Feels every exploration anew through hand, device and servo, exactly as `simulate` does. Some
-/// hundred times slower. Refers to its arguments, which must outlive it.
-class ServoFeelings final : public Feelings {
- public:
-  ServoFeelings(const simulation::LabelledFields& fields, const design::Study& study,
-                const simulation::SubjectModel& subject)
-      : fields_(fields), study_(study), subject_(subject) {}
-
-  [[nodiscard]] std::shared_ptr<const simulation::FeltKnowledge> knowledge(
-      std::uint64_t study_seed) const override;
-  [[nodiscard]] engine::FeltFeatures felt(const design::StimulusIndex& stimulus,
-                                          const FeltTrial& trial) const override;
-
- private:
-  const simulation::LabelledFields& fields_;
-  const design::Study& study_;
-  const simulation::SubjectModel& subject_;
-};
-
 /// Refuses people who explore until the time is up in a study that then takes no answer.
 /// \throws StudyError naming the subject's file
 void require_answers(const design::Study& study, const simulation::SubjectModel& subject);
@@ -119,8 +100,8 @@ class RehearsedStudy final : public Rehearsal {
                  RehearsalOptions options = {});
 
   /// Outcomes of participants with the numbers and enrolment numbers 1 .. `participants`. With
-  /// `population` and ServoFeelings, without margin, the scored trials are exactly those
-  /// of `simulate --seed study_seed`; times, evidence and unscored trials are left out.
+  /// `population` and feelings through the servo, without margin, the scored trials are exactly
+  /// those of `simulate --seed study_seed`; times, evidence and unscored trials are left out.
   [[nodiscard]] analysis::Outcomes outcomes(int participants, Hypothesis hypothesis,
                                             std::uint64_t study_seed) const override;
 

@@ -5,7 +5,9 @@
 #include "analysis/planning/rehearsed_study.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/session/tiny_study.hpp"
+#include "protocols/simulation/own_knowledge.hpp"
 
+#include <algorithm>
 #include <memory>
 
 namespace touchtrial {
@@ -30,6 +32,32 @@ namespace touchtrial {
   options.secret = kTinyStudySeed;
   return options;
 }
+
+/// Feels every exploration anew through hand, device and servo, exactly as `simulate` does: the
+/// slow reference of BankedFeelings. Refers to its arguments, which must outlive it.
+class ServoFeelings final : public planning::Feelings {
+ public:
+  ServoFeelings(const simulation::LabelledFields& fields, const design::Study& study,
+                const simulation::SubjectModel& subject)
+      : fields_(fields), study_(study), subject_(subject) {}
+
+  [[nodiscard]] std::shared_ptr<const simulation::FeltKnowledge> knowledge(
+      std::uint64_t study_seed) const override {
+    return simulation::learn(fields_, study_, subject_, study_seed, 1);
+  }
+  [[nodiscard]] engine::FeltFeatures felt(const design::StimulusIndex& stimulus,
+                                          const planning::FeltTrial& trial) const override {
+    const auto field =
+        std::ranges::find(fields_.all(), stimulus, &simulation::LabelledField::stimulus);
+    return simulation::feel_trial(*field, trial.gain_db, fields_.plane(), study_, subject_,
+                                  trial.study_seed, trial.participant, trial.nth);
+  }
+
+ private:
+  const simulation::LabelledFields& fields_;
+  const design::Study& study_;
+  const simulation::SubjectModel& subject_;
+};
 
 /// A tiny study and what its simulated studies refer to.
 struct RehearsedTinyStudy {
@@ -56,7 +84,7 @@ struct RehearsedTinyStudy {
   planning::PrimaryTest test;
   session::StimulusSource source;
   simulation::LabelledFields fields;
-  planning::ServoFeelings servo;
+  ServoFeelings servo;
 };
 
 }  // namespace touchtrial

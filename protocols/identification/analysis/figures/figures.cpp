@@ -1,25 +1,11 @@
 #include "protocols/identification/analysis/figures/figures.hpp"
 
 #include "analysis/figures/study_figures.hpp"
-#include "analysis/figures/style.hpp"
 #include "protocols/identification/analysis/figures/figure_kinds.hpp"
 
 #include <utility>
 
 namespace touchtrial::analysis::identification {
-
-namespace {
-
-/// Stamps the right edge with upright text below SIMULATED, where every figure leaves room.
-void add_stamp(Figure& figure, const std::string& stamp) {
-  const Sheet sheet{figure.width_cm, figure.height_cm, false};
-  figure.script = text_on_sheet(sheet, stamp, sheet.width_cm - 0.17, 0.6,
-                                "left rotate by -90 textcolor rgb '#b3261e'") +
-                  figure.script;
-  figure.alt = stamp + ". " + figure.alt;
-}
-
-}  // namespace
 
 std::vector<Figure> report_figures(const StudyReport& report, const FigureOptions& options) {
   std::vector<Figure> figures;
@@ -36,9 +22,7 @@ std::vector<Figure> report_figures(const StudyReport& report, const FigureOption
   if (options.cues != nullptr) add(cues_figure(*options.cues));
   add(servo_figure(report));
   for (const ExplorationPath& path : options.explorations) figures.push_back(path_figure(path));
-  if (!options.stamp.empty()) {
-    for (Figure& figure : figures) add_stamp(figure, options.stamp);
-  }
+  stamp_figures(options.stamp, figures);
   return figures;
 }
 

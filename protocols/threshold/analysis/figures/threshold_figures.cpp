@@ -14,15 +14,6 @@ namespace {
 
 using Rows = std::vector<std::vector<double>>;
 
-/// Stamps the right edge with upright text below SIMULATED, where every figure leaves room.
-void stamp_figure(Figure& figure, const std::string& stamp) {
-  const Sheet sheet{figure.width_cm, figure.height_cm, false};
-  figure.script = text_on_sheet(sheet, stamp, sheet.width_cm - 0.17, 0.6,
-                                "left rotate by -90 textcolor rgb '#b3261e'") +
-                  figure.script;
-  figure.alt = stamp + ". " + figure.alt;
-}
-
 /// "-21.3 dB (-23.0 to -19.6 dB)"
 std::string decibels_with_interval(const MeanEstimate& mean) {
   const std::optional<Interval> interval = mean.known_interval();
@@ -374,9 +365,7 @@ std::vector<Figure> report_figures(const ThresholdReport& report, const std::str
   add(d_prime_figure(report));
   add(tracks_figure(report));
   add(servo_figure(report));
-  if (!stamp.empty()) {
-    for (Figure& figure : figures) stamp_figure(figure, stamp);
-  }
+  stamp_figures(stamp, figures);
   return figures;
 }
 
