@@ -23,12 +23,12 @@ namespace {
 template <typename Real>
 void negative_divergence(const engine::VectorField<Real>& field, std::span<Real> out) noexcept {
   const int height = field.x.height();
-  const std::size_t width = static_cast<std::size_t>(field.x.width());
   for (int y = 0; y < height; ++y) {
-    const int above = y == 0 ? height - 1 : y - 1;
-    engine::negative_divergence_row(field.x.row(y).data(), field.y.row(y).data(),
-                                    field.y.row(above).data(), width,
-                                    out.data() + static_cast<std::size_t>(y) * width);
+    const auto x = field.x.row(y), here = field.y.row(y);
+    const auto above = field.y.row(y == 0 ? height - 1 : y - 1);
+    Real* const row = out.data() + static_cast<std::size_t>(y) * x.size();
+    row[0] = (x.back() - x[0]) + (above[0] - here[0]);
+    for (std::size_t i = 1; i < x.size(); ++i) row[i] = (x[i - 1] - x[i]) + (above[i] - here[i]);
   }
 }
 
@@ -111,8 +111,8 @@ class Fista {
         next_x_[x] = ahead_x[x] - tau * w_x[x];
         next_y_[x] = ahead_y[x] - tau * w_y[x];
       }
-      engine::clip_row(next_x_.data(), next_y_.data(), next_x_.size(), Real{1}, next_x_.data(),
-                       next_y_.data());
+      engine::row_kernels<Real>().clip(next_x_.data(), next_y_.data(), next_x_.size(), Real{1},
+                                       next_x_.data(), next_y_.data());
       for (std::size_t x = 0; x < next_x_.size(); ++x) {
         ahead_x[x] = next_x_[x] + momentum * (next_x_[x] - q_x[x]);
         ahead_y[x] = next_y_[x] + momentum * (next_y_[x] - q_y[x]);
@@ -140,9 +140,7 @@ class FixedPoint {
   /// Keeps references to all; others may use the transform between steps.
   FixedPoint(const engine::TvGaborProblem<Real>& problem, const Plane<Real>& spectrum,
              engine::RealFft<Real>& fft)
-      : slope_(problem, spectrum, fft),
-        q_(problem.image.height(), problem.image.width()),
-        norms_(static_cast<std::size_t>(problem.image.width())) {}
+      : slope_(problem, spectrum, fft), q_(problem.image.height(), problem.image.width()) {}
 
   void step() {
     const auto tau = static_cast<Real>(kLongestDualStep);
@@ -150,10 +148,9 @@ class FixedPoint {
     for (int y = 0; y < q_.x.height(); ++y) {
       slope_.go_to_row(y);
       const auto w_x = slope_.x(), w_y = slope_.y();
-      engine::norm_row(w_x.data(), w_y.data(), norms_.size(), norms_.data());
       const auto q_x = q_.x.row(y), q_y = q_.y.row(y);
-      for (std::size_t x = 0; x < norms_.size(); ++x) {
-        const Real share = Real{1} / (Real{1} + tau * norms_[x]);
+      for (std::size_t x = 0; x < q_x.size(); ++x) {
+        const Real share = Real{1} / (Real{1} + tau * std::sqrt(w_x[x] * w_x[x] + w_y[x] * w_y[x]));
         q_x[x] = share * (q_x[x] - tau * w_x[x]);
         q_y[x] = share * (q_y[x] - tau * w_y[x]);
       }
@@ -165,7 +162,6 @@ class FixedPoint {
  private:
   DualSlope<Real> slope_;
   engine::VectorField<Real> q_;
-  std::vector<Real> norms_;  // of a row
 };
 
 engine::TvGaborOptions with_components(const GreyImage& image, engine::TvGaborOptions options) {
