@@ -70,7 +70,7 @@ class Inverse3Device final : public HapticDevice {
 
  private:
   void choose_device(const ServiceReport& inventory);
-  void expect_no_other_session(const ServiceReport& inventory) const;
+  void expect_no_other_session() const;
   void configure();
   void listen_to_events();
   void describe(const DeviceConfig& config);
@@ -90,7 +90,6 @@ class Inverse3Device final : public HapticDevice {
   std::unique_ptr<ServiceLink> service_;
   std::string id_;
   std::optional<std::int64_t> session_id_;
-  Vec3 centre_m_;  ///< of the workspace, in the service's frame
   DeviceInfo info_;
   DeviceLink link_;
   ArmStatus status_;  ///< driver's thread, once that runs
