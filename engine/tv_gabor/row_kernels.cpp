@@ -179,6 +179,19 @@ void restarted_row(const AdmmRow<Real>& row, std::size_t width,
 }
 
 template <typename Real>
+void divergence_of_row(const Real* x, const Real* y, const Real* above, std::size_t width,
+                       Real* out) {
+  const std::size_t last = width - 1;
+  out[0] = (x[last] - x[0]) + (above[0] - y[0]);
+  over_samples<Real>(last, [&](auto d, std::size_t left) HWY_ATTR {
+    const std::size_t i = left + 1;
+    const auto along_x = hn::Sub(hn::LoadU(d, x + left), hn::LoadU(d, x + i));
+    const auto along_y = hn::Sub(hn::LoadU(d, above + i), hn::LoadU(d, y + i));
+    hn::StoreU(hn::Add(along_x, along_y), d, out + i);
+  });
+}
+
+template <typename Real>
 void clipped_row(const Real* x, const Real* y, std::size_t width, Real scale, Real* out_x,
                  Real* out_y) {
   over_row<Real>(width, [&](auto d, std::size_t i, std::ptrdiff_t) HWY_ATTR {
@@ -236,10 +249,12 @@ GapSums gap_of_row(const GapRow<Real>& row, std::size_t width) {
 
 // A target exports functions, not templates.
 RowKernels<float> kernels_f32() {
-  return {map_row<float>, restarted_row<float>, clipped_row<float>, gap_of_row<float>};
+  return {map_row<float>, restarted_row<float>, divergence_of_row<float>, clipped_row<float>,
+          gap_of_row<float>};
 }
 RowKernels<double> kernels_f64() {
-  return {map_row<double>, restarted_row<double>, clipped_row<double>, gap_of_row<double>};
+  return {map_row<double>, restarted_row<double>, divergence_of_row<double>, clipped_row<double>,
+          gap_of_row<double>};
 }
 
 }  // namespace

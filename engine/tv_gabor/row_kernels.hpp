@@ -67,6 +67,9 @@ struct RowKernels {
   /// Rescales b, and with it z, from one limit to another, keeping w, and writes the targets of a
   /// row; texture and former are not read.
   void (*restart)(const AdmmRow<Real>& row, std::size_t width, const RestartNumbers<Real>& numbers);
+  /// out = -div of a row of a field on the torus: the adjoint of the gradient.
+  /// \param above  y of the row above
+  void (*divergence)(const Real* x, const Real* y, const Real* above, std::size_t width, Real* out);
   /// out = the point with norm <= 1 nearest to scale * (x, y). The outputs may be the inputs.
   void (*clip)(const Real* x, const Real* y, std::size_t width, Real scale, Real* out_x,
                Real* out_y);

@@ -107,18 +107,24 @@ TEMPLATE_TEST_CASE(
   });
 }
 
-TEMPLATE_TEST_CASE("the gap of a row agrees with its definition on every target", "", float,
-                   double) {
+TEMPLATE_TEST_CASE(
+    "the divergence and the gap of a row agree with their definition on every target", "", float,
+    double) {
   on_every_simd_target([] {
     for (const std::size_t width : {2U, 5U, 16U, 37U}) {
       const auto f = noise<TestType>(width, "f"), below = noise<TestType>(width, "below");
       const auto v = noise<TestType>(width, "v"), v_below = noise<TestType>(width, "v below");
       const auto q_x = noise<TestType>(width, "x"), q_y = noise<TestType>(width, "y");
+      std::vector<TestType> divergence(width);
+      engine::row_kernels<TestType>().divergence(q_x.data(), q_y.data(), v.data(), width,
+                                                 divergence.data());
       const engine::GapSums sums = engine::row_kernels<TestType>().gap(
           {f.data(), below.data(), v.data(), v_below.data(), q_x.data(), q_y.data()}, width);
       double primal = 0.0, difference = 0.0;
       for (std::size_t i = 0; i < width; ++i) {
-        const std::size_t right = i + 1 == width ? 0 : i + 1;
+        const std::size_t left = i == 0 ? width - 1 : i - 1, right = i + 1 == width ? 0 : i + 1;
+        REQUIRE(divergence[i] ==
+                Approx(static_cast<double>(q_x[left]) - q_x[i] + v[i] - q_y[i]).margin(2e-6));
         const double v_x = static_cast<double>(v[right]) - v[i];
         const double v_y = static_cast<double>(v_below[i]) - v[i];
         const double u_x = static_cast<double>(f[right]) - f[i] - v_x;
