@@ -123,14 +123,6 @@ DeviceInfo FalconDevice::info() const {
   return info;
 }
 
-DeviceStatus FalconDevice::read(DeviceSample& sample) noexcept {
-  return link_.read(sample);
-}
-
-DeviceStatus FalconDevice::write(Vec3 force_n) noexcept {
-  return link_.write(force_n, options_.pace->now());
-}
-
 DeviceReadiness FalconDevice::readiness() const noexcept {
   return homed_.load(std::memory_order_acquire) ? DeviceReadiness::ready
                                                 : DeviceReadiness::needs_homing;
