@@ -163,14 +163,6 @@ TEST_CASE("dhd: without compensation, force comes on once the library has shed t
   CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
 }
 
-TEST_CASE("dhd: each coordinate of a force acts along its own axis of the device frame") {
-  LoadedDhd fake;
-  device::DhdDevice device = opened(fake);
-  CHECK(write_until(device, {0.5, -0.4, 0.3}, [&] {
-    return fake->force_n.get() == Vec3{0.3, 0.5, -0.4};
-  }));
-}
-
 TEST_CASE("dhd: a mass that cannot be true is refused before any force") {
   LoadedDhd fake;
   fake->own_mass_kg = 0.12;
