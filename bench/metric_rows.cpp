@@ -238,7 +238,7 @@ Case transforms() {
 
 /// The greatest number of steps to the goal over the pictures that fill their frame.
 double steps_on_pictures(bool quick) {
-  std::vector<GreyImage> pictures = shipped_pictures(true);
+  std::vector<GreyImage> pictures = shipped_pictures();
   if (quick) pictures.resize(kQuickPictures);
   int most = 0;
   for (const GreyImage& one : pictures) most = std::max(most, steps_to_goal(one));
