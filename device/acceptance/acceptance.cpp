@@ -88,7 +88,6 @@ class Procedure {
       press();
       feel_planes();
       if (options_.thermal) warm();
-      if (options_.silence) fall_silent();
     } catch (const EndOfAcceptance& end) {
       missed("everything that follows", end.why);
     } catch (const DeviceFailed& failed) {
@@ -96,9 +95,6 @@ class Procedure {
       missed("everything that follows", "the device failed: " + certificate_.fault);
     }
     if (!options_.thermal) missed("force after twenty minutes", "not asked for (--thermal)");
-    if (!options_.silence) {
-      missed("what the device does when program or cable are gone", "not asked for (--silence)");
-    }
     put_newtons_right();
     return {std::move(certificate_), std::move(curves_)};
   }
@@ -429,29 +425,6 @@ class Procedure {
     person_.tell(fmt::format("the load took {:.3f} N at first, and {:.3f} N after twenty minutes",
                              warm.before_n, warm.after_n));
     certificate_.warm = warm;
-  }
-
-  void fall_silent() {
-    observe("program suspended for two seconds (SIGSTOP)",
-            "What did the force do meanwhile (gone at once, gone after how long, stayed)? ",
-            runs_.suspend_program("silence"));
-    observe("cable pulled", "What did the force do (gone at once, gone after how long, stayed)? ",
-            runs_.pull_cable("silence"));
-  }
-
-  void observe(const std::string& what, const std::string& question, const ReportOrWhy& run) {
-    if (!run.report) {
-      missed(what, run.why);
-      return;
-    }
-    const std::string saw = person_.saw(question);
-    if (saw.empty()) {
-      missed(what, "nothing was typed");
-      return;
-    }
-    certificate_.observed.push_back({what, saw + "; the run ended as " +
-                                               std::string(name_of(run.report->end)) + ", " +
-                                               std::string(name_of(run.report->fault))});
   }
 
   /// What was measured in commanded newtons becomes newtons at the handle.
