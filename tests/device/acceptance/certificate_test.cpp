@@ -118,7 +118,7 @@ TEST_CASE("a force that is off names the scale that puts it right") {
 TEST_CASE("a certificate of the former format is refused with the command that makes a new one") {
   const TempFolder folder;
   const auto path = folder.path() / "certificate.json";
-  replace_file(path, R"({"kind": "touchtrial device calibration 1"})");
+  replace_file(path, R"({"kind": "touchtrial device acceptance 2", "observed": []})");
   CHECK_THAT(message_of<StudyError>([&] { return device::read_certificate(path); }),
              holds_text("touchtrial device accept"));
 }
