@@ -446,55 +446,49 @@ Vec3 Inverse3Device::within_reach(Vec3 force_n) const noexcept {
 
 namespace touchtrial::device {
 
-namespace {
-
-/// Sources: this driver's page in docs/devices.
-std::vector<UnverifiedFact> inverse3_unverified() {
-  return {
-      {"signs", "which way positions and forces run on each axis", Evidence::signs},
-      {"ports", "whether HTTP, simulation and events answer at the ports of the settings",
-       Evidence::opened},
-      {"filters", "whether force gate and damping stay at 0 after they are read back",
-       Evidence::opened},
-      {"torque_scaling", "what torque scaling does to a force within the limits", Evidence::weight},
-      {"lengths", "whether a millimetre of the service is one at the handle", Evidence::lengths},
-      {"middle", "the middle of the reach in the device's frame", Evidence::range},
-      {"delivered", "whether the force that the service says it exerted is the commanded one",
-       Evidence::delivered},
-      {"readings", "how often a new state comes", Evidence::readings},
-      {"program_silent", "whether the arm goes idle, and how soon, when messages stop",
-       Evidence::program_silent},
-      {"cable_silent", "what the arm does when its cable is pulled", Evidence::cable_silent},
-      {"service_killed", "what the arm does when the service is killed", Evidence::none},
-      {"peak_force",
-       "the largest force, and what the motors can hold: no number is published (device accept "
-       "--thermal)",
-       Evidence::none},
-      {"latency", "the latency of service, USB and motors (device accept, step shake)",
-       Evidence::none},
-      {"home_return",
-       "the form of the service's answer about home_return",
-       Evidence::answer,
-       "Does touchtrial device list or the service say that home return is off?",
-       {"off", "on", "not_told"}},
-      {"sessions",
-       "the form of the events about sessions, and whether a session that begins later is seen",
-       Evidence::none},
-  };
-}
-
-}  // namespace
-
+/// Sources of what is unverified: this driver's page in docs/devices.
 DeviceDriver inverse3_driver() {
-  return {.name = "inverse3",
-          .what = "Haply Inverse3 and Minverse, through Haply's Inverse service",
-          .list = inverse3::list_inverse3,
-          .open = inverse3::open_inverse3,
-          .workspace_is_known = false,
-          .products = {{"inverse3", "Haply Inverse3", "inverse3"},
-                       {"inverse3x", "Haply Inverse3x"},
-                       {"minverse", "Haply Minverse"}},
-          .unverified = inverse3_unverified()};
+  return {
+      .name = "inverse3",
+      .what = "Haply Inverse3 and Minverse, through Haply's Inverse service",
+      .list = inverse3::list_inverse3,
+      .open = inverse3::open_inverse3,
+      .workspace_is_known = false,
+      .products = {{"inverse3", "Haply Inverse3", "inverse3"},
+                   {"inverse3x", "Haply Inverse3x"},
+                   {"minverse", "Haply Minverse"}},
+      .unverified = {
+          {"signs", "which way positions and forces run on each axis", Evidence::signs},
+          {"ports", "whether HTTP, simulation and events answer at the ports of the settings",
+           Evidence::opened},
+          {"filters", "whether force gate and damping stay at 0 after they are read back",
+           Evidence::opened},
+          {"torque_scaling", "what torque scaling does to a force within the limits",
+           Evidence::weight},
+          {"lengths", "whether a millimetre of the service is one at the handle",
+           Evidence::lengths},
+          {"middle", "the middle of the reach in the device's frame", Evidence::range},
+          {"delivered", "whether the force that the service says it exerted is the commanded one",
+           Evidence::delivered},
+          {"readings", "how often a new state comes", Evidence::readings},
+          {"program_silent", "whether the arm goes idle, and how soon, when messages stop",
+           Evidence::program_silent},
+          {"cable_silent", "what the arm does when its cable is pulled", Evidence::cable_silent},
+          {"service_killed", "what the arm does when the service is killed", Evidence::none},
+          {"peak_force",
+           "the largest force, and what the motors can hold: no number is published (device accept "
+           "--thermal)",
+           Evidence::none},
+          {"latency", "the latency of service, USB and motors (device accept, step shake)",
+           Evidence::none},
+          {"home_return",
+           "the form of the service's answer about home_return",
+           Evidence::answer,
+           "Does touchtrial device list or the service say that home return is off?",
+           {"off", "on", "not_told"}},
+          {"sessions",
+           "the form of the events about sessions, and whether a session that begins later is seen",
+           Evidence::none}}};
 }
 
 }  // namespace touchtrial::device

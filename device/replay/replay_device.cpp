@@ -188,29 +188,6 @@ double rate_over(double duration_s, std::size_t ticks, const std::string& name) 
   refuse(name, "it does not have 10 to 20,000 rows a second; time_s is in seconds");
 }
 
-}  // namespace
-
-RecordedMotion::RecordedMotion(std::vector<Vec3> positions_mm, double rate_hz)
-    : positions_mm_(std::move(positions_mm)), rate_hz_(rate_hz) {
-  if (positions_mm_.empty() || ticks() > kMostTicks || !(rate_hz > 0.0) ||
-      !std::isfinite(rate_hz)) {
-    throw std::invalid_argument("RecordedMotion: no positions, too many, or a rate not above 0");
-  }
-}
-
-RecordedMotion read_motion_csv(const std::filesystem::path& file) {
-  const Bytes bytes = read_file(file, kLargestFile);
-  const std::string name = file.string();
-  CsvRows rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
-  const std::vector<TimedPosition> positions = read_positions(rows, name);
-  std::vector<Vec3> ticks = fill_ticks(positions, usual_step_s(positions), name);
-  const double duration_s = positions.back().time_s - positions.front().time_s;
-  const double rate_hz = rate_over(duration_s, ticks.size(), name);
-  return {std::move(ticks), rate_hz};
-}
-
-namespace {
-
 /// That of a usual device.
 constexpr double kMaxForceN = 3.3;
 
@@ -241,6 +218,25 @@ std::unique_ptr<HapticDevice> open_replay(const DeviceSettings& settings) {
 }
 
 }  // namespace
+
+RecordedMotion::RecordedMotion(std::vector<Vec3> positions_mm, double rate_hz)
+    : positions_mm_(std::move(positions_mm)), rate_hz_(rate_hz) {
+  if (positions_mm_.empty() || ticks() > kMostTicks || !(rate_hz > 0.0) ||
+      !std::isfinite(rate_hz)) {
+    throw std::invalid_argument("RecordedMotion: no positions, too many, or a rate not above 0");
+  }
+}
+
+RecordedMotion read_motion_csv(const std::filesystem::path& file) {
+  const Bytes bytes = read_file(file, kLargestFile);
+  const std::string name = file.string();
+  CsvRows rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
+  const std::vector<TimedPosition> positions = read_positions(rows, name);
+  std::vector<Vec3> ticks = fill_ticks(positions, usual_step_s(positions), name);
+  const double duration_s = positions.back().time_s - positions.front().time_s;
+  const double rate_hz = rate_over(duration_s, ticks.size(), name);
+  return {std::move(ticks), rate_hz};
+}
 
 DeviceInfo ReplayDevice::info() const {
   DeviceInfo info{"replay", "", kMaxForceN, true};
