@@ -584,9 +584,9 @@ std::optional<LaggingDelay> lagging_delay(const EvenSeries& series,
 /// motor rounds a bend that soft arms round too. So the delay lies between what the bends say and
 /// what the slow motion says.
 /// \param slow  slow_fit
-MeasuredOrWhy delay_by_turns(const EvenSeries& series, TickRange ticks, double push_n,
-                             const std::optional<WindowFit>& slow,
-                             std::vector<std::pair<double, double>>& by_delay) {
+OrWhy<Measured> delay_by_turns(const EvenSeries& series, TickRange ticks, double push_n,
+                               const std::optional<WindowFit>& slow,
+                               std::vector<std::pair<double, double>>& by_delay) {
   constexpr double kShortHalf = 5.0;  // ticks
   constexpr double kFarHalf = 6.5;
   constexpr double kLongHalf = 8.0;
@@ -624,7 +624,7 @@ MeasuredOrWhy delay_by_turns(const EvenSeries& series, TickRange ticks, double p
   return {Measured{0.5 * (bend + other) * ms, error * ms + kTurnsFloorMs}};
 }
 
-ShakeOrWhy no_shake(std::string why) {
+OrWhy<ShakeFigures> no_shake(std::string why) {
   return {std::nullopt, std::move(why)};
 }
 
@@ -650,7 +650,7 @@ std::optional<RestFigures> rest_figures(std::span<const ServoSample> samples) {
                      norm((2.0 / n) * (halves[1] - halves[0]))};
 }
 
-MeasuredOrWhy encoder_step_mm(std::span<const ServoSample> samples) {
+OrWhy<Measured> encoder_step_mm(std::span<const ServoSample> samples) {
   AxisStep coarsest;
   bool all_resolved = true;
   for (const DeviceAxis axis : kDeviceAxes) {
@@ -670,7 +670,7 @@ MeasuredOrWhy encoder_step_mm(std::span<const ServoSample> samples) {
   return {Measured{coarsest.step_mm, coarsest.spread_mm + 0.05 * coarsest.step_mm}};
 }
 
-StrokesOrWhy stroke_figures(const SlowStrokes& strokes, double step_mm) {
+OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm) {
   constexpr std::size_t kHalf = 50;  // ticks to either side, for the speed
   const Vec3 axis = direction_of(strokes.axis());
   if (strokes.ran_away()) return {std::nullopt, "the handle left its place"};
@@ -728,7 +728,7 @@ StrokesOrWhy stroke_figures(const SlowStrokes& strokes, double step_mm) {
   return {figures, ""};
 }
 
-ShakeOrWhy shake_figures(const ShakenStrokes& strokes, double friction_n, double step_mm) {
+OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_n, double step_mm) {
   constexpr std::array<std::size_t, 4> kHalves = {8, 12, 20, 32};
   constexpr std::size_t kFewestWindows = 60;
   if (strokes.ran_away()) return no_shake("the handle left its place");
@@ -771,9 +771,9 @@ ShakeOrWhy shake_figures(const ShakenStrokes& strokes, double friction_n, double
                                   (kMassShare + 0.5 * best->unexplained) * mass_kg};
   figures.viscous_n_s_per_m = {
       viscous, 2.0 * best->errors[2] * mass_kg + kViscousFloor + 0.1 * std::abs(viscous)};
-  const MeasuredOrWhy by_turns =
+  const OrWhy<Measured> by_turns =
       delay_by_turns(series, {from, end}, strokes.push_n(), slow, figures.by_delay);
-  figures.delay_ms = fits.delay_ms ? fits.delay_ms : by_turns.measured;
+  figures.delay_ms = fits.delay_ms ? fits.delay_ms : by_turns.value;
   if (!figures.delay_ms) figures.no_delay = by_turns.why;
   return {figures, ""};
 }
