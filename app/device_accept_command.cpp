@@ -49,7 +49,6 @@ struct AcceptArguments {
   std::string sound_input;
   std::vector<double> full_scale_m_s2;
   bool thermal = false;
-  bool silence = false;
   bool json = false;
 };
 
@@ -254,7 +253,6 @@ device::AcceptanceOptions options_of(const AcceptArguments& arguments,
   device::AcceptanceOptions options;
   options.skip.insert(arguments.skip.begin(), arguments.skip.end());
   options.thermal = arguments.thermal;
-  options.silence = arguments.silence;
   if (study) options.planes = study->planes();
   return options;
 }
@@ -320,8 +318,7 @@ int accept_one(const AcceptArguments& arguments) {
   if (!arguments.emulated.empty()) return rehearse_on_model(arguments, spectra);
   const AcceptanceFiles files =
       files_to_write(arguments, device::device_driver(arguments.driver).name);
-  if (!arguments.silence) return accept_on_cable(arguments, files, spectra);
-  return in_own_process([&] { return accept_on_cable(arguments, files, spectra); });
+  return accept_on_cable(arguments, files, spectra);
 }
 
 }  // namespace
@@ -370,9 +367,6 @@ void add_device_accept_command(CLI::App& device, Action& action) {
       ->delimiter(',')
       ->needs(input);
   command->add_flag("--thermal", arguments->thermal, "Also hold a weight for twenty minutes");
-  command->add_flag(
-      "--silence", arguments->silence,
-      "Also watch what the device does when the program stops or the cable is pulled");
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return accept_one(*arguments); }; });
 }

@@ -84,9 +84,6 @@ analysis::Definitions device_figures(const device::Certificate& certificate) {
                          fmt::format("{:.3f} N and {:.3f} N", certificate.warm->before_n,
                                      certificate.warm->after_n));
   }
-  for (const device::Observation& one : certificate.observed) {
-    entries.emplace_back(one.what, one.saw);
-  }
   return figures;
 }
 

@@ -1,6 +1,5 @@
 #include "bench/inputs.hpp"
 
-#include "core/random.hpp"
 #include "engine/image_file.hpp"
 #include "engine/symmetric_extension.hpp"
 #include "stimuli/generator.hpp"
@@ -17,25 +16,12 @@
 namespace touchtrial::bench {
 namespace {
 
-constexpr int kHardSize_px = 256;
-constexpr double kTieWidth_grey = 1e-4;
 /// After these steps the gap is below 1e-7 on pictures, and v is exact to about 1e-4.
 constexpr int kTvGaborSteps = 400;
 
 GreyImage stimulus(const std::string& name) {
   return engine::read_grey_image(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "stimuli" /
                                  (name + ".png"));
-}
-
-template <typename LevelAt>
-GreyImage drawn(LevelAt level_at) {
-  GreyImage image(kHardSize_px, kHardSize_px);
-  for (int y = 0; y < kHardSize_px; ++y) {
-    for (int x = 0; x < kHardSize_px; ++x) {
-      image.at(y, x) = static_cast<std::uint8_t>(level_at(y, x));
-    }
-  }
-  return image;
 }
 
 GreyImage& chosen_picture() {
@@ -48,37 +34,19 @@ engine::Extraction<double> extracted(const GreyImage& image, int radius) {
   options.radius = radius;
   engine::WantedPlanes wanted;
   wanted.csgv = true;
-  wanted.picture = true;
   return engine::extract_texture<double>(image, options, wanted);
-}
-
-bool is_near_tie(double texture) {
-  const double above = texture + 0.5 - std::floor(texture + 0.5);
-  return std::min(above, 1.0 - above) < kTieWidth_grey;
 }
 
 }  // namespace
 
-std::vector<GreyImage> shipped_pictures(bool only_filled) {
+std::vector<GreyImage> shipped_pictures() {
   std::vector<GreyImage> pictures;
-  std::vector<GreyImage> objects;
   for (const stimuli::StimulusRecipe& recipe : stimuli::stimulus_recipes()) {
-    if (recipe.kind == stimuli::StimulusKind::flat) continue;
-    const bool is_object = recipe.kind == stimuli::StimulusKind::object;
-    (is_object ? objects : pictures).push_back(stimulus(std::string(recipe.label)));
+    const bool fills =
+        recipe.kind != stimuli::StimulusKind::flat && recipe.kind != stimuli::StimulusKind::object;
+    if (fills) pictures.push_back(stimulus(std::string(recipe.label)));
   }
-  if (!only_filled) pictures.insert(pictures.end(), objects.begin(), objects.end());
   return pictures;
-}
-
-std::vector<GreyImage> hard_images() {
-  RandomStream random(1, "benchmark noise");
-  constexpr int kMiddle = kHardSize_px / 2;
-  return {drawn([&](int, int) { return random.below(256); }),
-          drawn([](int, int x) { return x < kMiddle ? 0 : 255; }),
-          drawn([](int y, int x) { return (x + y) % 2 * 255; }),
-          drawn([](int y, int x) { return y == kMiddle && x == kMiddle ? 255 : 0; }),
-          drawn([](int, int x) { return 4 * x % 256; })};
 }
 
 GreyImage timed_image(int size_px) {
@@ -110,18 +78,6 @@ double ExtractionTruth::texture_error(const Plane<float>& texture) const {
         std::isnan(error) ? std::numeric_limits<double>::infinity() : std::max(largest, error);
   }
   return largest;
-}
-
-int ExtractionTruth::unlike_pixels(const GreyImage& picture) const {
-  int unlike = 0;
-  for (std::size_t i = 0; i < picture.size(); ++i) {
-    const bool differs = picture.samples()[i] != truth_.picture.samples()[i];
-    unlike += differs && !reference::is_at_branch_point(truth_.csgv.samples()[i]) &&
-                      !is_near_tie(truth_.texture.samples()[i])
-                  ? 1
-                  : 0;
-  }
-  return unlike;
 }
 
 Plane<double> tv_gabor_truth(const GreyImage& image) {

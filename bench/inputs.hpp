@@ -10,15 +10,9 @@
 
 namespace touchtrial::bench {
 
-/// The pictures of stimuli/ that fill their frame, 500 x 500, and behind them those of an object on
-/// a plain ground; without the flat one.
-/// \param only_filled  without the objects
+/// The pictures of stimuli/ that fill their frame, 500 x 500, without the flat one.
 /// \throws FileError if one is missing
-[[nodiscard]] std::vector<GreyImage> shipped_pictures(bool only_filled = false);
-
-/// Uniform noise, a step, a checkerboard, a bright pixel, and a ramp whose CSGV lies on the branch
-/// point; 256 x 256.
-[[nodiscard]] std::vector<GreyImage> hard_images();
+[[nodiscard]] std::vector<GreyImage> shipped_pictures();
 
 /// A square of any size from the picture on which times are taken, bark.png unless another is
 /// chosen: its first samples, continued beyond the edge by mirror images, so that there is no seam.
@@ -34,10 +28,6 @@ class ExtractionTruth {
   /// The largest error, in grey levels. Pixels whose CSGV is within 1e-3 of 2 or 128 do not count:
   /// there, two orders of summation may take different branches of the order map.
   [[nodiscard]] double texture_error(const Plane<float>& texture) const;
-
-  /// How many samples of the 8-bit picture differ from double's, although CSGV is not near a branch
-  /// point and the texture is not within 1e-4 of a tie.
-  [[nodiscard]] int unlike_pixels(const GreyImage& picture) const;
 
  private:
   engine::Extraction<double> truth_;

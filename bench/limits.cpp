@@ -158,12 +158,8 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace touchtrial::bench {
-namespace {
-
 HWY_EXPORT(copy);
 HWY_EXPORT(arithmetic);
-
-}  // namespace
 
 void stream(std::span<const std::uint8_t> bytes, std::span<float> samples, Writing how) {
   HWY_DYNAMIC_DISPATCH(copy)

@@ -118,8 +118,8 @@ void run(Arguments arguments) {
   benchmark::AddCustomContext("opencv", CV_VERSION);
   benchmark::AddCustomContext("instruction_set", instruction_set_of(scope.simd_targets.front()));
   bool found = false;
-  for (const Rows& rows : {extraction_rows(scope), metric_rows(scope), servo_rows(),
-                           error_rows(scope), study_rows()}) {
+  for (const Rows& rows :
+       {extraction_rows(scope), metric_rows(scope), servo_rows(), study_rows()}) {
     found = register_rows(rows, arguments) || found;
   }
   if (!found) {

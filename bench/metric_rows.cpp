@@ -142,19 +142,17 @@ int usual_steps() {
   return steps;
 }
 
-template <typename Real>
 struct Decomposed {
   GreyImage image = timed_image(kUsualSize_px);
-  Plane<Real> v{};
+  Plane<float> v{};
 };
 
 /// \param decompose  computes v of an image
-template <typename Real, class Decompose>
+template <class Decompose>
 Case tv_gabor(const std::string& who, Decompose decompose) {
   Case one = timed(
-      who, [] { return Decomposed<Real>{}; },
-      [=](Decomposed<Real>& work) { work.v = decompose(work.image); },
-      [](const Decomposed<Real>& work) {
+      who, [] { return Decomposed{}; }, [=](Decomposed& work) { work.v = decompose(work.image); },
+      [](const Decomposed& work) {
         static const Plane<double> truth = tv_gabor_truth(work.image);
         return distance_relative_to(work.v, truth);
       },
@@ -164,23 +162,15 @@ Case tv_gabor(const std::string& who, Decompose decompose) {
 }
 
 /// Set-up and this number of steps.
-template <typename Real>
-Plane<Real> v_after(int steps, Algorithm algorithm, const GreyImage& image) {
-  reference::TvGaborCourse<Real> course(image, {}, algorithm);
+Plane<float> v_after(int steps, Algorithm algorithm, const GreyImage& image) {
+  reference::TvGaborCourse<float> course(image, {}, algorithm);
   course.advance(steps);
   return course.point().texture;
 }
 
-template <typename Real = float>
-Case solver(const std::string& name, Algorithm algorithm, int steps) {
-  return tv_gabor<Real>(fmt::format("{}, {} steps", name, steps), [=](const GreyImage& image) {
-    return v_after<Real>(steps, algorithm, image);
-  });
-}
-
 Case admm_to_goal() {
-  return tv_gabor<float>("touchtrial", [](const GreyImage& image) {
-    return v_after<float>(usual_steps(), Algorithm::admm, image);
+  return tv_gabor("touchtrial", [](const GreyImage& image) {
+    return v_after(usual_steps(), Algorithm::admm, image);
   });
 }
 
@@ -238,7 +228,7 @@ Case transforms() {
 
 /// The greatest number of steps to the goal over the pictures that fill their frame.
 double steps_on_pictures(bool quick) {
-  std::vector<GreyImage> pictures = shipped_pictures(true);
+  std::vector<GreyImage> pictures = shipped_pictures();
   if (quick) pictures.resize(kQuickPictures);
   int most = 0;
   for (const GreyImage& one : pictures) most = std::max(most, steps_to_goal(one));
@@ -248,7 +238,10 @@ double steps_on_pictures(bool quick) {
 Rows tv_gabor_rows(bool quick) {
   return {{.what = "TV-Gabor, to 1e-3 of v",
            .ours = admm_to_goal(),
-           .peers = {solver("fixed point", Algorithm::fixed_point, 1000)},
+           .peers = {tv_gabor("fixed point, 1000 steps",
+                              [](const GreyImage& image) {
+                                return v_after(1000, Algorithm::fixed_point, image);
+                              })},
            .goal = {"ratio", 0.08},
            .error_unit = "of v"},
           {.what = "TV-Gabor, beside its own transforms",
@@ -259,19 +252,7 @@ Rows tv_gabor_rows(bool quick) {
           {.what = "TV-Gabor, most steps to 1e-3 of v",
            .ours = counted("touchtrial", [=] { return steps_on_pictures(quick); }),
            .goal = {"count", 80},
-           .count_unit = "steps"},
-          {.what = "TV-Gabor, default stop",
-           .ours = tv_gabor<float>(
-               "touchtrial",
-               [](const GreyImage& image) { return engine::tv_gabor<float>(image, {}).texture; }),
-           .peers = {solver("ADMM", Algorithm::admm, 20), solver("ADMM", Algorithm::admm, 100),
-                     solver<double>("ADMM in double", Algorithm::admm, 50),
-                     solver<double>("ADMM in double", Algorithm::admm, 150),
-                     solver("FISTA", Algorithm::fista, 50), solver("FISTA", Algorithm::fista, 200),
-                     solver("FISTA", Algorithm::fista, 1000),
-                     solver("fixed point", Algorithm::fixed_point, 50),
-                     solver("fixed point", Algorithm::fixed_point, 200)},
-           .error_unit = "of v"}};
+           .count_unit = "steps"}};
 }
 
 }  // namespace

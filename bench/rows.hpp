@@ -76,7 +76,7 @@ template <class MakeState, class Run, class Error>
 
 /// A number of a row, and what limits it from above.
 struct Goal {
-  /// "ratio" (to the first peer), "of bound", "us", "error" or "count"; "" for none.
+  /// "ratio" (to the first peer), "of bound", "us" or "count"; "" for none.
   std::string_view limits;
   double target = 0.0;
 };
@@ -107,8 +107,6 @@ struct Scope {
 [[nodiscard]] Rows metric_rows(const Scope& scope);
 /// What the servo computes in a tick: forces, kinematics, and all of it together.
 [[nodiscard]] Rows servo_rows();
-/// The budgets of single precision, on every SIMD target.
-[[nodiscard]] Rows error_rows(const Scope& scope);
 /// A whole simulated study.
 [[nodiscard]] Rows study_rows();
 

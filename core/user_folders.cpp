@@ -14,22 +14,14 @@ fs::path absolute_path_in(const char* variable) {
   return path.is_absolute() ? path : fs::path();
 }
 
-fs::path user_folder(const char* variable, const char* below_home) {
-  if (const fs::path named = absolute_path_in(variable); !named.empty()) {
-    return named / "touchtrial";
-  }
-  const fs::path home = absolute_path_in("HOME");
-  return home.empty() ? home : home / below_home / "touchtrial";
-}
-
 }  // namespace
 
 fs::path user_config_folder() {
-  return user_folder("XDG_CONFIG_HOME", ".config");
-}
-
-fs::path user_cache_folder() {
-  return user_folder("XDG_CACHE_HOME", ".cache");
+  if (const fs::path named = absolute_path_in("XDG_CONFIG_HOME"); !named.empty()) {
+    return named / "touchtrial";
+  }
+  const fs::path home = absolute_path_in("HOME");
+  return home.empty() ? home : home / ".config" / "touchtrial";
 }
 
 }  // namespace touchtrial

@@ -119,14 +119,14 @@ class RealLinkPace final : public LinkPace {
   void rest_until(Time time) noexcept override { sleep_until(time); }
 };
 
-/// A device behind a DeviceLink whose times are those of `monotonic_now`.
+/// A device behind a DeviceLink.
 class LinkedDevice : public HapticDevice {
  public:
   [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept final {
     return link().read(sample);
   }
   [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept final {
-    return link().write(force_n, monotonic_now());
+    return link().write(force_n, link_time());
   }
   void halt() noexcept final { link().halt(); }
   void rearm() noexcept final { link().rearm(); }
@@ -135,6 +135,8 @@ class LinkedDevice : public HapticDevice {
  private:
   /// The same one while the device lives.
   [[nodiscard]] virtual DeviceLink& link() const noexcept = 0;
+  /// The link's times are those of this clock.
+  [[nodiscard]] virtual DeviceLink::Time link_time() const noexcept { return monotonic_now(); }
 };
 
 }  // namespace touchtrial::device

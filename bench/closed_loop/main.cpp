@@ -1,8 +1,6 @@
 // Sweeps of the closed loop of hand and plane: prints the tables of docs/benchmarks/closed-loop.md
 // and of "Steps at touchdown" in docs/method.md.
-#include "bench/closed_loop/sampled_wall.hpp"
 #include "bench/closed_loop/texture_loop.hpp"
-#include "device/model/device_model.hpp"
 #include "engine/extraction.hpp"
 #include "engine/image_file.hpp"
 #include "engine/rendering/gains.hpp"
@@ -12,7 +10,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -22,7 +19,6 @@ namespace touchtrial::bench {
 namespace {
 
 constexpr double kUsualMmPerS = 100.0;
-constexpr double kUsualNPerM = 400.0;
 
 /// A heading of Markdown with its rule.
 void print_heading(const std::string& names) {
@@ -31,70 +27,6 @@ void print_heading(const std::string& names) {
     if (c == '|') rule += " ---: |";
   }
   fmt::print("\n{}\n{}\n", names, rule);
-}
-
-void print_walls() {
-  print_heading(
-      "| K, N/mm | B, N s/m | rate, kHz | delay, ms | K (T/2 + t_d) + abs(B) | by frequency | by "
-      "energy |");
-  const auto print = [](const SampledWall& wall) {
-    fmt::print("| {} | {} | {} | {} | {:.5f} | {:.5f} | {:.5f} |\n", 1e-3 * wall.stiffness_n_per_m,
-               wall.damping_n_s_per_m, 1e-3 / wall.period_s, 1e3 * wall.delay_ticks * wall.period_s,
-               passivity_bound(wall), damping_by_frequency(wall), damping_by_energy(wall));
-  };
-  for (const double rate_hz : {1000.0, 4000.0, 10'000.0}) {
-    for (const double k : {100.0, 400.0, 3200.0}) print({k, 0.0, 1.0 / rate_hz});
-  }
-  for (const double b : {-0.8, -0.2, 0.2, 0.8}) print({kUsualNPerM, b});
-  for (const int ticks : {1, 2, 5, 10}) print({kUsualNPerM, 0.0, 0.001, ticks});
-}
-
-void print_estimators() {
-  print_heading(
-      "| delay, ms | B, N s/m | difference of 2 readings | line through 5 | line through 20 |");
-  for (const int ticks : {0, 2}) {
-    for (const double b : {0.0, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2}) {
-      const auto needed = [&](int readings) {
-        return damping_by_frequency({kUsualNPerM, b, 0.001, ticks, readings});
-      };
-      fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.2f} |\n", ticks, b, needed(2), needed(5),
-                 needed(20));
-    }
-  }
-}
-
-void print_quantised_walls() {
-  constexpr double kHandKg = 0.1;
-  /// Damping of a hand that is just enough for the wall's sampling, with room.
-  constexpr double kRoom = 1.2;
-  print_heading(
-      "| K, N/mm | D, mm | K D / 2, mN | by rest, mN | without friction: rms, mm/s | to and fro, "
-      "mm |");
-  for (const double k : {200.0, 400.0, 800.0}) {
-    for (const double step_mm : {0.01, 0.038, 0.055}) {
-      const SampledWall wall{.stiffness_n_per_m = k, .step_mm = step_mm};
-      const double damping = kRoom * passivity_bound(wall);
-      const LimitCycle cycle = limit_cycle(wall, kHandKg, damping);
-      fmt::print("| {} | {:.3f} | {:.2f} | {:.2f} | {:.3f} | {:.4f} |\n", 1e-3 * k, step_mm,
-                 1e3 * friction_bound(wall), 1e3 * friction_for_rest(wall, kHandKg, damping),
-                 cycle.mm_s, cycle.mm);
-    }
-  }
-}
-
-void print_device_models() {
-  print_heading(
-      "| model | delay, ms | damping needed, N s/m | step, mm | friction needed, mN | friction "
-      "that it has, mN |");
-  for (const device::DeviceModel& model : device::shipped_device_models()) {
-    if (model.coulomb_n == 0.0) continue;  // an ideal device
-    const SampledWall wall{.stiffness_n_per_m = kUsualNPerM,
-                           .delay_ticks = model.delay_ticks,
-                           .step_mm = model.position_step_mm};
-    fmt::print("| {} | {} | {:.1f} | {:.3f} | {:.1f} | {:.0f} |\n", model.name, model.delay_ticks,
-               passivity_bound(wall), model.position_step_mm, 1e3 * friction_bound(wall),
-               1e3 * model.coulomb_n);
-  }
 }
 
 double median(std::vector<double> values) {
@@ -186,10 +118,6 @@ void print_chatter(const Textures& textures) {
 }
 
 void run(const std::filesystem::path& stimuli) {
-  print_walls();
-  print_estimators();
-  print_quantised_walls();
-  print_device_models();
   Textures textures;
   for (const char* name : {"bark", "cloth", "pebbles", "straw", "brick"}) {
     const GreyImage image = engine::read_grey_image(stimuli / (std::string(name) + ".png"));

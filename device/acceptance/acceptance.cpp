@@ -88,7 +88,6 @@ class Procedure {
       press();
       feel_planes();
       if (options_.thermal) warm();
-      if (options_.silence) fall_silent();
     } catch (const EndOfAcceptance& end) {
       missed("everything that follows", end.why);
     } catch (const DeviceFailed& failed) {
@@ -96,9 +95,6 @@ class Procedure {
       missed("everything that follows", "the device failed: " + certificate_.fault);
     }
     if (!options_.thermal) missed("force after twenty minutes", "not asked for (--thermal)");
-    if (!options_.silence) {
-      missed("what the device does when program or cable are gone", "not asked for (--silence)");
-    }
     put_newtons_right();
     return {std::move(certificate_), std::move(curves_)};
   }
@@ -154,10 +150,10 @@ class Procedure {
         missed("noise at rest", "the run ended early");
       }
     }
-    const MeasuredOrWhy step = runs_.encoder_step();
-    certificate_.step_mm = step.measured;
-    if (step.measured) {
-      person_.tell("encoder step: " + words_of(*step.measured, 4, "mm"));
+    const OrWhy<Measured> step = runs_.encoder_step();
+    certificate_.step_mm = step.value;
+    if (step.value) {
+      person_.tell("encoder step: " + words_of(*step.value, 4, "mm"));
     } else {
       missed("encoder step", step.why);
     }
@@ -200,17 +196,18 @@ class Procedure {
 
   void stroke() {
     for (const DeviceAxis axis : kDeviceAxes) {
-      const StrokesOrWhy strokes = runs_.empty_strokes("strokes", axis, support_n_, step_mm());
-      if (!strokes.figures) {
+      const OrWhy<StrokeFigures> strokes =
+          runs_.empty_strokes("strokes", axis, support_n_, step_mm());
+      if (!strokes.value) {
         missed("friction and load" + on(axis), strokes.why);
         continue;
       }
       AxisResult& result = result_of(axis);
-      result.load_n = strokes.figures->load_n.value;
-      result.friction_n = strokes.figures->friction_n;
+      result.load_n = strokes.value->load_n.value;
+      result.friction_n = strokes.value->friction_n;
       support_n_ =
           support_n_ + (*result.load_n - dot(support_n_, direction_of(axis))) * direction_of(axis);
-      curves_of(axis).loop = strokes.figures->loop;
+      curves_of(axis).loop = strokes.value->loop;
       person_.tell(fmt::format("axis {}: friction {}, the handle's own load {:.2f} N",
                                name_of(axis), words_of(*result.friction_n, 2, "N"),
                                *result.load_n));
@@ -226,9 +223,9 @@ class Procedure {
         continue;
       }
       const EmptyHandle empty{support_n_, *result.load_n, result.friction_n->value};
-      const WeightOrWhy weighed = runs_.weigh("weights", axis, empty, step_mm());
-      result.weight = weighed.weight;
-      if (!weighed.weight) missed(what, weighed.why);
+      const OrWhy<WeighResult> weighed = runs_.weigh("weights", axis, empty, step_mm());
+      result.weight = weighed.value;
+      if (!weighed.value) missed(what, weighed.why);
     }
   }
 
@@ -252,12 +249,12 @@ class Procedure {
       }
       ShakenStrokes run(axis, support_n_, push_n, forces_.gains, forces_.hold_n);
       runs_.measure("shake " + std::string(name_of(axis)), run);
-      const ShakeOrWhy shaken = shake_figures(run, result.friction_n->value, step_mm());
-      if (!shaken.figures) {
+      const OrWhy<ShakeFigures> shaken = shake_figures(run, result.friction_n->value, step_mm());
+      if (!shaken.value) {
         missed(what, shaken.why);
         continue;
       }
-      take_shake(*shaken.figures, result);
+      take_shake(*shaken.value, result);
     }
   }
 
@@ -417,41 +414,18 @@ class Procedure {
       SlowStrokes run(DeviceAxis::y, support_n_, forces_.gains, forces_.hold_n,
                       kMinuteS - strokes_s);
       runs_.measure("warm " + std::to_string(minute + 1), run);
-      const StrokesOrWhy strokes = stroke_figures(run, step_mm());
-      if (!strokes.figures) {
+      const OrWhy<StrokeFigures> strokes = stroke_figures(run, step_mm());
+      if (!strokes.value) {
         missed(what, strokes.why);
         return;
       }
-      warm.after_n = strokes.figures->load_n.value;
+      warm.after_n = strokes.value->load_n.value;
       if (minute == 0) warm.before_n = warm.after_n;
     }
     warm.after_c = person_.temperature_c("temperature of the motors' housing now");
     person_.tell(fmt::format("the load took {:.3f} N at first, and {:.3f} N after twenty minutes",
                              warm.before_n, warm.after_n));
     certificate_.warm = warm;
-  }
-
-  void fall_silent() {
-    observe("program suspended for two seconds (SIGSTOP)",
-            "What did the force do meanwhile (gone at once, gone after how long, stayed)? ",
-            runs_.suspend_program("silence"));
-    observe("cable pulled", "What did the force do (gone at once, gone after how long, stayed)? ",
-            runs_.pull_cable("silence"));
-  }
-
-  void observe(const std::string& what, const std::string& question, const ReportOrWhy& run) {
-    if (!run.report) {
-      missed(what, run.why);
-      return;
-    }
-    const std::string saw = person_.saw(question);
-    if (saw.empty()) {
-      missed(what, "nothing was typed");
-      return;
-    }
-    certificate_.observed.push_back({what, saw + "; the run ended as " +
-                                               std::string(name_of(run.report->end)) + ", " +
-                                               std::string(name_of(run.report->fault))});
   }
 
   /// What was measured in commanded newtons becomes newtons at the handle.

@@ -38,7 +38,7 @@ enum class Stance {
 
 /// What is to be done before a run.
 struct Prompt {
-  std::string_view step;  ///< one of kAcceptanceSteps, or "planes", "thermal", "silence"
+  std::string_view step;  ///< one of kAcceptanceSteps, "planes" or "thermal"
   Stance stance = Stance::lying;
   DeviceAxis axis = DeviceAxis::y;  ///< of the run, where it has one
   std::string text;                 ///< for the person
@@ -93,7 +93,6 @@ struct AcceptanceOptions {
   /// Planes to stroke under the bench's accelerometer, the blank one first.
   std::vector<FeltPlane> planes{};
   bool thermal = false;  ///< twenty minutes under a load
-  bool silence = false;  ///< what the device does when program or cable are gone
 };
 
 /// Curves of one axis, for pictures.

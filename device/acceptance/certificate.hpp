@@ -92,12 +92,6 @@ struct WarmResult {
   std::optional<double> after_c{};
 };
 
-/// What a person saw.
-struct Observation {
-  std::string what;
-  std::string saw;
-};
-
 /// Accelerations at the stylus in a band, from an accelerometer.
 struct BandResult {
   double from_hz = 0.0;
@@ -135,7 +129,6 @@ struct Certificate {
   std::vector<AxisResult> axes{};  ///< those that were tried, in the order of kDeviceAxes
   std::optional<WallResult> wall{};
   std::optional<WarmResult> warm{};
-  std::vector<Observation> observed{};
   std::vector<SpectrumResult> spectra{};
   std::vector<NotMeasured> not_measured{};
 

@@ -34,7 +34,7 @@ void HandleRuns::require_no_fault(const ServoReport& report, const std::string& 
   throw DeviceFailed{fault, name};
 }
 
-MeasuredOrWhy HandleRuns::encoder_step() {
+OrWhy<Measured> HandleRuns::encoder_step() {
   if (!consents({"steps",
                  Stance::moving,
                  {},
@@ -47,8 +47,8 @@ MeasuredOrWhy HandleRuns::encoder_step() {
   return encoder_step_mm(moving.samples());
 }
 
-StrokesOrWhy HandleRuns::empty_strokes(std::string_view step, DeviceAxis axis, Vec3 support_n,
-                                       double step_mm) {
+OrWhy<StrokeFigures> HandleRuns::empty_strokes(std::string_view step, DeviceAxis axis,
+                                               Vec3 support_n, double step_mm) {
   if (!consents({step, Stance::free, axis,
                  fmt::format("Hold the handle in the middle, without a weight. Let go slowly "
                              "within 2 s of the start: it is held and moved by 5 mm along axis "
@@ -62,8 +62,8 @@ StrokesOrWhy HandleRuns::empty_strokes(std::string_view step, DeviceAxis axis, V
   return stroke_figures(run, step_mm);
 }
 
-WeightOrWhy HandleRuns::weigh(std::string_view step, DeviceAxis axis, const EmptyHandle& empty,
-                              double step_mm) {
+OrWhy<WeighResult> HandleRuns::weigh(std::string_view step, DeviceAxis axis,
+                                     const EmptyHandle& empty, double step_mm) {
   const AcceptanceForces forces = acceptance_forces(bench_.info(), bench_.limits());
   const double most_n = std::min(forces.weight_n, forces.hold_n) - std::abs(empty.load_n) -
                         empty.friction_n - kStrokeShareN;
@@ -80,9 +80,9 @@ WeightOrWhy HandleRuns::weigh(std::string_view step, DeviceAxis axis, const Empt
   }
   SlowStrokes run(axis, empty.support_n, forces.gains, forces.hold_n);
   measure("weight " + std::string(name_of(axis)), run);
-  const StrokesOrWhy strokes = stroke_figures(run, step_mm);
-  if (!strokes.figures) return {{}, strokes.why};
-  const Measured& load_n = strokes.figures->load_n;
+  const OrWhy<StrokeFigures> strokes = stroke_figures(run, step_mm);
+  if (!strokes.value) return {{}, strokes.why};
+  const Measured& load_n = strokes.value->load_n;
   // Over a pulley a weight pulls to either side.
   const double more_n = std::abs(load_n.value - empty.load_n);
   const WeighResult result{*weight_n, more_n, load_n.error};
@@ -94,7 +94,7 @@ WeightOrWhy HandleRuns::weigh(std::string_view step, DeviceAxis axis, const Empt
   return {result};
 }
 
-ReportOrWhy HandleRuns::suspend_program(std::string_view step) {
+OrWhy<ServoReport> HandleRuns::suspend_program(std::string_view step) {
   if (!consents({step, Stance::guarding, DeviceAxis::y,
                  "Hold the handle firmly: it is pushed down by 0.3 N for 8 s. After about 3 s the "
                  "system suspends this program for 2 s."})) {
@@ -105,7 +105,7 @@ ReportOrWhy HandleRuns::suspend_program(std::string_view step) {
   return {report, report ? "" : "not possible here"};
 }
 
-ReportOrWhy HandleRuns::pull_cable(std::string_view step) {
+OrWhy<ServoReport> HandleRuns::pull_cable(std::string_view step) {
   if (!consents({step, Stance::guarding, DeviceAxis::y,
                  "Hold the handle firmly: it is pushed down by 0.3 N for 8 s. Pull the device's "
                  "data cable out within that time. Leave this out if the cable must stay."})) {

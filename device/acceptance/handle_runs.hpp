@@ -22,15 +22,6 @@ struct DeviceFailed {
 /// The reason for what a person left out.
 inline constexpr std::string_view kLeftOut = "left out";
 
-struct WeightOrWhy {
-  std::optional<WeighResult> weight;  ///< with a scale
-  std::string why{};
-};
-struct ReportOrWhy {
-  std::optional<ServoReport> report;
-  std::string why{};
-};
-
 /// What an empty handle takes on an axis.
 struct EmptyHandle {
   Vec3 support_n;       ///< commanded, that carries it
@@ -53,22 +44,22 @@ class HandleRuns {
   static void require_no_fault(const ServoReport& report, const std::string& name);
 
   /// The person moves the handle slowly along all axes.
-  [[nodiscard]] MeasuredOrWhy encoder_step();
+  [[nodiscard]] OrWhy<Measured> encoder_step();
 
   /// The handle is held and moved slowly along an axis, without a weight.
   /// \param step  that the prompt names
   /// \param step_mm  encoder step; 0: not known
-  [[nodiscard]] StrokesOrWhy empty_strokes(std::string_view step, DeviceAxis axis, Vec3 support_n,
-                                           double step_mm);
+  [[nodiscard]] OrWhy<StrokeFigures> empty_strokes(std::string_view step, DeviceAxis axis,
+                                                   Vec3 support_n, double step_mm);
 
-  /// The same with a known weight on it.
-  [[nodiscard]] WeightOrWhy weigh(std::string_view step, DeviceAxis axis, const EmptyHandle& empty,
-                                  double step_mm);
+  /// The same with a known weight on it; the result has a scale.
+  [[nodiscard]] OrWhy<WeighResult> weigh(std::string_view step, DeviceAxis axis,
+                                         const EmptyHandle& empty, double step_mm);
 
   /// A small push while the system suspends the program.
-  [[nodiscard]] ReportOrWhy suspend_program(std::string_view step);
+  [[nodiscard]] OrWhy<ServoReport> suspend_program(std::string_view step);
   /// A small push while the person pulls the cable.
-  [[nodiscard]] ReportOrWhy pull_cable(std::string_view step);
+  [[nodiscard]] OrWhy<ServoReport> pull_cable(std::string_view step);
 
  private:
   AcceptanceBench& bench_;

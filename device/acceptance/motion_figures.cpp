@@ -1,5 +1,7 @@
 #include "device/acceptance/motion_figures.hpp"
 
+#include "core/cholesky.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -123,38 +125,50 @@ AxisStep axis_step(const EvenSeries& series) {
 
 constexpr std::size_t kUnknowns = 4;
 using FitRow = std::array<double, kUnknowns>;
-using FitMatrix = std::array<FitRow, kUnknowns>;
 
-/// Inverts the first n rows and columns of a symmetric, positive matrix by Gauss-Jordan.
-/// \return whether it could
-bool invert(FitMatrix& a, std::size_t n) {
-  FitMatrix inverse{};
-  for (std::size_t i = 0; i < n; ++i) inverse[i][i] = 1.0;
-  for (std::size_t column = 0; column < n; ++column) {
-    std::size_t best = column;
-    for (std::size_t row = column; row < n; ++row) {
-      if (std::abs(a[row][column]) > std::abs(a[best][column])) best = row;
-    }
-    if (!(std::abs(a[best][column]) > 1e-30)) return false;
-    std::swap(a[best], a[column]);
-    std::swap(inverse[best], inverse[column]);
-    const double pivot = a[column][column];
-    for (std::size_t k = 0; k < n; ++k) {
-      a[column][k] /= pivot;
-      inverse[column][k] /= pivot;
-    }
-    for (std::size_t row = 0; row < n; ++row) {
-      const double factor = a[row][column];
-      if (row == column || factor == 0.0) continue;
-      for (std::size_t k = 0; k < n; ++k) {
-        a[row][k] -= factor * a[column][k];
-        inverse[row][k] -= factor * inverse[column][k];
-      }
+/// A sum of functions that explains values best; entries beyond the functions are 0.
+struct Solution {
+  FitRow factors{};
+  FitRow inverse_diagonal{};  ///< of the normal matrix
+  double explained = 0.0;     ///< squares, of those of the values
+};
+
+/// Least squares by the normal equations.
+class LeastSquares {
+ public:
+  /// \param row  the functions' numbers, of which value is to be the sum
+  void add(const FitRow& row, double value) {
+    for (std::size_t i = 0; i < kUnknowns; ++i) {
+      right_[i] += row[i] * value;
+      for (std::size_t k = 0; k < kUnknowns; ++k) normal_[i][k] += row[i] * row[k];
     }
   }
-  a = inverse;
-  return true;
-}
+  /// \param n  only the first functions
+  /// \return nothing if they are not independent
+  [[nodiscard]] std::optional<Solution> solve(std::size_t n) const {
+    std::array<double, kUnknowns * kUnknowns> numbers{};
+    const std::span factor = std::span(numbers).first(n * n);
+    for (std::size_t i = 0; i < n; ++i) std::copy_n(normal_[i].begin(), n, &factor[i * n]);
+    if (!factorise(factor, n)) return std::nullopt;
+    Solution solution;
+    const std::span factors = std::span(solution.factors).first(n);
+    std::copy_n(right_.begin(), n, factors.begin());
+    solve_lower(factor, factors);
+    solve_upper(factor, factors);
+    for (std::size_t i = 0; i < n; ++i) {
+      solution.explained += right_[i] * factors[i];
+      FitRow unit{};
+      unit[i] = 1.0;
+      solve_lower(factor, std::span(unit).first(n));
+      for (const double part : unit) solution.inverse_diagonal[i] += part * part;
+    }
+    return solution;
+  }
+
+ private:
+  std::array<FitRow, kUnknowns> normal_{};
+  FitRow right_{};
+};
 
 constexpr int kEarliestDelay = -2;  ///< ticks
 constexpr int kLatestDelay = 30;
@@ -272,37 +286,29 @@ std::vector<Window> windows_in(const EvenSeries& series, TickRange ticks, std::s
 /// The acceleration as a sum of the force without friction, the speed and a constant: the unknowns
 /// are 1 / m, an offset and -b / m. The acceleration is what noise and soft arms disturb, so it is
 /// the side that is explained.
+FitRow row_of(const Window& window, double friction_n, double delay) {
+  return {window.force_at(delay) - friction_n * window.way, 1.0, window.velocity, 0.0};
+}
+
 struct LinearFit {
   FitRow unknowns{};
   double squares = 0.0;
-  bool solved = false;
 };
 
 /// \param n  unknowns: 3, or 2 without damping
-LinearFit fit_at(const std::vector<Window>& windows, double friction_n, double delay,
-                 std::size_t n) {
-  FitMatrix normal{};
-  FitRow right{};
-  const auto row_of = [&](const Window& window) {
-    return FitRow{window.force_at(delay) - friction_n * window.way, 1.0, window.velocity, 0.0};
-  };
+std::optional<LinearFit> fit_at(const std::vector<Window>& windows, double friction_n, double delay,
+                                std::size_t n) {
+  LeastSquares sums;
   for (const Window& window : windows) {
-    const FitRow row = row_of(window);
-    for (std::size_t i = 0; i < n; ++i) {
-      right[i] += row[i] * window.acceleration;
-      for (std::size_t k = 0; k < n; ++k) normal[i][k] += row[i] * row[k];
-    }
+    sums.add(row_of(window, friction_n, delay), window.acceleration);
   }
-  LinearFit fit;
-  if (!invert(normal, n)) return fit;
-  fit.solved = true;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < n; ++k) fit.unknowns[i] += normal[i][k] * right[k];
-  }
+  const auto solution = sums.solve(n);
+  if (!solution) return std::nullopt;
+  LinearFit fit{solution->factors};
   for (const Window& window : windows) {
-    const FitRow row = row_of(window);
-    double residual = -window.acceleration;
-    for (std::size_t i = 0; i < n; ++i) residual += row[i] * fit.unknowns[i];
+    const FitRow row = row_of(window, friction_n, delay);
+    const double residual =
+        std::inner_product(row.begin(), row.end(), fit.unknowns.begin(), -window.acceleration);
     fit.squares += residual * residual;
   }
   return fit;
@@ -311,21 +317,19 @@ LinearFit fit_at(const std::vector<Window>& windows, double friction_n, double d
 /// Standard errors of the unknowns, and behind them that of the delay.
 std::optional<FitRow> standard_errors(const std::vector<Window>& windows, const LinearFit& fit,
                                       double friction_n, double delay, std::size_t n) {
-  FitMatrix normal{};
+  LeastSquares sums;
   for (const Window& window : windows) {
-    const double slope = window.force_at(delay - 0.5) - window.force_at(delay + 0.5);
-    FitRow row = {window.force_at(delay) - friction_n * window.way, 1.0, window.velocity, 0.0};
-    row[n] = fit.unknowns[0] * slope;
-    for (std::size_t i = 0; i <= n; ++i) {
-      for (std::size_t k = 0; k <= n; ++k) normal[i][k] += row[i] * row[k];
-    }
+    FitRow row = row_of(window, friction_n, delay);
+    row[n] = fit.unknowns[0] * (window.force_at(delay - 0.5) - window.force_at(delay + 0.5));
+    sums.add(row, 0.0);
   }
-  if (!invert(normal, n + 1)) return std::nullopt;
+  const auto solution = sums.solve(n + 1);
+  if (!solution) return std::nullopt;
   // Neighbouring windows share half of their samples.
   const double variance = 2.0 * fit.squares / static_cast<double>(windows.size() - kUnknowns);
   FitRow errors{};
   for (std::size_t i = 0; i <= n; ++i) {
-    errors[i] = std::sqrt(std::max(variance * normal[i][i], 0.0));
+    errors[i] = std::sqrt(variance * solution->inverse_diagonal[i]);
   }
   return errors;
 }
@@ -346,18 +350,18 @@ std::optional<WindowFit> best_fit(const std::vector<Window>& windows, double fri
   double squares = 0.0;
   for (const Window& window : windows) squares += window.acceleration * window.acceleration;
   double best_delay = kEarliestDelay;
-  LinearFit best;
+  std::optional<LinearFit> best;
   for (double delay = kEarliestDelay; delay <= kLatestDelay; delay += kFine) {
-    const LinearFit fit = fit_at(windows, friction_n, delay, n);
-    if (!fit.solved) return std::nullopt;
-    if (best.solved && fit.squares >= best.squares) continue;
+    const std::optional<LinearFit> fit = fit_at(windows, friction_n, delay, n);
+    if (!fit) return std::nullopt;
+    if (best && fit->squares >= best->squares) continue;
     best = fit;
     best_delay = delay;
   }
-  const std::optional<FitRow> errors = standard_errors(windows, best, friction_n, best_delay, n);
-  if (!errors || !(best.unknowns[0] > 0.0)) return std::nullopt;
+  const std::optional<FitRow> errors = standard_errors(windows, *best, friction_n, best_delay, n);
+  if (!errors || !(best->unknowns[0] > 0.0)) return std::nullopt;
   // A force acts until the next tick, on average half a tick after it was sent.
-  return WindowFit{best.unknowns,  *errors,          std::sqrt(best.squares / squares),
+  return WindowFit{best->unknowns, *errors,          std::sqrt(best->squares / squares),
                    windows.size(), best_delay - 0.5, (*errors)[n]};
 }
 
@@ -438,25 +442,6 @@ std::vector<Turn> turns_in(const EvenSeries& series, TickRange ticks, double pus
   return turns;
 }
 
-/// What least squares with the first n of these basis functions find.
-struct Explained {
-  double squares = 0.0;
-  double last = 0.0;  ///< factor of the last function
-};
-
-/// \return nothing if the functions are not independent
-std::optional<Explained> explained_by(FitMatrix normal, const FitRow& right, std::size_t n) {
-  if (!invert(normal, n)) return std::nullopt;
-  Explained explained;
-  for (std::size_t a = 0; a < n; ++a) {
-    double factor = 0.0;
-    for (std::size_t b = 0; b < n; ++b) factor += normal[a][b] * right[b];
-    explained.squares += right[a] * factor;
-    explained.last = factor;
-  }
-  return explained;
-}
-
 /// How far the handle has left its parabola at some time after a force changed, if the change
 /// reaches it with a time constant; any unit.
 double bend_after(double ticks, double lag_ticks) {
@@ -472,25 +457,21 @@ double bend_after(double ticks, double lag_ticks) {
 /// the middle.
 std::optional<double> bend_at(const std::vector<double>& x, double bend, double way, double half,
                               double lag_ticks) {
-  FitMatrix normal{};
-  FitRow right{};
+  LeastSquares sums;
   const double greatest = bend_after(half, lag_ticks);
   const auto first = static_cast<std::size_t>(std::ceil(bend - half));
   const auto last = static_cast<std::size_t>(std::floor(bend + half));
   for (std::size_t i = first; i <= last; ++i) {
     const double ticks = static_cast<double>(i) - bend;
     const double t = ticks / half;
-    const FitRow row = {1.0, t, t * t, bend_after(ticks, lag_ticks) / greatest};
-    for (std::size_t a = 0; a < 4; ++a) {
-      right[a] += row[a] * (x[i] - x[first]);
-      for (std::size_t b = 0; b < 4; ++b) normal[a][b] += row[a] * row[b];
-    }
+    sums.add({1.0, t, t * t, bend_after(ticks, lag_ticks) / greatest}, x[i] - x[first]);
   }
-  const auto with = explained_by(normal, right, 4);
-  const auto without = explained_by(normal, right, 3);
+  const auto with = sums.solve(4);
+  const auto without = sums.solve(3);
   if (!with || !without) return std::nullopt;
-  if (with->last * way <= 0.0) return 0.0;
-  return std::max(with->squares - without->squares, 0.0) / static_cast<double>(last - first + 1);
+  if (with->factors[3] * way <= 0.0) return 0.0;
+  return std::max(with->explained - without->explained, 0.0) /
+         static_cast<double>(last - first + 1);
 }
 
 /// \name The delays after which a bend is looked for, ticks
@@ -566,23 +547,18 @@ std::optional<double> explained_around(const std::vector<double>& x, double turn
                                        double lag_ticks) {
   constexpr double kBefore = 6.0;  // ticks
   constexpr double kBehind = 14.0;
-  FitMatrix normal{};
-  FitRow right{};
+  LeastSquares sums;
   const auto first = static_cast<std::size_t>(std::ceil(turn - kBefore));
   const auto last = static_cast<std::size_t>(std::floor(turn + kBehind));
   const double greatest = bend_after(kBehind - delay, lag_ticks);
   for (std::size_t i = first; i <= last; ++i) {
     const double ticks = static_cast<double>(i) - turn;
     const double t = ticks / kBehind;
-    const FitRow row = {1.0, t, t * t, bend_after(ticks - delay, lag_ticks) / greatest};
-    for (std::size_t j = 0; j < 4; ++j) {
-      right[j] += row[j] * (x[i] - x[first]);
-      for (std::size_t k = 0; k < 4; ++k) normal[j][k] += row[j] * row[k];
-    }
+    sums.add({1.0, t, t * t, bend_after(ticks - delay, lag_ticks) / greatest}, x[i] - x[first]);
   }
-  const auto explained = explained_by(normal, right, 4);
-  if (!explained) return std::nullopt;
-  return explained->squares;
+  const auto solution = sums.solve(4);
+  if (!solution) return std::nullopt;
+  return solution->explained;
 }
 
 std::optional<LaggingDelay> lagging_delay(const EvenSeries& series,
@@ -608,9 +584,9 @@ std::optional<LaggingDelay> lagging_delay(const EvenSeries& series,
 /// motor rounds a bend that soft arms round too. So the delay lies between what the bends say and
 /// what the slow motion says.
 /// \param slow  slow_fit
-MeasuredOrWhy delay_by_turns(const EvenSeries& series, TickRange ticks, double push_n,
-                             const std::optional<WindowFit>& slow,
-                             std::vector<std::pair<double, double>>& by_delay) {
+OrWhy<Measured> delay_by_turns(const EvenSeries& series, TickRange ticks, double push_n,
+                               const std::optional<WindowFit>& slow,
+                               std::vector<std::pair<double, double>>& by_delay) {
   constexpr double kShortHalf = 5.0;  // ticks
   constexpr double kFarHalf = 6.5;
   constexpr double kLongHalf = 8.0;
@@ -648,7 +624,7 @@ MeasuredOrWhy delay_by_turns(const EvenSeries& series, TickRange ticks, double p
   return {Measured{0.5 * (bend + other) * ms, error * ms + kTurnsFloorMs}};
 }
 
-ShakeOrWhy no_shake(std::string why) {
+OrWhy<ShakeFigures> no_shake(std::string why) {
   return {std::nullopt, std::move(why)};
 }
 
@@ -674,7 +650,7 @@ std::optional<RestFigures> rest_figures(std::span<const ServoSample> samples) {
                      norm((2.0 / n) * (halves[1] - halves[0]))};
 }
 
-MeasuredOrWhy encoder_step_mm(std::span<const ServoSample> samples) {
+OrWhy<Measured> encoder_step_mm(std::span<const ServoSample> samples) {
   AxisStep coarsest;
   bool all_resolved = true;
   for (const DeviceAxis axis : kDeviceAxes) {
@@ -694,7 +670,7 @@ MeasuredOrWhy encoder_step_mm(std::span<const ServoSample> samples) {
   return {Measured{coarsest.step_mm, coarsest.spread_mm + 0.05 * coarsest.step_mm}};
 }
 
-StrokesOrWhy stroke_figures(const SlowStrokes& strokes, double step_mm) {
+OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm) {
   constexpr std::size_t kHalf = 50;  // ticks to either side, for the speed
   const Vec3 axis = direction_of(strokes.axis());
   if (strokes.ran_away()) return {std::nullopt, "the handle left its place"};
@@ -752,7 +728,7 @@ StrokesOrWhy stroke_figures(const SlowStrokes& strokes, double step_mm) {
   return {figures, ""};
 }
 
-ShakeOrWhy shake_figures(const ShakenStrokes& strokes, double friction_n, double step_mm) {
+OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_n, double step_mm) {
   constexpr std::array<std::size_t, 4> kHalves = {8, 12, 20, 32};
   constexpr std::size_t kFewestWindows = 60;
   if (strokes.ran_away()) return no_shake("the handle left its place");
@@ -795,9 +771,9 @@ ShakeOrWhy shake_figures(const ShakenStrokes& strokes, double friction_n, double
                                   (kMassShare + 0.5 * best->unexplained) * mass_kg};
   figures.viscous_n_s_per_m = {
       viscous, 2.0 * best->errors[2] * mass_kg + kViscousFloor + 0.1 * std::abs(viscous)};
-  const MeasuredOrWhy by_turns =
+  const OrWhy<Measured> by_turns =
       delay_by_turns(series, {from, end}, strokes.push_n(), slow, figures.by_delay);
-  figures.delay_ms = fits.delay_ms ? fits.delay_ms : by_turns.measured;
+  figures.delay_ms = fits.delay_ms ? fits.delay_ms : by_turns.value;
   if (!figures.delay_ms) figures.no_delay = by_turns.why;
   return {figures, ""};
 }

@@ -20,10 +20,11 @@ struct Measured {
   double error = 0.0;  ///< >= 0
 };
 
-/// Either a measured number, or why there is none.
-struct MeasuredOrWhy {
-  std::optional<Measured> measured;
-  std::string why{};  ///< empty if it was measured
+/// Either what was measured, or why there is none.
+template <typename Value>
+struct OrWhy {
+  std::optional<Value> value;
+  std::string why{};  ///< empty if there is a value
 };
 
 struct RestFigures {
@@ -36,7 +37,7 @@ struct RestFigures {
 
 /// The smallest difference between readings.
 /// \param samples  of a handle that a person moves slowly along all three axes
-[[nodiscard]] MeasuredOrWhy encoder_step_mm(std::span<const ServoSample> samples);
+[[nodiscard]] OrWhy<Measured> encoder_step_mm(std::span<const ServoSample> samples);
 
 /// What the slow strokes of one run took.
 struct StrokeFigures {
@@ -45,12 +46,8 @@ struct StrokeFigures {
   /// Place along the axis from the middle, and commanded force without the load, for a picture.
   std::vector<std::pair<double, double>> loop{};
 };
-struct StrokesOrWhy {
-  std::optional<StrokeFigures> figures;
-  std::string why{};
-};
 /// \param step_mm  encoder step; strokes must exceed five of them; 0: not known
-[[nodiscard]] StrokesOrWhy stroke_figures(const SlowStrokes& strokes, double step_mm);
+[[nodiscard]] OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm);
 
 /// The parameters of m a = F(t - delay) - f sign(v) - b v + c, along one axis, by least squares
 /// over windows in which the handle moves one way by more than five encoder steps. Both sides are
@@ -69,14 +66,10 @@ struct ShakeFigures {
   /// square).
   std::vector<std::pair<double, double>> by_delay{};
 };
-struct ShakeOrWhy {
-  std::optional<ShakeFigures> figures;
-  std::string why{};
-};
 /// More than this share unexplained: something else moved the handle.
 inline constexpr double kMostUnexplained = 0.3;
 /// \param friction_n  of slow strokes, in commanded newtons
-[[nodiscard]] ShakeOrWhy shake_figures(const ShakenStrokes& strokes, double friction_n,
-                                       double step_mm);
+[[nodiscard]] OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_n,
+                                                double step_mm);
 
 }  // namespace touchtrial::device

@@ -305,9 +305,9 @@ class Steps {
   }
 
   StepOutcome find_step() {
-    const MeasuredOrWhy step = runs_.encoder_step();
-    if (!step.measured) return fail(step.why);
-    step_mm_ = step.measured->value;
+    const OrWhy<Measured> step = runs_.encoder_step();
+    if (!step.value) return fail(step.why);
+    step_mm_ = step.value->value;
     record_.note("encoder step", {step_mm_});
     person_.tell(fmt::format("encoder step: {:.4f} mm", step_mm_));
     return StepOutcome::done;
@@ -335,18 +335,18 @@ class Steps {
   }
 
   StepOutcome weigh() {
-    const StrokesOrWhy empty = runs_.empty_strokes("weight", DeviceAxis::y, {}, step_mm_);
-    if (!empty.figures) return fail(empty.why);
-    const double load_n = empty.figures->load_n.value;
-    const double friction_n = empty.figures->friction_n.value;
+    const OrWhy<StrokeFigures> empty = runs_.empty_strokes("weight", DeviceAxis::y, {}, step_mm_);
+    if (!empty.value) return fail(empty.why);
+    const double load_n = empty.value->load_n.value;
+    const double friction_n = empty.value->friction_n.value;
     record_.note("load", {load_n});
     record_.note("friction", {friction_n});
-    const WeightOrWhy weighed =
+    const OrWhy<WeighResult> weighed =
         runs_.weigh("weight", DeviceAxis::y, {{0.0, load_n, 0.0}, load_n, friction_n}, step_mm_);
-    if (!weighed.weight) return fail(weighed.why);
-    const auto scale = AxisResult{.weight = weighed.weight}.scale();
-    record_.note("weight", {weighed.weight->expected_n});
-    record_.note("commanded for it", {weighed.weight->measured_n});
+    if (!weighed.value) return fail(weighed.why);
+    const auto scale = AxisResult{.weight = weighed.value}.scale();
+    record_.note("weight", {weighed.value->expected_n});
+    record_.note("commanded for it", {weighed.value->measured_n});
     record_.note("force scale and error", {scale->value, scale->error});
     return StepOutcome::done;
   }
@@ -386,16 +386,16 @@ class Steps {
   }
 
   /// A fault is what these runs are for, so it does not end the bring-up.
-  StepOutcome watch(BringUpStep step, const ReportOrWhy& run) {
-    if (!run.report) return fail(run.why);
-    device_failed_ = run.report->device_fault != DeviceFault::none;
+  StepOutcome watch(BringUpStep step, const OrWhy<ServoReport>& run) {
+    if (!run.value) return fail(run.why);
+    device_failed_ = run.value->device_fault != DeviceFault::none;
     const auto force = choose("What did the force do meanwhile?", kSilences);
     if (!force) return StepOutcome::failed;
     const std::string without = "without " + std::string(name_of(step));
-    const DeviceFault fault = run.report->device_fault;
+    const DeviceFault fault = run.value->device_fault;
     record_.note("force " + without, kSilences.at(*force));
     record_.note("fault " + without,
-                 fault == DeviceFault::none ? name_of(run.report->fault) : name_of(fault));
+                 fault == DeviceFault::none ? name_of(run.value->fault) : name_of(fault));
     return StepOutcome::done;
   }
 

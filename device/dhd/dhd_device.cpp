@@ -399,65 +399,59 @@ DeviceReadiness DhdDevice::readiness() const noexcept {
   return running_->loop->readiness();
 }
 
-namespace {
-
-/// Sources: this driver's page in docs/devices.
-std::vector<UnverifiedFact> dhd_unverified() {
-  return {
-      {"signs", "which way positions and forces run on each axis", Evidence::signs},
-      {"force_scale", "whether a newton of the library is one at the handle", Evidence::weight},
-      {"lengths", "whether a millimetre of the library is one at the handle", Evidence::lengths},
-      {"time_guard",
-       "whether the readings that come with the time guard's answer are new, at the loop's rate",
-       Evidence::readings},
-      {"force_button",
-       "whether force comes on by the library's command alone",
-       Evidence::answer,
-       "Did you have to press the force button at the device?",
-       {"yes", "no"}},
-      {"weight_carried",
-       "whether the library's weight is the arm's",
-       Evidence::answer,
-       "You let go of the handle in free air, while force was on. What did it do?",
-       {"stayed", "sank", "rose", "sideways"}},
-      {"jolt",
-       "whether the jolt when force comes on is felt",
-       Evidence::answer,
-       "Did the handle jolt when force came on?",
-       {"no", "slightly", "strongly"}},
-      {"watchdog", "whether the watchdog switches force off when the program stops",
-       Evidence::program_silent},
-      {"brakes",
-       "whether the brakes keep the arm from falling hard when force goes off",
-       Evidence::answer,
-       "Force went off (program stopped, cable pulled, or the end). What did the arm do?",
-       {"stayed", "sank_slowly", "fell"}},
-      {"initialisation",
-       "whether an initialisation works with the watchdog of 32 ms that is set meanwhile",
-       Evidence::answer,
-       "Did you run touchtrial device initialise?",
-       {"worked", "failed", "not_run"}},
-      {"slanted_base", "what the weight is on a base that is not level", Evidence::none},
-      {"force_left",
-       "whether a motor that carries the weight has the stated force left for the hand",
-       Evidence::none},
-  };
-}
-
-}  // namespace
-
+/// Sources of what is unverified: this driver's page in docs/devices.
 DeviceDriver dhd_driver() {
-  return {.name = "dhd",
-          .what = "Force Dimension omega, delta, sigma and lambda, through the vendor's library",
-          .list = dhd::list_dhd,
-          .open = dhd::open_dhd,
-          .workspace_is_known = false,
-          .initialise = dhd::initialise_dhd,
-          .products = {{"omega", "Force Dimension omega", "omega_3"},
-                       {"delta", "Force Dimension delta"},
-                       {"sigma", "Force Dimension sigma"},
-                       {"lambda", "Force Dimension lambda"}},
-          .unverified = dhd_unverified()};
+  return {
+      .name = "dhd",
+      .what = "Force Dimension omega, delta, sigma and lambda, through the vendor's library",
+      .list = dhd::list_dhd,
+      .open = dhd::open_dhd,
+      .workspace_is_known = false,
+      .initialise = dhd::initialise_dhd,
+      .products = {{"omega", "Force Dimension omega", "omega_3"},
+                   {"delta", "Force Dimension delta"},
+                   {"sigma", "Force Dimension sigma"},
+                   {"lambda", "Force Dimension lambda"}},
+      .unverified = {
+          {"signs", "which way positions and forces run on each axis", Evidence::signs},
+          {"force_scale", "whether a newton of the library is one at the handle", Evidence::weight},
+          {"lengths", "whether a millimetre of the library is one at the handle",
+           Evidence::lengths},
+          {"time_guard",
+           "whether the readings that come with the time guard's answer are new, at the loop's "
+           "rate",
+           Evidence::readings},
+          {"force_button",
+           "whether force comes on by the library's command alone",
+           Evidence::answer,
+           "Did you have to press the force button at the device?",
+           {"yes", "no"}},
+          {"weight_carried",
+           "whether the library's weight is the arm's",
+           Evidence::answer,
+           "You let go of the handle in free air, while force was on. What did it do?",
+           {"stayed", "sank", "rose", "sideways"}},
+          {"jolt",
+           "whether the jolt when force comes on is felt",
+           Evidence::answer,
+           "Did the handle jolt when force came on?",
+           {"no", "slightly", "strongly"}},
+          {"watchdog", "whether the watchdog switches force off when the program stops",
+           Evidence::program_silent},
+          {"brakes",
+           "whether the brakes keep the arm from falling hard when force goes off",
+           Evidence::answer,
+           "Force went off (program stopped, cable pulled, or the end). What did the arm do?",
+           {"stayed", "sank_slowly", "fell"}},
+          {"initialisation",
+           "whether an initialisation works with the watchdog of 32 ms that is set meanwhile",
+           Evidence::answer,
+           "Did you run touchtrial device initialise?",
+           {"worked", "failed", "not_run"}},
+          {"slanted_base", "what the weight is on a base that is not level", Evidence::none},
+          {"force_left",
+           "whether a motor that carries the weight has the stated force left for the hand",
+           Evidence::none}}};
 }
 
 }  // namespace touchtrial::device

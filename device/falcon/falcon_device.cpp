@@ -123,14 +123,6 @@ DeviceInfo FalconDevice::info() const {
   return info;
 }
 
-DeviceStatus FalconDevice::read(DeviceSample& sample) noexcept {
-  return link_.read(sample);
-}
-
-DeviceStatus FalconDevice::write(Vec3 force_n) noexcept {
-  return link_.write(force_n, options_.pace->now());
-}
-
 DeviceReadiness FalconDevice::readiness() const noexcept {
   return homed_.load(std::memory_order_acquire) ? DeviceReadiness::ready
                                                 : DeviceReadiness::needs_homing;
@@ -185,47 +177,39 @@ void FalconDevice::say_farewell() noexcept {
 
 namespace touchtrial::device {
 
-namespace {
-
-/// Sources: this driver's page in docs/devices.
-std::vector<UnverifiedFact> falcon_unverified() {
-  return {
-      {"signs", "which way positions and forces run on each axis", Evidence::signs},
-      {"lengths", "legs and degrees a count: the sources differ by 1.2 to 1.5 in lengths",
-       Evidence::lengths},
-      {"zero_angle",
-       "the legs' angle at count 0 (32.99 or 35 degrees), which shifts the middle of the reach",
-       Evidence::range},
-      {"force_scale", "motor values for 1 N m: 6,616, or 3,728, or 10,000", Evidence::weight},
-      {"homing", "whether firmware loads and the axes home as the driver does it",
-       Evidence::opened},
-      {"lights",
-       "which bit is which light",
-       Evidence::answer,
-       "Which light was on before the grip was homed?",
-       {"red", "green", "blue", "none"}},
-      {"program_silent", "what the firmware does with the motors when the host falls silent",
-       Evidence::program_silent},
-      {"cable_silent", "what the firmware does with the motors when the USB cable is pulled",
-       Evidence::cable_silent},
-      {"replies", "how late replies come on this port", Evidence::readings},
-      {"beyond_peak", "what the firmware does with motor values beyond 4,095", Evidence::none},
-      {"warm_motors",
-       "how long motors hold which torque, and how warm they get (device accept --thermal)",
-       Evidence::none},
-  };
-}
-
-}  // namespace
-
+/// Sources of what is unverified: this driver's page in docs/devices.
 DeviceDriver falcon_driver() {
-  return {.name = "falcon",
-          .what = "Novint Falcon, over USB",
-          .list = falcon::list_falcons,
-          .open = falcon::open_falcon,
-          .nominal_workspace = falcon::kFalconWorkspace,
-          .products = {{"falcon", "Novint Falcon", "falcon"}},
-          .unverified = falcon_unverified()};
+  return {
+      .name = "falcon",
+      .what = "Novint Falcon, over USB",
+      .list = falcon::list_falcons,
+      .open = falcon::open_falcon,
+      .nominal_workspace = falcon::kFalconWorkspace,
+      .products = {{"falcon", "Novint Falcon", "falcon"}},
+      .unverified = {
+          {"signs", "which way positions and forces run on each axis", Evidence::signs},
+          {"lengths", "legs and degrees a count: the sources differ by 1.2 to 1.5 in lengths",
+           Evidence::lengths},
+          {"zero_angle",
+           "the legs' angle at count 0 (32.99 or 35 degrees), which shifts the middle of the reach",
+           Evidence::range},
+          {"force_scale", "motor values for 1 N m: 6,616, or 3,728, or 10,000", Evidence::weight},
+          {"homing", "whether firmware loads and the axes home as the driver does it",
+           Evidence::opened},
+          {"lights",
+           "which bit is which light",
+           Evidence::answer,
+           "Which light was on before the grip was homed?",
+           {"red", "green", "blue", "none"}},
+          {"program_silent", "what the firmware does with the motors when the host falls silent",
+           Evidence::program_silent},
+          {"cable_silent", "what the firmware does with the motors when the USB cable is pulled",
+           Evidence::cable_silent},
+          {"replies", "how late replies come on this port", Evidence::readings},
+          {"beyond_peak", "what the firmware does with motor values beyond 4,095", Evidence::none},
+          {"warm_motors",
+           "how long motors hold which torque, and how warm they get (device accept --thermal)",
+           Evidence::none}}};
 }
 
 }  // namespace touchtrial::device

@@ -34,7 +34,7 @@ struct FalconOptions {
 
 /// Exchanges one packet each way at up to 1 kHz on a thread of its own. Sends no force before all
 /// three axes are homed. The gravity bias is its support.
-class FalconDevice final : public HapticDevice {
+class FalconDevice final : public LinkedDevice {
  public:
   /// The shortest time from one exchange to the next: the device manages about 1 kHz.
   static constexpr FalconPace::Time kPeriod = std::chrono::milliseconds(1);
@@ -53,20 +53,19 @@ class FalconDevice final : public HapticDevice {
   ~FalconDevice() override;
 
   [[nodiscard]] DeviceInfo info() const override;
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
   [[nodiscard]] Vec3 support_force_n(const DeviceSample& /*sample*/) noexcept override {
     return settings_.gravity_bias_n;
   }
-  void halt() noexcept override { link_.halt(); }
-  void rearm() noexcept override { link_.rearm(); }
-  [[nodiscard]] DeviceFault fault() const noexcept override { return link_.fault(); }
   [[nodiscard]] DeviceReadiness readiness() const noexcept override;
 
   /// The scheduling that the USB thread obtained.
   [[nodiscard]] const SchedulingObtained& scheduling() const noexcept { return scheduling_; }
 
  private:
+  [[nodiscard]] DeviceLink& link() const noexcept override { return link_; }
+  [[nodiscard]] DeviceLink::Time link_time() const noexcept override {
+    return options_.pace->now();
+  }
   void exchange_until_stopped() noexcept;
   void exchange() noexcept;
   void wait_for_reply() noexcept;
@@ -75,7 +74,7 @@ class FalconDevice final : public HapticDevice {
   FalconSettings settings_;
   std::unique_ptr<FtdiTransport> transport_;
   FalconOptions options_;
-  DeviceLink link_;
+  mutable DeviceLink link_;
   FalconExchange exchange_;
   std::atomic<bool> homed_{false};
   std::atomic<bool> stopping_{false};

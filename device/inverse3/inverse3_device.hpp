@@ -41,7 +41,7 @@ struct KnownService {
 
 /// Sends one force and takes one state at up to 2 kHz on a thread of its own. Sends no force before
 /// the arm is calibrated and powered. A fault latches: open the device anew.
-class Inverse3Device final : public HapticDevice {
+class Inverse3Device final : public LinkedDevice {
  public:
   /// The shortest time from one exchange to the next.
   static constexpr std::chrono::nanoseconds kPeriod = std::chrono::microseconds(500);
@@ -55,22 +55,17 @@ class Inverse3Device final : public HapticDevice {
   ~Inverse3Device() override;
 
   [[nodiscard]] DeviceInfo info() const override { return info_; }
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
-    return link_.read(sample);
-  }
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
-    return link_.write(force_n, options_.clock->now());
-  }
-  void halt() noexcept override { link_.halt(); }
-  void rearm() noexcept override { link_.rearm(); }
-  [[nodiscard]] DeviceFault fault() const noexcept override { return link_.fault(); }
   [[nodiscard]] DeviceReadiness readiness() const noexcept override {
     return readiness_.load(std::memory_order_acquire);
   }
 
  private:
+  [[nodiscard]] DeviceLink& link() const noexcept override { return link_; }
+  [[nodiscard]] DeviceLink::Time link_time() const noexcept override {
+    return options_.clock->now();
+  }
   void choose_device(const ServiceReport& inventory);
-  void expect_no_other_session(const ServiceReport& inventory) const;
+  void expect_no_other_session() const;
   void configure();
   void listen_to_events();
   void describe(const DeviceConfig& config);
@@ -90,9 +85,8 @@ class Inverse3Device final : public HapticDevice {
   std::unique_ptr<ServiceLink> service_;
   std::string id_;
   std::optional<std::int64_t> session_id_;
-  Vec3 centre_m_;  ///< of the workspace, in the service's frame
   DeviceInfo info_;
-  DeviceLink link_;
+  mutable DeviceLink link_;
   ArmStatus status_;  ///< driver's thread, once that runs
   std::atomic<DeviceReadiness> readiness_{DeviceReadiness::needs_calibration};
   std::atomic<bool> stopping_{false};

@@ -30,6 +30,28 @@ DeviceFault fault_of(std::uint32_t code) noexcept {
   }
 }
 
+constexpr std::int64_t kTicksBetweenTemperatures = 100;
+/// The library takes a moment for a calibration; a new request during it would begin it anew.
+constexpr std::int64_t kTicksBetweenCalibrations = 100;
+
+/// What a person has to do for a calibration of this style.
+DeviceReadiness need_of(int style) noexcept {
+  switch (style) {
+    case kStyleEncoderReset:
+      return DeviceReadiness::needs_reset;
+    case kStyleAuto:
+      return DeviceReadiness::needs_homing;
+    case kStyleInkwell:
+      return DeviceReadiness::needs_inkwell;
+    default:
+      return DeviceReadiness::needs_calibration;
+  }
+}
+
+Vec3 vec_from(const std::array<double, 3>& values) noexcept {
+  return {values[0], values[1], values[2]};
+}
+
 }  // namespace
 
 Api load_api(const DynamicLibrary& library) {
@@ -68,32 +90,6 @@ Errors drain_errors(const Api& api) noexcept {
   }
   return errors;
 }
-
-namespace {
-
-constexpr std::int64_t kTicksBetweenTemperatures = 100;
-/// The library takes a moment for a calibration; a new request during it would begin it anew.
-constexpr std::int64_t kTicksBetweenCalibrations = 100;
-
-/// What a person has to do for a calibration of this style.
-DeviceReadiness need_of(int style) noexcept {
-  switch (style) {
-    case kStyleEncoderReset:
-      return DeviceReadiness::needs_reset;
-    case kStyleAuto:
-      return DeviceReadiness::needs_homing;
-    case kStyleInkwell:
-      return DeviceReadiness::needs_inkwell;
-    default:
-      return DeviceReadiness::needs_calibration;
-  }
-}
-
-Vec3 vec_from(const std::array<double, 3>& values) noexcept {
-  return {values[0], values[1], values[2]};
-}
-
-}  // namespace
 
 std::uint32_t Loop::callback(void* loop) noexcept {
   return static_cast<Loop*>(loop)->enter();

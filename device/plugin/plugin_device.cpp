@@ -137,24 +137,12 @@ DeviceInfo PluginDevice::info() const {
   return running_->info;
 }
 
-DeviceStatus PluginDevice::read(DeviceSample& sample) noexcept {
-  return running_->link.read(sample);
+DeviceLink& PluginDevice::link() const noexcept {
+  return running_->link;
 }
 
-DeviceStatus PluginDevice::write(Vec3 force_n) noexcept {
-  return running_->link.write(force_n, running_->pace->now());
-}
-
-void PluginDevice::halt() noexcept {
-  running_->link.halt();
-}
-
-void PluginDevice::rearm() noexcept {
-  running_->link.rearm();
-}
-
-DeviceFault PluginDevice::fault() const noexcept {
-  return running_->link.fault();
+DeviceLink::Time PluginDevice::link_time() const noexcept {
+  return running_->pace->now();
 }
 
 DeviceReadiness PluginDevice::readiness() const noexcept {

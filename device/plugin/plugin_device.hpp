@@ -28,7 +28,7 @@ struct PluginOptions {
 ///
 /// A call that blocks lets the samples grow old, which ends a run. If it never returns, the device
 /// and its thread are left behind: nothing waits for it.
-class PluginDevice final : public HapticDevice {
+class PluginDevice final : public LinkedDevice {
  public:
   /// \throws DeviceError with the remedy if the library cannot be used, the device does not open, or
   ///   describes itself as no device can be
@@ -37,16 +37,14 @@ class PluginDevice final : public HapticDevice {
   ~PluginDevice() override;
 
   [[nodiscard]] DeviceInfo info() const override;
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
-  void halt() noexcept override;
-  void rearm() noexcept override;
-  [[nodiscard]] DeviceFault fault() const noexcept override;
   [[nodiscard]] DeviceReadiness readiness() const noexcept override;
   /// What led to the first fault. Any thread.
   [[nodiscard]] plugin::Trouble trouble() const noexcept;
 
  private:
+  [[nodiscard]] DeviceLink& link() const noexcept override;
+  [[nodiscard]] DeviceLink::Time link_time() const noexcept override;
+
   struct Running;
   std::shared_ptr<Running> running_;  ///< a thread that never ends keeps it
   std::future<void> ended_;

@@ -27,6 +27,10 @@ struct CsvRow {
   std::size_t line = 0;  ///< on which the row begins, from 1
 };
 
+[[noreturn]] void refuse(const std::string& where, const std::string& why) {
+  throw FileError(one_line(where + ": " + why));
+}
+
 /// Rows of a CSV file by RFC 4180. Commas separate fields, LF or CRLF separate rows; a field in
 /// quotation marks may contain both, and a doubled mark in it stands for one. A byte order mark in
 /// front is ignored.
@@ -34,91 +38,64 @@ class CsvRows {
  public:
   /// \param text  must outlive this
   /// \param name  names the file in errors
-  CsvRows(std::string_view text, std::string name);
+  CsvRows(std::string_view text, std::string name) : rest_(text), name_(std::move(name)) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  }
 
   /// \return false at the end
   /// \throws FileError if a quotation mark is not closed, or text follows a closing one
-  [[nodiscard]] bool next(CsvRow& row);
+  [[nodiscard]] bool next(CsvRow& row) {
+    if (rest_.empty()) return false;
+    row = {{""}, line_};
+    enum class Field { open, in_quotes, closed } field = Field::open;
+    while (!rest_.empty()) {
+      const char c = rest_.front();
+      rest_.remove_prefix(1);
+      if (c == '\n') ++line_;
+      if (field == Field::in_quotes) {
+        const bool is_end = c == '"' && !rest_.starts_with('"');
+        if (is_end) {
+          field = Field::closed;
+          continue;
+        }
+        if (c == '"') rest_.remove_prefix(1);
+        row.fields.back() += c;
+      } else if (c == '\n') {
+        return true;
+      } else if (c == ',') {
+        row.fields.emplace_back();
+        field = Field::open;
+      } else if (c == '\r' && rest_.starts_with('\n')) {
+        continue;
+      } else if (field == Field::closed) {
+        refuse(line(line_), "text follows a closing quotation mark; put a comma between them");
+      } else if (c == '"' && row.fields.back().empty()) {
+        field = Field::in_quotes;
+      } else {
+        row.fields.back() += c;
+      }
+    }
+    if (field == Field::in_quotes) {
+      refuse(line(row.line), "a quotation mark is not closed; the file may be truncated");
+    }
+    return true;
+  }
 
  private:
-  [[nodiscard]] std::string next_field();
-  [[nodiscard]] std::string quoted_field();
-  [[nodiscard]] bool at_row_end() const noexcept;
-  void pass_row_end() noexcept;
+  [[nodiscard]] std::string line(std::size_t number) const {
+    return name_ + ", line " + std::to_string(number);
+  }
 
-  std::string_view text_;
+  std::string_view rest_;
   std::string name_;
-  std::size_t at_ = 0;
   std::size_t line_ = 1;
 };
-
-CsvRows::CsvRows(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
-}
-
-bool CsvRows::next(CsvRow& row) {
-  if (at_ >= text_.size()) return false;
-  row.fields.clear();
-  row.line = line_;
-  row.fields.push_back(next_field());
-  while (at_ < text_.size() && text_[at_] == ',') {
-    ++at_;
-    row.fields.push_back(next_field());
-  }
-  if (!at_row_end()) {
-    throw FileError(one_line(name_ + ", line " + std::to_string(line_) +
-                             ": text follows a closing quotation mark; put a comma between them"));
-  }
-  pass_row_end();
-  return true;
-}
-
-std::string CsvRows::next_field() {
-  if (at_ < text_.size() && text_[at_] == '"') return quoted_field();
-  const std::size_t begin = at_;
-  while (!at_row_end() && text_[at_] != ',') ++at_;
-  return std::string(text_.substr(begin, at_ - begin));
-}
-
-std::string CsvRows::quoted_field() {
-  const std::size_t first_line = line_;
-  std::string field;
-  for (++at_; at_ < text_.size(); ++at_) {
-    if (text_[at_] == '\n') ++line_;
-    if (text_[at_] == '"') {
-      const bool doubled = at_ + 1 < text_.size() && text_[at_ + 1] == '"';
-      if (!doubled) {
-        ++at_;
-        return field;
-      }
-      ++at_;
-    }
-    field += text_[at_];
-  }
-  throw FileError(one_line(name_ + ", line " + std::to_string(first_line) +
-                           ": a quotation mark is not closed; the file may be truncated"));
-}
-
-bool CsvRows::at_row_end() const noexcept {
-  return at_ >= text_.size() || text_[at_] == '\n' ||
-         (text_[at_] == '\r' && at_ + 1 < text_.size() && text_[at_ + 1] == '\n');
-}
-
-void CsvRows::pass_row_end() noexcept {
-  if (at_ < text_.size() && text_[at_] == '\r') ++at_;
-  if (at_ < text_.size()) ++at_;
-  ++line_;
-}
 
 struct TimedPosition {
   double time_s;
   Vec3 position_mm;
 };
-
-[[noreturn]] void refuse(const std::string& where, const std::string& why) {
-  throw FileError(one_line(where + ": " + why));
-}
 
 std::array<std::size_t, 4> find_columns(const CsvRow& header, const std::string& where) {
   std::array<std::size_t, 4> found{};
@@ -211,29 +188,6 @@ double rate_over(double duration_s, std::size_t ticks, const std::string& name) 
   refuse(name, "it does not have 10 to 20,000 rows a second; time_s is in seconds");
 }
 
-}  // namespace
-
-RecordedMotion::RecordedMotion(std::vector<Vec3> positions_mm, double rate_hz)
-    : positions_mm_(std::move(positions_mm)), rate_hz_(rate_hz) {
-  if (positions_mm_.empty() || ticks() > kMostTicks || !(rate_hz > 0.0) ||
-      !std::isfinite(rate_hz)) {
-    throw std::invalid_argument("RecordedMotion: no positions, too many, or a rate not above 0");
-  }
-}
-
-RecordedMotion read_motion_csv(const std::filesystem::path& file) {
-  const Bytes bytes = read_file(file, kLargestFile);
-  const std::string name = file.string();
-  CsvRows rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
-  const std::vector<TimedPosition> positions = read_positions(rows, name);
-  std::vector<Vec3> ticks = fill_ticks(positions, usual_step_s(positions), name);
-  const double duration_s = positions.back().time_s - positions.front().time_s;
-  const double rate_hz = rate_over(duration_s, ticks.size(), name);
-  return {std::move(ticks), rate_hz};
-}
-
-namespace {
-
 /// That of a usual device.
 constexpr double kMaxForceN = 3.3;
 
@@ -264,6 +218,25 @@ std::unique_ptr<HapticDevice> open_replay(const DeviceSettings& settings) {
 }
 
 }  // namespace
+
+RecordedMotion::RecordedMotion(std::vector<Vec3> positions_mm, double rate_hz)
+    : positions_mm_(std::move(positions_mm)), rate_hz_(rate_hz) {
+  if (positions_mm_.empty() || ticks() > kMostTicks || !(rate_hz > 0.0) ||
+      !std::isfinite(rate_hz)) {
+    throw std::invalid_argument("RecordedMotion: no positions, too many, or a rate not above 0");
+  }
+}
+
+RecordedMotion read_motion_csv(const std::filesystem::path& file) {
+  const Bytes bytes = read_file(file, kLargestFile);
+  const std::string name = file.string();
+  CsvRows rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
+  const std::vector<TimedPosition> positions = read_positions(rows, name);
+  std::vector<Vec3> ticks = fill_ticks(positions, usual_step_s(positions), name);
+  const double duration_s = positions.back().time_s - positions.front().time_s;
+  const double rate_hz = rate_over(duration_s, ticks.size(), name);
+  return {std::move(ticks), rate_hz};
+}
 
 DeviceInfo ReplayDevice::info() const {
   DeviceInfo info{"replay", "", kMaxForceN, true};

@@ -59,6 +59,29 @@ double ramp_distance(double u) noexcept {
   return u * u * u * (1.0 - u / 2.0);
 }
 
+/// The plane and the time of a hand that is opened by name; nobody watches it for longer.
+constexpr PlaneGeometry kNamedPlane{0.2, 500, 500};
+constexpr double kNamedExploreS = 8.0 * 3600.0;
+
+std::vector<DeviceListing> list_simulated(const DeviceSettings&) {
+  DeviceListing listing;
+  listing.driver = "simulated";
+  listing.model = "simulated hand";
+  listing.present = true;
+  return {listing};
+}
+
+std::unique_ptr<HapticDevice> open_simulated(const DeviceSettings& settings) {
+  RandomStream random(1, "simulated device");
+  HandOptions hand;
+  hand.explore_s = kNamedExploreS;
+  ExplorationOptions exploration;
+  exploration.duration_s = kNamedExploreS;
+  const std::string& held = settings.simulated_on;
+  return std::make_unique<SimulatedHand>(hand, ExplorationPath(kNamedPlane, exploration, random),
+                                         held.empty() ? DeviceModel{} : model_of_device(held));
+}
+
 }  // namespace
 
 ExplorationPath::Ramps ExplorationPath::ramps_at(double gone_s, double left_s) noexcept {
@@ -93,33 +116,6 @@ ExplorationPath::ExplorationPath(const PlaneGeometry& plane, const ExplorationOp
     from_mm = to_mm;
   }
 }
-
-namespace {
-
-/// The plane and the time of a hand that is opened by name; nobody watches it for longer.
-constexpr PlaneGeometry kNamedPlane{0.2, 500, 500};
-constexpr double kNamedExploreS = 8.0 * 3600.0;
-
-std::vector<DeviceListing> list_simulated(const DeviceSettings&) {
-  DeviceListing listing;
-  listing.driver = "simulated";
-  listing.model = "simulated hand";
-  listing.present = true;
-  return {listing};
-}
-
-std::unique_ptr<HapticDevice> open_simulated(const DeviceSettings& settings) {
-  RandomStream random(1, "simulated device");
-  HandOptions hand;
-  hand.explore_s = kNamedExploreS;
-  ExplorationOptions exploration;
-  exploration.duration_s = kNamedExploreS;
-  const std::string& held = settings.simulated_on;
-  return std::make_unique<SimulatedHand>(hand, ExplorationPath(kNamedPlane, exploration, random),
-                                         held.empty() ? DeviceModel{} : model_of_device(held));
-}
-
-}  // namespace
 
 std::string words_of_simulated(const DeviceModel& held) {
   const bool ideal = held.name.empty() || held.name == "ideal";

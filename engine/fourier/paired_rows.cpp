@@ -116,43 +116,14 @@ void multiply(const Real* factors, std::size_t count, std::complex<Real>* coeffi
   });
 }
 
-// Dispatch tables hold functions, not templates.
-void join_samples_f32(const float* a, const float* b, std::size_t width, std::complex<float>* z) {
-  join_samples(a, b, width, z);
+// A target exports functions, not templates.
+PairedRowKernels<float> kernels_f32() {
+  return {join_samples<float>, part_samples<float>, part_coefficients<float>,
+          join_coefficients<float>, multiply<float>};
 }
-void join_samples_f64(const double* a, const double* b, std::size_t width,
-                      std::complex<double>* z) {
-  join_samples(a, b, width, z);
-}
-void part_samples_f32(const std::complex<float>* z, std::size_t width, float scale, float* a,
-                      float* b) {
-  part_samples(z, width, scale, a, b);
-}
-void part_samples_f64(const std::complex<double>* z, std::size_t width, double scale, double* a,
-                      double* b) {
-  part_samples(z, width, scale, a, b);
-}
-void part_coefficients_f32(const std::complex<float>* z, std::size_t width,
-                           const PairedLines<float>& lines) {
-  part_coefficients(z, width, lines);
-}
-void part_coefficients_f64(const std::complex<double>* z, std::size_t width,
-                           const PairedLines<double>& lines) {
-  part_coefficients(z, width, lines);
-}
-void join_coefficients_f32(const PairedLines<float>& lines, std::size_t width,
-                           std::complex<float>* z) {
-  join_coefficients(lines, width, z);
-}
-void join_coefficients_f64(const PairedLines<double>& lines, std::size_t width,
-                           std::complex<double>* z) {
-  join_coefficients(lines, width, z);
-}
-void multiply_f32(const float* factors, std::size_t count, std::complex<float>* coefficients) {
-  multiply(factors, count, coefficients);
-}
-void multiply_f64(const double* factors, std::size_t count, std::complex<double>* coefficients) {
-  multiply(factors, count, coefficients);
+PairedRowKernels<double> kernels_f64() {
+  return {join_samples<double>, part_samples<double>, part_coefficients<double>,
+          join_coefficients<double>, multiply<double>};
 }
 
 }  // namespace
@@ -162,65 +133,17 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace touchtrial::engine {
-namespace {
 
-HWY_EXPORT(join_samples_f32);
-HWY_EXPORT(join_samples_f64);
-HWY_EXPORT(part_samples_f32);
-HWY_EXPORT(part_samples_f64);
-HWY_EXPORT(part_coefficients_f32);
-HWY_EXPORT(part_coefficients_f64);
-HWY_EXPORT(join_coefficients_f32);
-HWY_EXPORT(join_coefficients_f64);
-HWY_EXPORT(multiply_f32);
-HWY_EXPORT(multiply_f64);
-
-}  // namespace
+HWY_EXPORT(kernels_f32);
+HWY_EXPORT(kernels_f64);
 
 template <>
-void join_rows(const float* a, const float* b, std::size_t width, std::complex<float>* z) {
-  HWY_DYNAMIC_DISPATCH(join_samples_f32)(a, b, width, z);
+PairedRowKernels<float> paired_row_kernels() {
+  return HWY_DYNAMIC_DISPATCH(kernels_f32)();
 }
 template <>
-void join_rows(const double* a, const double* b, std::size_t width, std::complex<double>* z) {
-  HWY_DYNAMIC_DISPATCH(join_samples_f64)(a, b, width, z);
-}
-template <>
-void part_rows(const std::complex<float>* z, std::size_t width, float scale, float* a, float* b) {
-  HWY_DYNAMIC_DISPATCH(part_samples_f32)(z, width, scale, a, b);
-}
-template <>
-void part_rows(const std::complex<double>* z, std::size_t width, double scale, double* a,
-               double* b) {
-  HWY_DYNAMIC_DISPATCH(part_samples_f64)(z, width, scale, a, b);
-}
-template <>
-void part_spectra(const std::complex<float>* z, std::size_t width,
-                  const PairedLines<float>& lines) {
-  HWY_DYNAMIC_DISPATCH(part_coefficients_f32)(z, width, lines);
-}
-template <>
-void part_spectra(const std::complex<double>* z, std::size_t width,
-                  const PairedLines<double>& lines) {
-  HWY_DYNAMIC_DISPATCH(part_coefficients_f64)(z, width, lines);
-}
-template <>
-void join_spectra(const PairedLines<float>& lines, std::size_t width, std::complex<float>* z) {
-  HWY_DYNAMIC_DISPATCH(join_coefficients_f32)(lines, width, z);
-}
-template <>
-void join_spectra(const PairedLines<double>& lines, std::size_t width, std::complex<double>* z) {
-  HWY_DYNAMIC_DISPATCH(join_coefficients_f64)(lines, width, z);
-}
-template <>
-void multiply_by_factors(const float* factors, std::size_t count,
-                         std::complex<float>* coefficients) {
-  HWY_DYNAMIC_DISPATCH(multiply_f32)(factors, count, coefficients);
-}
-template <>
-void multiply_by_factors(const double* factors, std::size_t count,
-                         std::complex<double>* coefficients) {
-  HWY_DYNAMIC_DISPATCH(multiply_f64)(factors, count, coefficients);
+PairedRowKernels<double> paired_row_kernels() {
+  return HWY_DYNAMIC_DISPATCH(kernels_f64)();
 }
 
 }  // namespace touchtrial::engine

@@ -16,26 +16,24 @@ struct PairedLines {
   std::size_t blocks;
 };
 
-/// z = a + i b
 template <typename Real>
-void join_rows(const Real* a, const Real* b, std::size_t width, std::complex<Real>* z);
+struct PairedRowKernels {
+  /// z = a + i b
+  void (*join_rows)(const Real* a, const Real* b, std::size_t width, std::complex<Real>* z);
+  /// a + i b = scale * z
+  void (*part_rows)(const std::complex<Real>* z, std::size_t width, Real scale, Real* a, Real* b);
+  /// Writes the lines of 2 F(a) and 2 F(b).
+  /// \param z  F(a + i b), width + 1 coefficients, the last one equal to the first
+  void (*part_spectra)(const std::complex<Real>* z, std::size_t width,
+                       const PairedLines<Real>& lines);
+  /// The inverse: z = A + i B, where lines hold A and B, the spectra of real rows.
+  /// \param z  width + 1 coefficients, of which the last is to be ignored
+  void (*join_spectra)(const PairedLines<Real>& lines, std::size_t width, std::complex<Real>* z);
+  /// coefficients *= factors
+  void (*multiply)(const Real* factors, std::size_t count, std::complex<Real>* coefficients);
+};
 
-/// a + i b = scale * z
 template <typename Real>
-void part_rows(const std::complex<Real>* z, std::size_t width, Real scale, Real* a, Real* b);
-
-/// Writes the lines of 2 F(a) and 2 F(b).
-/// \param z  F(a + i b), width + 1 coefficients, the last one equal to the first
-template <typename Real>
-void part_spectra(const std::complex<Real>* z, std::size_t width, const PairedLines<Real>& lines);
-
-/// The inverse: z = A + i B, where lines hold A and B, the spectra of real rows.
-/// \param z  width + 1 coefficients, of which the last is to be ignored
-template <typename Real>
-void join_spectra(const PairedLines<Real>& lines, std::size_t width, std::complex<Real>* z);
-
-/// coefficients *= factors
-template <typename Real>
-void multiply_by_factors(const Real* factors, std::size_t count, std::complex<Real>* coefficients);
+[[nodiscard]] PairedRowKernels<Real> paired_row_kernels();
 
 }  // namespace touchtrial::engine

@@ -107,10 +107,10 @@ void PlaneFilter<Real>::write_rows(int y, const Real* upper, const Real* lower,
   const auto width = static_cast<std::size_t>(state_->blocks.width);
   std::complex<Real>* const samples = workspace.buffers_->samples.data();
   std::complex<Real>* const spectrum = workspace.buffers_->spectrum.data();
-  join_rows(upper, lower, width, samples);
+  paired_row_kernels<Real>().join_rows(upper, lower, width, samples);
   Fftw<Real>::transform(state_->plans[rows_forward], as_fftw(samples), as_fftw(spectrum));
   spectrum[width] = spectrum[0];
-  part_spectra(spectrum, width, state_->lines(y));
+  paired_row_kernels<Real>().part_spectra(spectrum, width, state_->lines(y));
 }
 
 template <typename Real>
@@ -119,11 +119,12 @@ void PlaneFilter<Real>::read_rows(int y, Real scale, Real* upper, Real* lower,
   const auto width = static_cast<std::size_t>(state_->blocks.width);
   std::complex<Real>* const samples = workspace.buffers_->samples.data();
   std::complex<Real>* const spectrum = workspace.buffers_->spectrum.data();
-  join_spectra(state_->lines(y), width, spectrum);
+  paired_row_kernels<Real>().join_spectra(state_->lines(y), width, spectrum);
   Fftw<Real>::transform(state_->plans[rows_inverse], as_fftw(spectrum), as_fftw(samples));
   // There and back, transforms multiply by the number of samples, and part_spectra by 2.
   const double gain = 2.0 * state_->blocks.height * state_->blocks.width;
-  part_rows(samples, width, static_cast<Real>(scale / gain), upper, lower);
+  paired_row_kernels<Real>().part_rows(samples, width, static_cast<Real>(scale / gain), upper,
+                                       lower);
 }
 
 template <typename Real>
@@ -133,7 +134,7 @@ void PlaneFilter<Real>::filter_columns(std::size_t block, std::span<const Real> 
   const FftwBuffer<std::complex<Real>> transformed(count);
   std::complex<Real>* const coefficients = transformed.data();
   Fftw<Real>::transform(state_->plans[columns_forward], as_fftw(columns), as_fftw(coefficients));
-  multiply_by_factors(factors.data() + block * count, count, coefficients);
+  paired_row_kernels<Real>().multiply(factors.data() + block * count, count, coefficients);
   Fftw<Real>::transform(state_->plans[columns_inverse], as_fftw(coefficients), as_fftw(columns));
 }
 

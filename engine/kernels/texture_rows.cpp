@@ -71,12 +71,8 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace touchtrial::engine {
-namespace {
-
 HWY_EXPORT(row_of_picture);
 HWY_EXPORT(highest_of_samples);
-
-}  // namespace
 
 void picture_row(const float* texture, int width, std::uint8_t* picture) {
   HWY_DYNAMIC_DISPATCH(row_of_picture)(texture, width, picture);

@@ -85,12 +85,8 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace touchtrial::engine {
-namespace {
-
 HWY_EXPORT(along_y);
 HWY_EXPORT(values_along_x);
-
-}  // namespace
 
 ColumnFilter::ColumnFilter(const GreyImage& image, Columns columns)
     : image_(image),

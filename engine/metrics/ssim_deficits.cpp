@@ -342,14 +342,10 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace touchtrial::engine {
-namespace {
-
 HWY_EXPORT(grey_float);
 HWY_EXPORT(grey_double);
 HWY_EXPORT(real_float);
 HWY_EXPORT(real_double);
-
-}  // namespace
 
 template <>
 MeanDeficits mean_deficits<float>(const GreyPair& pair, Luminance luminance) {

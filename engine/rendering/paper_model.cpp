@@ -134,51 +134,6 @@ FieldView of_paper(FieldView field) noexcept {
   return field;
 }
 
-}  // namespace
-
-PaperModel::PaperModel(FieldView field, const RenderingOptions& options, Gains gains)
-    : field_(of_paper(field)),
-      patches_(patches_of(field_)),
-      stiffness_n_per_mm_(options.stiffness_n_per_mm),
-      damping_n_s_per_mm_(options.damping_n_s_per_mm),
-      reference_height_(options.reference_grey - kMidGrey),
-      touchdown_ramp_n_(options.touchdown_ramp_n),
-      max_force_n_(options.max_force_n),
-      gains_(gains) {}
-
-Vec3 PaperModel::force_n(const Vec3& position, const Vec3& velocity_mm_s) const noexcept {
-  const Vec3 position_mm = by_number(position);
-  if (!is_finite(position_mm) || !is_finite(velocity_mm_s)) return {};
-  double elastic_n = -stiffness_n_per_mm_ * position_mm.z;
-  PatchSums texture;
-  const Vec2 px = field_.geometry.to_px(position_mm.x, position_mm.y);
-  const bool is_usual = patches_.has(px);
-  if (is_usual || (field_.geometry.contains(position_mm.x, position_mm.y) && !field_.empty())) {
-    if (is_out_of_reach(elastic_n)) return {};
-    texture = is_usual ? patches_.at(px) : sums_anywhere(field_, px);
-    if (is_usual && !field_.other_slopes.empty()) {
-      texture.value = height_at(field_, place_in(field_.geometry, px));
-    }
-    elastic_n += gains_.normal_n * (texture.value - reference_height_);
-  }
-  const double normal_n = elastic_n - damping_n_s_per_mm_ * velocity_mm_s.z;
-  const double load_n = std::min(normal_n, elastic_n);  // NaN if F_N is
-  if (!(load_n > 0.0)) return {};
-  double tangential_n = gains_.tangential_n;
-  if (load_n < touchdown_ramp_n_) tangential_n *= load_n / touchdown_ramp_n_;
-  return limited_in_norm({tangential_n * texture.along_x, tangential_n * texture.along_y, normal_n},
-                         max_force_n_);
-}
-
-bool PaperModel::is_out_of_reach(double wall_n) const noexcept {
-  if (reference_height_ == -kMidGrey && wall_n <= 0.0) return true;
-  return wall_n + gains_.normal_n * (field_.highest - reference_height_) <= 0.0;
-}
-
-// What make_texture_field, choose_gains, field_statistics and lateral_field do for this model.
-
-namespace {
-
 constexpr double kSlackOfGains = 1e-9;  // relative; less above the budget is rounding
 
 TextureField field_of_paper(Plane<double> smooth, const RenderingOptions& options) {
@@ -347,6 +302,47 @@ double n_per_grey_of_paper(FieldView /*field*/, Gains gains) noexcept {
 }
 
 }  // namespace
+
+PaperModel::PaperModel(FieldView field, const RenderingOptions& options, Gains gains)
+    : field_(of_paper(field)),
+      patches_(patches_of(field_)),
+      stiffness_n_per_mm_(options.stiffness_n_per_mm),
+      damping_n_s_per_mm_(options.damping_n_s_per_mm),
+      reference_height_(options.reference_grey - kMidGrey),
+      touchdown_ramp_n_(options.touchdown_ramp_n),
+      max_force_n_(options.max_force_n),
+      gains_(gains) {}
+
+Vec3 PaperModel::force_n(const Vec3& position, const Vec3& velocity_mm_s) const noexcept {
+  const Vec3 position_mm = by_number(position);
+  if (!is_finite(position_mm) || !is_finite(velocity_mm_s)) return {};
+  double elastic_n = -stiffness_n_per_mm_ * position_mm.z;
+  PatchSums texture;
+  const Vec2 px = field_.geometry.to_px(position_mm.x, position_mm.y);
+  const bool is_usual = patches_.has(px);
+  if (is_usual || (field_.geometry.contains(position_mm.x, position_mm.y) && !field_.empty())) {
+    if (is_out_of_reach(elastic_n)) return {};
+    texture = is_usual ? patches_.at(px) : sums_anywhere(field_, px);
+    if (is_usual && !field_.other_slopes.empty()) {
+      texture.value = height_at(field_, place_in(field_.geometry, px));
+    }
+    elastic_n += gains_.normal_n * (texture.value - reference_height_);
+  }
+  const double normal_n = elastic_n - damping_n_s_per_mm_ * velocity_mm_s.z;
+  const double load_n = std::min(normal_n, elastic_n);  // NaN if F_N is
+  if (!(load_n > 0.0)) return {};
+  double tangential_n = gains_.tangential_n;
+  if (load_n < touchdown_ramp_n_) tangential_n *= load_n / touchdown_ramp_n_;
+  return limited_in_norm({tangential_n * texture.along_x, tangential_n * texture.along_y, normal_n},
+                         max_force_n_);
+}
+
+bool PaperModel::is_out_of_reach(double wall_n) const noexcept {
+  if (reference_height_ == -kMidGrey && wall_n <= 0.0) return true;
+  return wall_n + gains_.normal_n * (field_.highest - reference_height_) <= 0.0;
+}
+
+// What make_texture_field, choose_gains, field_statistics and lateral_field do for this model.
 
 ModelParts paper_parts() noexcept {
   return {field_of_paper, sampled_paper, gains_of_paper, statistics_of_paper, n_per_grey_of_paper};

@@ -32,77 +32,6 @@ Fade fade_at(double place_mm, double side_mm) noexcept {
           -outwards * 30.0 * s * s * rest * rest / kRimMm};
 }
 
-}  // namespace
-
-SurfaceModel::SurfaceModel(FieldView field, const RenderingOptions& options, Gains gains)
-    : field_(field),
-      stiffness_n_per_mm_(options.stiffness_n_per_mm),
-      damping_n_s_per_mm_(options.damping_n_s_per_mm),
-      friction_(options.friction),
-      bristle_n_per_mm_(options.texture_stiffness_n_per_mm / std::numbers::sqrt2),
-      max_force_n_(options.max_force_n),
-      mm_per_grey_(field.empty() || field.model != ModelKind::surface ? 0.0 : gains.height_mm),
-      slope_per_grey_(mm_per_grey_ / field.geometry.pitch_mm),
-      patches_(mm_per_grey_ == 0.0 ? Patches{}
-                                   : Patches(field.heights, field.geometry.height_px,
-                                             field.geometry.width_px, spline_sum())),
-      // A B-spline is a weighted mean of its coefficients, and so never above the highest.
-      reach_mm_(mm_per_grey_ > 0.0 ? std::max(0.0, mm_per_grey_ * field.highest) : 0.0) {}
-
-Vec3 SurfaceModel::force_n(const Vec3& position, const Vec3& velocity_mm_s,
-                           Bristle& bristle) const noexcept {
-  const Vec3 position_mm = by_number(position);
-  const bool in_reach = position_mm.z < reach_mm_;
-  Relief relief;
-  double elastic_n = 0.0;
-  if (in_reach && is_finite(position_mm) && is_finite(velocity_mm_s)) {
-    relief = relief_at(position_mm.x, position_mm.y);
-    elastic_n = stiffness_n_per_mm_ * (relief.height_mm - position_mm.z);
-  }
-  if (!(elastic_n > 0.0)) {
-    bristle.release();
-    return {};
-  }
-  const double normal_n = std::max(0.0, elastic_n - damping_n_s_per_mm_ * velocity_mm_s.z);
-  Vec3 force_n{-elastic_n * relief.slope.x, -elastic_n * relief.slope.y, normal_n};
-  if (friction_ > 0.0) {
-    const Vec2 friction_n =
-        bristle.friction_n({position_mm.x, position_mm.y}, friction_ * normal_n, bristle_n_per_mm_);
-    force_n.x += friction_n.x;
-    force_n.y += friction_n.y;
-  }
-  return limited_in_norm(force_n, max_force_n_);
-}
-
-inline SurfaceModel::Relief SurfaceModel::relief_at(double x_mm, double y_mm) const noexcept {
-  const PlaneGeometry& plane = field_.geometry;
-  const Vec2 px = plane.to_px(x_mm, y_mm);
-  if (patches_.has(px)) {
-    const PatchSums h = patches_.at(px);
-    return {mm_per_grey_ * h.value, {slope_per_grey_ * h.along_x, slope_per_grey_ * h.along_y}};
-  }
-  return relief_at_edge(x_mm, y_mm);
-}
-
-SurfaceModel::Relief SurfaceModel::relief_at_edge(double x_mm, double y_mm) const noexcept {
-  if (mm_per_grey_ == 0.0) return {};
-  const PlaneGeometry& plane = field_.geometry;
-  const bool on_plane = plane.contains(x_mm, y_mm);
-  const Fade across = on_plane ? Fade{} : fade_at(x_mm, plane.width_mm());
-  const Fade down = on_plane ? Fade{} : fade_at(y_mm, plane.height_mm());
-  if (across.value == 0.0 || down.value == 0.0) return {};
-  const Vec2 px = plane.to_px(x_mm, y_mm);
-  const PatchSums h = spline_at(field_.heights, plane.height_px, plane.width_px, px.x, px.y);
-  const double height_mm = mm_per_grey_ * h.value;
-  return {height_mm * across.value * down.value,
-          {(slope_per_grey_ * h.along_x * across.value + height_mm * across.slope) * down.value,
-           (slope_per_grey_ * h.along_y * down.value + height_mm * down.slope) * across.value}};
-}
-
-// What make_texture_field, choose_gains, field_statistics and lateral_field do for this model.
-
-namespace {
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNearEnough = 2e-7;       // relative; pools have single precision
 constexpr double kSlackOfSurfaces = 1e-6;  // relative; less above the budget is rounding
@@ -317,6 +246,73 @@ FieldStatistics statistics_of_surface(FieldView field, Gains gains,
 }
 
 }  // namespace
+
+SurfaceModel::SurfaceModel(FieldView field, const RenderingOptions& options, Gains gains)
+    : field_(field),
+      stiffness_n_per_mm_(options.stiffness_n_per_mm),
+      damping_n_s_per_mm_(options.damping_n_s_per_mm),
+      friction_(options.friction),
+      bristle_n_per_mm_(options.texture_stiffness_n_per_mm / std::numbers::sqrt2),
+      max_force_n_(options.max_force_n),
+      mm_per_grey_(field.empty() || field.model != ModelKind::surface ? 0.0 : gains.height_mm),
+      slope_per_grey_(mm_per_grey_ / field.geometry.pitch_mm),
+      patches_(mm_per_grey_ == 0.0 ? Patches{}
+                                   : Patches(field.heights, field.geometry.height_px,
+                                             field.geometry.width_px, spline_sum())),
+      // A B-spline is a weighted mean of its coefficients, and so never above the highest.
+      reach_mm_(mm_per_grey_ > 0.0 ? std::max(0.0, mm_per_grey_ * field.highest) : 0.0) {}
+
+Vec3 SurfaceModel::force_n(const Vec3& position, const Vec3& velocity_mm_s,
+                           Bristle& bristle) const noexcept {
+  const Vec3 position_mm = by_number(position);
+  const bool in_reach = position_mm.z < reach_mm_;
+  Relief relief;
+  double elastic_n = 0.0;
+  if (in_reach && is_finite(position_mm) && is_finite(velocity_mm_s)) {
+    relief = relief_at(position_mm.x, position_mm.y);
+    elastic_n = stiffness_n_per_mm_ * (relief.height_mm - position_mm.z);
+  }
+  if (!(elastic_n > 0.0)) {
+    bristle.release();
+    return {};
+  }
+  const double normal_n = std::max(0.0, elastic_n - damping_n_s_per_mm_ * velocity_mm_s.z);
+  Vec3 force_n{-elastic_n * relief.slope.x, -elastic_n * relief.slope.y, normal_n};
+  if (friction_ > 0.0) {
+    const Vec2 friction_n =
+        bristle.friction_n({position_mm.x, position_mm.y}, friction_ * normal_n, bristle_n_per_mm_);
+    force_n.x += friction_n.x;
+    force_n.y += friction_n.y;
+  }
+  return limited_in_norm(force_n, max_force_n_);
+}
+
+inline SurfaceModel::Relief SurfaceModel::relief_at(double x_mm, double y_mm) const noexcept {
+  const PlaneGeometry& plane = field_.geometry;
+  const Vec2 px = plane.to_px(x_mm, y_mm);
+  if (patches_.has(px)) {
+    const PatchSums h = patches_.at(px);
+    return {mm_per_grey_ * h.value, {slope_per_grey_ * h.along_x, slope_per_grey_ * h.along_y}};
+  }
+  return relief_at_edge(x_mm, y_mm);
+}
+
+SurfaceModel::Relief SurfaceModel::relief_at_edge(double x_mm, double y_mm) const noexcept {
+  if (mm_per_grey_ == 0.0) return {};
+  const PlaneGeometry& plane = field_.geometry;
+  const bool on_plane = plane.contains(x_mm, y_mm);
+  const Fade across = on_plane ? Fade{} : fade_at(x_mm, plane.width_mm());
+  const Fade down = on_plane ? Fade{} : fade_at(y_mm, plane.height_mm());
+  if (across.value == 0.0 || down.value == 0.0) return {};
+  const Vec2 px = plane.to_px(x_mm, y_mm);
+  const PatchSums h = spline_at(field_.heights, plane.height_px, plane.width_px, px.x, px.y);
+  const double height_mm = mm_per_grey_ * h.value;
+  return {height_mm * across.value * down.value,
+          {(slope_per_grey_ * h.along_x * across.value + height_mm * across.slope) * down.value,
+           (slope_per_grey_ * h.along_y * down.value + height_mm * down.slope) * across.value}};
+}
+
+// What make_texture_field, choose_gains, field_statistics and lateral_field do for this model.
 
 ModelParts surface_parts() noexcept {
   return {field_of_surface, relief_of, gains_of_surfaces, statistics_of_surface, newtons_per_grey};

@@ -49,7 +49,8 @@ struct SplitRow {
   explicit SplitRow(std::size_t width) : b_x(width), b_y(width), w_x(width), w_y(width) {}
 
   void split(const AdmmRow<Real>& row, double penalty) {
-    clip_row(row.z_x, row.z_y, b_x.size(), static_cast<Real>(penalty), b_x.data(), b_y.data());
+    row_kernels<Real>().clip(row.z_x, row.z_y, b_x.size(), static_cast<Real>(penalty), b_x.data(),
+                             b_y.data());
     const auto unit = static_cast<Real>(1.0 / penalty);
     for (std::size_t x = 0; x < b_x.size(); ++x) {
       b_x[x] *= unit;
@@ -140,7 +141,7 @@ void TvGaborAdmm<Real>::start_again(double penalty) {
       AdmmRow<Real> row = row_of(y);
       row.target_x = targets.along_x();
       row.target_y = targets.along_y();
-      admm_restart_row(row, plane_.width(), numbers);
+      row_kernels<Real>().restart(row, plane_.width(), numbers);
       targets.next();
     }
   });
@@ -190,7 +191,7 @@ typename Watch::Sums TvGaborAdmm<Real>::map(AdmmPace pace, bool is_last) {
       row.target_x = targets.along_x();
       row.target_y = targets.along_y();
       watch.before(row);
-      admm_row(row, plane_.width(), numbers);
+      row_kernels<Real>().admm(row, plane_.width(), numbers);
       watch.after(row);
       targets.next();
     }

@@ -166,7 +166,7 @@ double mean_gradient(const Plane<Real>& torus) {
                            .texture_below = none.data(),
                            .q_x = none.data(),
                            .q_y = none.data()};
-    sum += gap_row(row, width).primal;
+    sum += row_kernels<Real>().gap(row, width).primal;
   }
   return sum / static_cast<double>(torus.size());
 }

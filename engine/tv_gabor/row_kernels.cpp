@@ -202,12 +202,6 @@ void clipped_row(const Real* x, const Real* y, std::size_t width, Real scale, Re
   });
 }
 
-template <typename Real>
-void norms_of_row(const Real* x, const Real* y, std::size_t width, Real* out) {
-  over_row<Real>(width, [&](auto d, std::size_t i, std::ptrdiff_t)
-                            HWY_ATTR { hn::StoreU(norm(load(d, x + i, y + i)), d, out + i); });
-}
-
 /// Samples as double, whatever they are stored as.
 template <class D>
 HWY_INLINE hn::Vec<D> load_wide(D d, const float* from) {
@@ -253,49 +247,14 @@ GapSums gap_of_row(const GapRow<Real>& row, std::size_t width) {
           hn::GetLane(hn::SumOfLanes(d, difference)) + hn::GetLane(last_difference)};
 }
 
-// Dispatch tables hold functions, not templates.
-GapSums gap_f32(const GapRow<float>& row, std::size_t width) {
-  return gap_of_row(row, width);
+// A target exports functions, not templates.
+RowKernels<float> kernels_f32() {
+  return {map_row<float>, restarted_row<float>, divergence_of_row<float>, clipped_row<float>,
+          gap_of_row<float>};
 }
-GapSums gap_f64(const GapRow<double>& row, std::size_t width) {
-  return gap_of_row(row, width);
-}
-void map_row_f32(const AdmmRow<float>& row, std::size_t width, const AdmmNumbers<float>& numbers) {
-  map_row(row, width, numbers);
-}
-void map_row_f64(const AdmmRow<double>& row, std::size_t width,
-                 const AdmmNumbers<double>& numbers) {
-  map_row(row, width, numbers);
-}
-void restarted_f32(const AdmmRow<float>& row, std::size_t width,
-                   const RestartNumbers<float>& numbers) {
-  restarted_row(row, width, numbers);
-}
-void restarted_f64(const AdmmRow<double>& row, std::size_t width,
-                   const RestartNumbers<double>& numbers) {
-  restarted_row(row, width, numbers);
-}
-void divergence_f32(const float* x, const float* y, const float* above, std::size_t width,
-                    float* out) {
-  divergence_of_row(x, y, above, width, out);
-}
-void divergence_f64(const double* x, const double* y, const double* above, std::size_t width,
-                    double* out) {
-  divergence_of_row(x, y, above, width, out);
-}
-void clip_f32(const float* x, const float* y, std::size_t width, float scale, float* out_x,
-              float* out_y) {
-  clipped_row(x, y, width, scale, out_x, out_y);
-}
-void clip_f64(const double* x, const double* y, std::size_t width, double scale, double* out_x,
-              double* out_y) {
-  clipped_row(x, y, width, scale, out_x, out_y);
-}
-void norms_f32(const float* x, const float* y, std::size_t width, float* out) {
-  norms_of_row(x, y, width, out);
-}
-void norms_f64(const double* x, const double* y, std::size_t width, double* out) {
-  norms_of_row(x, y, width, out);
+RowKernels<double> kernels_f64() {
+  return {map_row<double>, restarted_row<double>, divergence_of_row<double>, clipped_row<double>,
+          gap_of_row<double>};
 }
 
 }  // namespace
@@ -305,77 +264,17 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace touchtrial::engine {
-namespace {
 
-HWY_EXPORT(map_row_f32);
-HWY_EXPORT(map_row_f64);
-HWY_EXPORT(restarted_f32);
-HWY_EXPORT(restarted_f64);
-HWY_EXPORT(divergence_f32);
-HWY_EXPORT(divergence_f64);
-HWY_EXPORT(clip_f32);
-HWY_EXPORT(clip_f64);
-HWY_EXPORT(norms_f32);
-HWY_EXPORT(norms_f64);
-HWY_EXPORT(gap_f32);
-HWY_EXPORT(gap_f64);
-
-}  // namespace
+HWY_EXPORT(kernels_f32);
+HWY_EXPORT(kernels_f64);
 
 template <>
-void admm_row(const AdmmRow<float>& row, std::size_t width, const AdmmNumbers<float>& numbers) {
-  HWY_DYNAMIC_DISPATCH(map_row_f32)(row, width, numbers);
+RowKernels<float> row_kernels() {
+  return HWY_DYNAMIC_DISPATCH(kernels_f32)();
 }
 template <>
-void admm_row(const AdmmRow<double>& row, std::size_t width, const AdmmNumbers<double>& numbers) {
-  HWY_DYNAMIC_DISPATCH(map_row_f64)(row, width, numbers);
-}
-template <>
-void admm_restart_row(const AdmmRow<float>& row, std::size_t width,
-                      const RestartNumbers<float>& numbers) {
-  HWY_DYNAMIC_DISPATCH(restarted_f32)(row, width, numbers);
-}
-template <>
-void admm_restart_row(const AdmmRow<double>& row, std::size_t width,
-                      const RestartNumbers<double>& numbers) {
-  HWY_DYNAMIC_DISPATCH(restarted_f64)(row, width, numbers);
-}
-template <>
-void negative_divergence_row(const float* x, const float* y, const float* above, std::size_t width,
-                             float* out) {
-  HWY_DYNAMIC_DISPATCH(divergence_f32)(x, y, above, width, out);
-}
-template <>
-void negative_divergence_row(const double* x, const double* y, const double* above,
-                             std::size_t width, double* out) {
-  HWY_DYNAMIC_DISPATCH(divergence_f64)(x, y, above, width, out);
-}
-template <>
-void clip_row(const float* x, const float* y, std::size_t width, float scale, float* out_x,
-              float* out_y) {
-  HWY_DYNAMIC_DISPATCH(clip_f32)(x, y, width, scale, out_x, out_y);
-}
-template <>
-void clip_row(const double* x, const double* y, std::size_t width, double scale, double* out_x,
-              double* out_y) {
-  HWY_DYNAMIC_DISPATCH(clip_f64)(x, y, width, scale, out_x, out_y);
-}
-template <>
-void norm_row(const float* x, const float* y, std::size_t width, float* out) {
-  HWY_DYNAMIC_DISPATCH(norms_f32)(x, y, width, out);
-}
-template <>
-void norm_row(const double* x, const double* y, std::size_t width, double* out) {
-  HWY_DYNAMIC_DISPATCH(norms_f64)(x, y, width, out);
-}
-
-template <>
-GapSums gap_row(const GapRow<float>& row, std::size_t width) {
-  return HWY_DYNAMIC_DISPATCH(gap_f32)(row, width);
-}
-template <>
-GapSums gap_row(const GapRow<double>& row, std::size_t width) {
-  return HWY_DYNAMIC_DISPATCH(gap_f64)(row, width);
+RowKernels<double> row_kernels() {
+  return HWY_DYNAMIC_DISPATCH(kernels_f64)();
 }
 
 }  // namespace touchtrial::engine

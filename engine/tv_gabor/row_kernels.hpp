@@ -32,34 +32,10 @@ struct AdmmNumbers {
 };
 
 template <typename Real>
-void admm_row(const AdmmRow<Real>& row, std::size_t width, const AdmmNumbers<Real>& numbers);
-
-template <typename Real>
 struct RestartNumbers {
   Real former_limit;  ///< of |b| until now
   Real limit;         ///< from now on
 };
-
-/// Rescales b, and with it z, from one limit to another, keeping w, and writes the targets of a
-/// row; texture and former are not read.
-template <typename Real>
-void admm_restart_row(const AdmmRow<Real>& row, std::size_t width,
-                      const RestartNumbers<Real>& numbers);
-
-/// out = -div of a row of a field on the torus: the adjoint of the gradient.
-/// \param above  y of the row above
-template <typename Real>
-void negative_divergence_row(const Real* x, const Real* y, const Real* above, std::size_t width,
-                             Real* out);
-
-/// out = the point with norm <= 1 nearest to scale * (x, y). The outputs may be the inputs.
-template <typename Real>
-void clip_row(const Real* x, const Real* y, std::size_t width, Real scale, Real* out_x,
-              Real* out_y);
-
-/// out = sqrt(x^2 + y^2)
-template <typename Real>
-void norm_row(const Real* x, const Real* y, std::size_t width, Real* out);
 
 /// One row of a certificate; see certify. `image_below` and `texture_below` are the next row on the
 /// torus.
@@ -86,6 +62,21 @@ struct GapSums {
 };
 
 template <typename Real>
-[[nodiscard]] GapSums gap_row(const GapRow<Real>& row, std::size_t width);
+struct RowKernels {
+  void (*admm)(const AdmmRow<Real>& row, std::size_t width, const AdmmNumbers<Real>& numbers);
+  /// Rescales b, and with it z, from one limit to another, keeping w, and writes the targets of a
+  /// row; texture and former are not read.
+  void (*restart)(const AdmmRow<Real>& row, std::size_t width, const RestartNumbers<Real>& numbers);
+  /// out = -div of a row of a field on the torus: the adjoint of the gradient.
+  /// \param above  y of the row above
+  void (*divergence)(const Real* x, const Real* y, const Real* above, std::size_t width, Real* out);
+  /// out = the point with norm <= 1 nearest to scale * (x, y). The outputs may be the inputs.
+  void (*clip)(const Real* x, const Real* y, std::size_t width, Real scale, Real* out_x,
+               Real* out_y);
+  GapSums (*gap)(const GapRow<Real>& row, std::size_t width);
+};
+
+template <typename Real>
+[[nodiscard]] RowKernels<Real> row_kernels();
 
 }  // namespace touchtrial::engine

@@ -25,15 +25,16 @@ double certified_gap(const TvGaborProblem<Real>& problem, const VectorField<Real
     GapSums of_block;
     for (int y = block.begin; y < block.end; ++y) {
       v.go_to(y);
-      clip_row(field.x.row(y).data(), field.y.row(y).data(), width, static_cast<Real>(scale),
-               q_x.data(), q_y.data());
-      of_block += gap_row<Real>({.image = problem.image.row(y).data(),
-                                 .image_below = problem.image.row((y + 1) % height).data(),
-                                 .texture = v.row(),
-                                 .texture_below = v.below(),
-                                 .q_x = q_x.data(),
-                                 .q_y = q_y.data()},
-                                width);
+      row_kernels<Real>().clip(field.x.row(y).data(), field.y.row(y).data(), width,
+                               static_cast<Real>(scale), q_x.data(), q_y.data());
+      of_block +=
+          row_kernels<Real>().gap({.image = problem.image.row(y).data(),
+                                   .image_below = problem.image.row((y + 1) % height).data(),
+                                   .texture = v.row(),
+                                   .texture_below = v.below(),
+                                   .q_x = q_x.data(),
+                                   .q_y = q_y.data()},
+                                  width);
     }
     return of_block;
   });

@@ -133,8 +133,8 @@ class TorusPlane {
       const int pair = y_ - y_ % 2;
       Real* const upper =
           pair == block_.begin ? plane_.first_rows_of(block_.index) : rows_.data() + 3 * width;
-      negative_divergence_row(along_x_, along_y_, above_, width,
-                              y_ == pair ? upper : upper + width);
+      row_kernels<Real>().divergence(along_x_, along_y_, above_, width,
+                                     y_ == pair ? upper : upper + width);
       std::swap(above_, along_y_);
       if (y_ != pair && pair != block_.begin) {
         plane_.filter_.write_rows(pair, upper, upper + width, workspace_);

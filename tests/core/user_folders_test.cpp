@@ -33,14 +33,14 @@ class Variable {
   std::optional<std::string> former_;
 };
 
-TEST_CASE("the cache folder is the user's, or empty") {
+TEST_CASE("the folder of settings is the user's, or empty") {
   const Variable home("HOME", "/somebody");
-  const Variable cache("XDG_CACHE_HOME", "/elsewhere");
-  CHECK(user_cache_folder() == "/elsewhere/touchtrial");
-  const Variable relative("XDG_CACHE_HOME", "here");
-  CHECK(user_cache_folder() == "/somebody/.cache/touchtrial");
+  const Variable config("XDG_CONFIG_HOME", "/elsewhere");
+  CHECK(user_config_folder() == "/elsewhere/touchtrial");
+  const Variable relative("XDG_CONFIG_HOME", "here");
+  CHECK(user_config_folder() == "/somebody/.config/touchtrial");
   const Variable homeless("HOME", nullptr);
-  CHECK(user_cache_folder().empty());
+  CHECK(user_config_folder().empty());
 }
 
 }  // namespace

@@ -74,17 +74,6 @@ TEST_CASE("the adaptive texture agrees with its definition on real stimulus size
   }
 }
 
-TEMPLATE_TEST_CASE("the adaptive method keeps a flat image exactly flat", "", float, double) {
-  for (int level = 0; level < 256; ++level) {
-    const GreyImage image = flat_image({6, 5}, level);
-    const auto result =
-        engine::extract_texture<TestType>(image, adaptive_options(), engine::WantedPlanes::all());
-    CHECK(largest_magnitude(result.order) == 0.0);
-    CHECK(largest_magnitude(result.texture) == 0.0);
-    CHECK(largest_difference(result.enhanced, image) == 0.0);
-  }
-}
-
 TEST_CASE("the adaptive method gives its by-products in the image's shape") {
   const GreyImage image = cloth_image({9, 12});
   const auto result =

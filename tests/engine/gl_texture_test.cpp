@@ -9,7 +9,6 @@
 #include "support/catch.hpp"
 
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -49,23 +48,6 @@ TEST_CASE("gl_texture of one bright pixel shows the weights of the mask") {
   CHECK(texture.at(2, 3) == Approx(-80 * 0.5 / 8).epsilon(1e-15));
   CHECK(texture.at(0, 4) == Approx(-80 * 0.125 / 8).epsilon(1e-15));
   CHECK(texture.at(0, 1) == 0.0);  // a knight's move away: in no ring
-}
-
-TEMPLATE_TEST_CASE("gl_texture of a negative is the negative texture", "", float, double) {
-  for (const int radius : {1, 2, 7}) {
-    const GreyImage image = noise_image({31, 30});
-    Plane<TestType> texture = texture_of<TestType>(image, radius, 0.6);
-    for (TestType& sample : texture.samples()) sample = -sample;
-    CHECK(texture_of<TestType>(negative_of(image), radius, 0.6) == texture);
-  }
-}
-
-TEMPLATE_TEST_CASE("gl_texture does not depend on brightness", "", float, double) {
-  GreyImage dark = noise_image({31, 30});
-  for (std::uint8_t& sample : dark.samples()) sample = static_cast<std::uint8_t>(sample / 2);
-  GreyImage bright = dark;
-  for (std::uint8_t& sample : bright.samples()) sample = static_cast<std::uint8_t>(sample + 100);
-  CHECK(texture_of<TestType>(bright, 4, 0.7) == texture_of<TestType>(dark, 4, 0.7));
 }
 
 TEST_CASE("gl_texture stays within 255 (1 - S_K), and reaches it") {

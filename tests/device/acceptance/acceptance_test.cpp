@@ -435,16 +435,11 @@ TEST_CASE("an acceptance repeats itself exactly, and its model rehearses as the 
 TEST_CASE("after twenty minutes under a load an acceptance compares the forces that it took") {
   device::AcceptanceOptions options;
   options.thermal = true;
-  options.silence = true;
   const Certificate certificate = rehearsed(device::device_model("omega_3"), options);
   REQUIRE(certificate.warm);
   CHECK(certificate.warm->after_n == Approx(certificate.warm->before_n).epsilon(0.02));
   CHECK_FALSE(certificate.warm->before_c);
   CHECK(certificate.passed());
-  // Nobody pulled a cable or typed what it did.
-  CHECK(certificate.observed.empty());
-  CHECK(std::ranges::find(certificate.not_measured, "cable pulled", &device::NotMeasured::what) !=
-        certificate.not_measured.end());
 }
 
 }  // namespace touchtrial

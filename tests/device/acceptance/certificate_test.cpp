@@ -40,7 +40,6 @@ Certificate passed_certificate() {
     certificate.axes.push_back(result);
   }
   certificate.wall = device::WallResult{0.6, 0.78, "oscillation"};
-  certificate.observed = {{"cable pulled", "gone at once"}};
   certificate.not_measured = {{"mass and delay on axis x", "left out"}};
   return certificate;
 }
@@ -81,7 +80,7 @@ TEST_CASE("an acceptance's certificate that was changed by hand is refused with 
   };
   CHECK_THAT(changed("\"passed\": true", "\"passed\": false"), holds_text("/passed"));
   CHECK_THAT(changed("2026-02-28", "2026-02-30"), holds_text("/made"));
-  CHECK_THAT(changed("acceptance 2", "acceptance 9"), holds_text("/kind"));
+  CHECK_THAT(changed("acceptance 3", "acceptance 9"), holds_text("/kind"));
   CHECK_THAT(changed("\"serial\"", "\"cereal\""), holds_text("/cereal"));
   CHECK_THAT(changed("\"measured_n\": 1.01", "\"measured_n\": 1.31"), holds_text("/axes/0/scale"));
   CHECK_THAT(changed("\"along_mm\": 2.0", "\"along_mm\": -2.0"), holds_text("/passed"));
@@ -119,7 +118,7 @@ TEST_CASE("a force that is off names the scale that puts it right") {
 TEST_CASE("a certificate of the former format is refused with the command that makes a new one") {
   const TempFolder folder;
   const auto path = folder.path() / "certificate.json";
-  replace_file(path, R"({"kind": "touchtrial device calibration 1"})");
+  replace_file(path, R"({"kind": "touchtrial device acceptance 2", "observed": []})");
   CHECK_THAT(message_of<StudyError>([&] { return device::read_certificate(path); }),
              holds_text("touchtrial device accept"));
 }

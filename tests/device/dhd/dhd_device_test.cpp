@@ -4,6 +4,7 @@
 #include "device/dhd/dhd_gravity.hpp"
 #include "device/fakes/loaded_fake.hpp"
 #include "device/registry.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 #include "support/environment.hpp"
 #include "support/temp_folder.hpp"
@@ -549,6 +550,54 @@ TEST_CASE("dhd: halting switches force off and the brakes on, until it is re-arm
   CHECK(device.readiness() == device::DeviceReadiness::ready);
   device.rearm();
   CHECK(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().y == 1.0; }));
+}
+
+TEST_CASE("dhd: a device that a session opens halted is ready, and pushes only once re-armed") {
+  LoadedDhd fake;
+  fake->own_mass_kg = 0.3;
+  device::DhdDevice device = opened(fake);
+  device.halt();
+  REQUIRE(eventually([&] { return device.readiness() == device::DeviceReadiness::ready; }));
+  const long begun = fake->polls;
+  REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->polls > begun + 50; }));
+  CHECK(fake->force_n.get() == Vec3{});
+  device.rearm();
+  CHECK(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().y == 1.0; }));
+}
+
+/// A run of the servo in the fake's time, against a hand that bears a press of 1.2 N; the press
+/// grows within 0.3 s, so that the servo engages.
+/// \param tremble_n  of the hand
+device::ServoReport pressed(LoadedDhd& fake, device::HapticDevice& device, double tremble_n) {
+  constexpr double kPressN = 1.2;
+  device::PlacedDevice placed(device, {});
+  ForceBy press([&, ticks = 0](const device::DeviceSample& /*sample*/) mutable {
+    const double tremble = ++ticks % 2 == 0 ? tremble_n : -tremble_n;
+    fake->hand.push_n.set({0.0, 0.0, tremble - kPressN});
+    return Vec3{0.0, 0.0, std::min(kPressN, 0.004 * ticks)};
+  });
+  NoSamples none;
+  fakes::SteppingClock clock(fake.exports());
+  return device::run_servo(placed, press, none, {.limit_ticks = 5000, .fade_ticks = 0}, clock);
+}
+
+TEST_CASE("dhd: a position that stands still to the last bit under a press ends a run") {
+  LoadedDhd fake;
+  device::DhdDevice device = opened(fake);
+  (void)ready_sample(device);
+  const device::ServoReport report = pressed(fake, device, 0.0);
+  CHECK(report.end == device::ServoEnd::fault);
+  CHECK(report.fault == device::SafetyFault::frozen_encoders);
+  CHECK(report.ticks > 500);
+  CHECK(eventually([&] { return fake->force_n.get() == Vec3{}; }));
+}
+
+TEST_CASE("dhd: a hand that keeps as still under a press as a hand can is no fault") {
+  LoadedDhd fake;
+  device::DhdDevice device = opened(fake);
+  (void)ready_sample(device);
+  CHECK(pressed(fake, device, 0.1).end == device::ServoEnd::time_limit);
+  CHECK(device.fault() == device::DeviceFault::none);
 }
 
 TEST_CASE("dhd: a fault switches force off and the brakes on") {

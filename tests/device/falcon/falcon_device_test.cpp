@@ -201,19 +201,6 @@ TEST_CASE("force and gravity bias each stay within their own limit on a Falcon")
   CHECK(most_n.z == Approx(0.3).margin(0.01));
 }
 
-TEST_CASE("a halted Falcon gets no force until it is re-armed") {
-  Rig rig(true);
-  rig.lockstep.steps(2);
-  rig.push({0.0, 0.0, 1.0});
-  CHECK(rig.emulator.motors() != kNoMotors);
-  rig.device->halt();
-  rig.push({0.0, 0.0, 1.0});
-  CHECK(rig.emulator.motors() == kNoMotors);
-  rig.device->rearm();
-  rig.push({0.0, 0.0, 1.0});
-  CHECK(rig.emulator.motors() != kNoMotors);
-}
-
 TEST_CASE(
     "a Falcon's motor that bears all is limited before the force is, and the servo counts it") {
   device::FalconSettings settings;

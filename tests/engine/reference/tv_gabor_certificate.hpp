@@ -26,9 +26,9 @@ template <typename Real>
   plane.in_blocks([&](const engine::RowBlock& block) {
     typename engine::TorusPlane<Real>::DivergenceRows q(plane, block);
     for (int y = block.begin; y < block.end; ++y) {
-      engine::clip_row(field.x.row(y).data(), field.y.row(y).data(),
-                       static_cast<std::size_t>(width), static_cast<Real>(scale), q.along_x(),
-                       q.along_y());
+      engine::row_kernels<Real>().clip(field.x.row(y).data(), field.y.row(y).data(),
+                                       static_cast<std::size_t>(width), static_cast<Real>(scale),
+                                       q.along_x(), q.along_y());
       q.next();
     }
   });

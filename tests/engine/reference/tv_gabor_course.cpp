@@ -3,7 +3,6 @@
 #include "engine/fourier/real_fft.hpp"
 #include "engine/reference/tv_gabor_certificate.hpp"
 #include "engine/tv_gabor/problem.hpp"
-#include "engine/tv_gabor/row_kernels.hpp"
 #include "engine/tv_gabor/solver.hpp"
 #include "engine/tv_gabor/tv_gabor.hpp"
 
@@ -23,150 +22,17 @@ namespace {
 template <typename Real>
 void negative_divergence(const engine::VectorField<Real>& field, std::span<Real> out) noexcept {
   const int height = field.x.height();
-  const std::size_t width = static_cast<std::size_t>(field.x.width());
   for (int y = 0; y < height; ++y) {
-    const int above = y == 0 ? height - 1 : y - 1;
-    engine::negative_divergence_row(field.x.row(y).data(), field.y.row(y).data(),
-                                    field.y.row(above).data(), width,
-                                    out.data() + static_cast<std::size_t>(y) * width);
+    const auto x = field.x.row(y), here = field.y.row(y);
+    const auto above = field.y.row(y == 0 ? height - 1 : y - 1);
+    Real* const row = out.data() + static_cast<std::size_t>(y) * x.size();
+    row[0] = (x.back() - x[0]) + (above[0] - here[0]);
+    for (std::size_t i = 1; i < x.size(); ++i) row[i] = (x[i - 1] - x[i]) + (above[i] - here[i]);
   }
 }
 
 /// Steps of the projected gradient up to this length converge: |grad M div| <= 8.
 constexpr double kLongestDualStep = 0.125;
-
-/// The slope of TV-Gabor's dual, which both slower solvers follow.
-template <typename Real>
-class DualSlope {
- public:
-  /// Keeps references to all; the transform has the image's size.
-  /// \param spectrum  of M, in the layout of the transform's
-  DualSlope(const engine::TvGaborProblem<Real>& problem, const Plane<Real>& spectrum,
-            engine::RealFft<Real>& fft)
-      : problem_(problem),
-        spectrum_(spectrum),
-        fft_(fft),
-        x_(static_cast<std::size_t>(problem.image.width())),
-        y_(x_.size()) {}
-
-  /// Prepares the rows of w = grad(M div p - lambda f).
-  /// \param q  -p
-  void at(const engine::VectorField<Real>& q) {
-    negative_divergence(q, fft_.plane());
-    fft_.forward();
-    const auto spectrum = fft_.spectrum();
-    const auto scale = Real{1} / static_cast<Real>(problem_.image.size());
-    for (std::size_t i = 0; i < spectrum.size(); ++i) {
-      spectrum[i] *= scale * spectrum_.samples()[i];
-    }
-    fft_.inverse();
-    const auto lambda = static_cast<Real>(problem_.lambda);
-    const auto plane = fft_.plane();
-    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] -= lambda * problem_.image.samples()[i];
-  }
-
-  /// Computes w of one row of the torus, for x() and y().
-  void go_to_row(int y) {
-    const int below = y + 1 == problem_.image.height() ? 0 : y + 1;
-    const auto row = [this](int index) {
-      return std::span<const Real>(fft_.plane())
-          .subspan(static_cast<std::size_t>(index) * x_.size(), x_.size());
-    };
-    engine::gradient_of_row<Real>(row(y), row(below), x_, y_);
-  }
-  [[nodiscard]] std::span<const Real> x() const noexcept { return x_; }
-  [[nodiscard]] std::span<const Real> y() const noexcept { return y_; }
-
- private:
-  const engine::TvGaborProblem<Real>& problem_;
-  const Plane<Real>& spectrum_;
-  engine::RealFft<Real>& fft_;
-  std::vector<Real> x_, y_;
-};
-
-/// Accelerated projected gradient: steps of 1/8 from p = 0.
-template <typename Real>
-class Fista {
- public:
-  /// Keeps references to all; others may use the transform between steps.
-  Fista(const engine::TvGaborProblem<Real>& problem, const Plane<Real>& spectrum,
-        engine::RealFft<Real>& fft)
-      : slope_(problem, spectrum, fft),
-        q_(problem.image.height(), problem.image.width()),
-        ahead_(problem.image.height(), problem.image.width()),
-        next_x_(static_cast<std::size_t>(problem.image.width())),
-        next_y_(next_x_.size()) {}
-
-  void step() {
-    const double next_t = (1.0 + std::sqrt(1.0 + 4.0 * t_ * t_)) / 2.0;
-    const auto momentum = static_cast<Real>((t_ - 1.0) / next_t);
-    const auto tau = static_cast<Real>(kLongestDualStep);
-    slope_.at(ahead_);
-    for (int y = 0; y < q_.x.height(); ++y) {
-      slope_.go_to_row(y);
-      const auto w_x = slope_.x(), w_y = slope_.y();
-      const auto q_x = q_.x.row(y), q_y = q_.y.row(y);
-      const auto ahead_x = ahead_.x.row(y), ahead_y = ahead_.y.row(y);
-      for (std::size_t x = 0; x < next_x_.size(); ++x) {
-        next_x_[x] = ahead_x[x] - tau * w_x[x];
-        next_y_[x] = ahead_y[x] - tau * w_y[x];
-      }
-      engine::clip_row(next_x_.data(), next_y_.data(), next_x_.size(), Real{1}, next_x_.data(),
-                       next_y_.data());
-      for (std::size_t x = 0; x < next_x_.size(); ++x) {
-        ahead_x[x] = next_x_[x] + momentum * (next_x_[x] - q_x[x]);
-        ahead_y[x] = next_y_[x] + momentum * (next_y_[x] - q_y[x]);
-        q_x[x] = next_x_[x];
-        q_y[x] = next_y_[x];
-      }
-    }
-    t_ = next_t;
-  }
-  /// q = -p, with vectors of length at most 1.
-  [[nodiscard]] const engine::VectorField<Real>& q() const noexcept { return q_; }
-
- private:
-  DualSlope<Real> slope_;
-  engine::VectorField<Real> q_;
-  engine::VectorField<Real> ahead_;    // where the slope is taken
-  std::vector<Real> next_x_, next_y_;  // rows
-  double t_ = 1.0;
-};
-
-/// p <- (p + tau w) / (1 + tau |w|), with tau = 1/8, from p = 0.
-template <typename Real>
-class FixedPoint {
- public:
-  /// Keeps references to all; others may use the transform between steps.
-  FixedPoint(const engine::TvGaborProblem<Real>& problem, const Plane<Real>& spectrum,
-             engine::RealFft<Real>& fft)
-      : slope_(problem, spectrum, fft),
-        q_(problem.image.height(), problem.image.width()),
-        norms_(static_cast<std::size_t>(problem.image.width())) {}
-
-  void step() {
-    const auto tau = static_cast<Real>(kLongestDualStep);
-    slope_.at(q_);
-    for (int y = 0; y < q_.x.height(); ++y) {
-      slope_.go_to_row(y);
-      const auto w_x = slope_.x(), w_y = slope_.y();
-      engine::norm_row(w_x.data(), w_y.data(), norms_.size(), norms_.data());
-      const auto q_x = q_.x.row(y), q_y = q_.y.row(y);
-      for (std::size_t x = 0; x < norms_.size(); ++x) {
-        const Real share = Real{1} / (Real{1} + tau * norms_[x]);
-        q_x[x] = share * (q_x[x] - tau * w_x[x]);
-        q_y[x] = share * (q_y[x] - tau * w_y[x]);
-      }
-    }
-  }
-  /// q = -p, with vectors of length at most 1.
-  [[nodiscard]] const engine::VectorField<Real>& q() const noexcept { return q_; }
-
- private:
-  DualSlope<Real> slope_;
-  engine::VectorField<Real> q_;
-  std::vector<Real> norms_;  // of a row
-};
 
 engine::TvGaborOptions with_components(const GreyImage& image, engine::TvGaborOptions options) {
   if (options.automatic) options.components = {engine::strongest_component(image)};
@@ -226,29 +92,68 @@ class TvGaborCourse<Real>::Admm final : public Solver {
   engine::TvGaborSolver<Real> solver_;
 };
 
+/// p <- (p + tau w) / (1 + tau |w|), with tau = 1/8 and w = grad(M div p - lambda f), from p = 0.
 template <typename Real>
-template <typename Method>
-class TvGaborCourse<Real>::OnDual final : public Solver {
+class TvGaborCourse<Real>::FixedPoint final : public Solver {
  public:
-  OnDual(const GreyImage& image, const engine::TvGaborOptions& options)
+  FixedPoint(const GreyImage& image, const engine::TvGaborOptions& options)
       : problem_(engine::tv_gabor_problem<Real>(image, options)),
         spectrum_(converted<Real>(engine::gabor_spectrum(
             options.components, problem_.image.height(), problem_.image.width()))),
         fft_(problem_.image.height(), problem_.image.width()),
-        method_(problem_, spectrum_, fft_) {}
+        q_(problem_.image.height(), problem_.image.width()),
+        w_x_(static_cast<std::size_t>(problem_.image.width())),
+        w_y_(w_x_.size()) {}
 
   void advance(int steps) override {
-    for (int step = 0; step < steps; ++step) method_.step();
+    for (int step = 0; step < steps; ++step) take_step();
   }
   TvGaborCertificate<Real> certificate(int height, int width) override {
-    return cropped(certificate_of(problem_, method_.q(), 1.0), height, width);
+    return cropped(certificate_of(problem_, q_, 1.0), height, width);
   }
 
  private:
+  /// Leaves M div p - lambda f in the transform's plane.
+  void take_slope() {
+    negative_divergence(q_, fft_.plane());
+    fft_.forward();
+    const auto spectrum = fft_.spectrum();
+    const auto scale = Real{1} / static_cast<Real>(problem_.image.size());
+    for (std::size_t i = 0; i < spectrum.size(); ++i) {
+      spectrum[i] *= scale * spectrum_.samples()[i];
+    }
+    fft_.inverse();
+    const auto lambda = static_cast<Real>(problem_.lambda);
+    const auto plane = fft_.plane();
+    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] -= lambda * problem_.image.samples()[i];
+  }
+
+  void take_step() {
+    take_slope();
+    constexpr auto kTau = static_cast<Real>(kLongestDualStep);
+    const std::size_t width = w_x_.size();
+    const int height = q_.x.height();
+    const auto row = [&](int y) {
+      return std::span<const Real>(fft_.plane())
+          .subspan(static_cast<std::size_t>(y) * width, width);
+    };
+    for (int y = 0; y < height; ++y) {
+      engine::gradient_of_row<Real>(row(y), row((y + 1) % height), w_x_, w_y_);
+      const auto q_x = q_.x.row(y), q_y = q_.y.row(y);
+      for (std::size_t x = 0; x < width; ++x) {
+        const Real norm = std::sqrt(w_x_[x] * w_x_[x] + w_y_[x] * w_y_[x]);
+        const Real share = Real{1} / (Real{1} + kTau * norm);
+        q_x[x] = share * (q_x[x] - kTau * w_x_[x]);
+        q_y[x] = share * (q_y[x] - kTau * w_y_[x]);
+      }
+    }
+  }
+
   engine::TvGaborProblem<Real> problem_;
   Plane<Real> spectrum_;
   engine::RealFft<Real> fft_;
-  Method method_;
+  engine::VectorField<Real> q_;  ///< -p, with vectors of length at most 1
+  std::vector<Real> w_x_, w_y_;  ///< of a row
 };
 
 template <typename Real>
@@ -261,11 +166,8 @@ TvGaborCourse<Real>::TvGaborCourse(const GreyImage& image, const engine::TvGabor
     case TvGaborAlgorithm::admm:
       solver_ = std::make_unique<Admm>(image, all);
       break;
-    case TvGaborAlgorithm::fista:
-      solver_ = std::make_unique<OnDual<Fista<Real>>>(image, all);
-      break;
     case TvGaborAlgorithm::fixed_point:
-      solver_ = std::make_unique<OnDual<FixedPoint<Real>>>(image, all);
+      solver_ = std::make_unique<FixedPoint>(image, all);
       break;
   }
 }

@@ -1,5 +1,5 @@
-/// \file TV-Gabor by three solvers, step by step, to compare them: the engine's ADMM, and two
-/// slower ones on the dual, which share the engine's transforms but not its iteration. Source:
+/// \file TV-Gabor by two solvers, step by step, to compare them: the engine's ADMM, and a slower one
+/// on the dual, which shares the engine's transforms but not its iteration. Source:
 /// docs/method.md, "TV-Gabor".
 #pragma once
 
@@ -12,9 +12,6 @@ namespace touchtrial::reference {
 
 enum class TvGaborAlgorithm {
   admm,  ///< the one that extraction uses, its checks included
-  /// Accelerated projected gradient, steps of 1/8: A. Beck and M. Teboulle, "A fast iterative
-  /// shrinkage-thresholding algorithm for linear inverse problems", 2009.
-  fista,
   /// The semi-implicit fixed point, tau = 1/8: A. Chambolle, "An algorithm for total variation
   /// minimization and applications", 2004. The baseline to beat.
   fixed_point,
@@ -52,8 +49,7 @@ class TvGaborCourse {
  private:
   class Solver;
   class Admm;
-  template <typename Method>
-  class OnDual;
+  class FixedPoint;
 
   int height_, width_;
   int steps_ = 0;

@@ -1,6 +1,7 @@
 #include "engine/rendering/paper_model.hpp"
 
-#include "engine/reference/paper_reference.hpp"
+#include "engine/force_field.hpp"
+#include "engine/reference/force_reference.hpp"
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"
 
@@ -8,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace touchtrial {
 namespace {
@@ -15,6 +17,70 @@ namespace {
 constexpr engine::Gains kGains{0.012, 0.01};
 constexpr Vec3 kStill{};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Plane<double> plane_of(std::span<const float> samples, const PlaneGeometry& geometry) {
+  Plane<double> plane(geometry.height_px, geometry.width_px);
+  std::ranges::copy(samples, plane.samples().begin());
+  return plane;
+}
+
+/// The share of the lateral force at a load on the touchdown ramp, or beyond it.
+double share_of(double load_n, double ramp_n) {
+  return ramp_n == 0.0 ? 1.0 : std::min(1.0, load_n / ramp_n);
+}
+
+/// The force as docs/method.md has it, one equation after the other.
+class PaperForce {
+ public:
+  /// Computes all force planes in double precision.
+  PaperForce(engine::FieldView field, const engine::RenderingOptions& options, engine::Gains gains)
+      : geometry_(field.geometry),
+        options_(options),
+        gains_(gains),
+        heights_(plane_of(field.heights, geometry_)),
+        force_(reference::tangential_force(plane_of(field.slopes(), geometry_),
+                                           field.neighbourhood)) {}
+
+  [[nodiscard]] Vec3 force_n(const Vec3& position_mm, const Vec3& velocity_mm_s) const {
+    const auto [x, y, z] = position_mm;
+    double elastic_n = options_.stiffness_n_per_mm * -z;
+    Vec2 lateral;
+    if (geometry_.contains(x, y)) {
+      elastic_n += gains_.normal_n * (128.0 + at(heights_, x, y) - options_.reference_grey);
+      lateral = {at(force_.x, x, y), at(force_.y, x, y)};
+      if (options_.reference_grey == 0.0 && z >= 0.0) return {};
+    }
+    const double normal_n = elastic_n - options_.damping_n_s_per_mm * velocity_mm_s.z;
+    const double load_n = std::min(elastic_n, normal_n);
+    if (load_n <= 0.0) return {};
+    const double tangential_n = gains_.tangential_n * share_of(load_n, options_.touchdown_ramp_n);
+    const Vec3 force_n{tangential_n * lateral.x, tangential_n * lateral.y, normal_n};
+    return std::min(1.0, options_.max_force_n / norm(force_n)) * force_n;
+  }
+
+ private:
+  /// A value at every pixel, interpolated bilinearly.
+  [[nodiscard]] double at(const Plane<double>& values, double x_mm, double y_mm) const {
+    const Vec2 px = geometry_.to_px(x_mm, y_mm);
+    double sum = 0.0;
+    for (int y = -1; y <= values.height(); ++y) {
+      for (int x = -1; x <= values.width(); ++x) {
+        const double weight =
+            std::max(0.0, 1.0 - std::abs(px.x - x)) * std::max(0.0, 1.0 - std::abs(px.y - y));
+        const int row = std::clamp(y, 0, values.height() - 1);
+        const int column = std::clamp(x, 0, values.width() - 1);
+        sum += weight * values.at(row, column);
+      }
+    }
+    return sum;
+  }
+
+  PlaneGeometry geometry_;
+  engine::RenderingOptions options_;
+  engine::Gains gains_;
+  Plane<double> heights_;
+  engine::ForceField<double> force_;
+};
 
 TEST_CASE("PaperModel is a Hooke wall on a flat texture") {
   const engine::TextureField field = flat_field(20, 20);
@@ -60,7 +126,7 @@ TEST_CASE("PaperModel agrees with its equations at every size, load, speed and r
   RandomStream random(4, "points");
   options.damping_n_s_per_mm = GENERATE(0.0, 0.002);
   const engine::PaperModel model(view, options, kGains);
-  const reference::PaperForce slow(view, options, kGains);
+  const PaperForce slow(view, options, kGains);
   for (int i = 0; i < 200; ++i) {
     const Vec3 position_mm{random.uniform(-0.1, view.geometry.width_mm() + 0.1),
                            random.uniform(-0.1, view.geometry.height_mm() + 0.1),

@@ -40,7 +40,7 @@ TEMPLATE_TEST_CASE("TV-Gabor's row kernels agree with their definition on every 
                                             .momentum = TestType(0.25),
                                             .keep_former = true,
                                             .b_alone = false};
-      engine::admm_row<TestType>(
+      engine::row_kernels<TestType>().admm(
           {f.data(), below.data(), v.data(), v_below.data(), z_x.data(), z_y.data(),
            former_x.data(), former_y.data(), target_x.data(), target_y.data()},
           width, numbers);
@@ -64,7 +64,7 @@ TEMPLATE_TEST_CASE("TV-Gabor's row kernels agree with their definition on every 
       numbers.momentum = 0;
       numbers.keep_former = false;
       numbers.b_alone = true;
-      engine::admm_row<TestType>(
+      engine::row_kernels<TestType>().admm(
           {f.data(), below.data(), v.data(), v_below.data(), z_x.data(), z_y.data(),
            former_x.data(), former_y.data(), target_x.data(), target_y.data()},
           width, numbers);
@@ -88,7 +88,7 @@ TEMPLATE_TEST_CASE(
       const auto old_x = noise<TestType>(width, "x"), old_y = noise<TestType>(width, "y");
       auto z_x = old_x, z_y = old_y;
       std::vector<TestType> target_x(width), target_y(width);
-      engine::admm_restart_row<TestType>(
+      engine::row_kernels<TestType>().restart(
           {f.data(), below.data(), nullptr, nullptr, z_x.data(), z_y.data(), nullptr, nullptr,
            target_x.data(), target_y.data()},
           width, {TestType(0.75), TestType(1.25)});
@@ -116,8 +116,9 @@ TEMPLATE_TEST_CASE(
       const auto v = noise<TestType>(width, "v"), v_below = noise<TestType>(width, "v below");
       const auto q_x = noise<TestType>(width, "x"), q_y = noise<TestType>(width, "y");
       std::vector<TestType> divergence(width);
-      engine::negative_divergence_row(q_x.data(), q_y.data(), v.data(), width, divergence.data());
-      const engine::GapSums sums = engine::gap_row<TestType>(
+      engine::row_kernels<TestType>().divergence(q_x.data(), q_y.data(), v.data(), width,
+                                                 divergence.data());
+      const engine::GapSums sums = engine::row_kernels<TestType>().gap(
           {f.data(), below.data(), v.data(), v_below.data(), q_x.data(), q_y.data()}, width);
       double primal = 0.0, difference = 0.0;
       for (std::size_t i = 0; i < width; ++i) {
@@ -140,10 +141,12 @@ TEMPLATE_TEST_CASE(
 TEMPLATE_TEST_CASE("a clipped row is nowhere longer than 1 on any target", "", float, double) {
   on_every_simd_target([] {
     const auto x = noise<TestType>(41, "x"), y = noise<TestType>(41, "y");
-    std::vector<TestType> out_x(41), out_y(41), norms(41);
-    engine::clip_row(x.data(), y.data(), 41, TestType(3), out_x.data(), out_y.data());
-    engine::norm_row(out_x.data(), out_y.data(), 41, norms.data());
-    for (const TestType norm : norms) CHECK(norm <= Approx(1.0).epsilon(1e-6));
+    std::vector<TestType> out_x(41), out_y(41);
+    engine::row_kernels<TestType>().clip(x.data(), y.data(), 41, TestType(3), out_x.data(),
+                                         out_y.data());
+    for (std::size_t i = 0; i < 41; ++i) {
+      CHECK(std::hypot(out_x[i], out_y[i]) <= Approx(1.0).epsilon(1e-6));
+    }
   });
 }
 

@@ -46,11 +46,6 @@ void HandOnFalcon::explore(device::SimulatedHand hand) {
   carry_to(hand_position_mm(), Doing::approaching);
 }
 
-bool HandOnFalcon::at_rest() const {
-  const std::scoped_lock lock(mutex_);
-  return doing_ == Doing::resting;
-}
-
 int HandOnFalcon::explorations() const {
   const std::scoped_lock lock(mutex_);
   return explorations_;

@@ -29,8 +29,6 @@ class HandOnFalcon {
   /// Carries the grip to the hand's start at 100 mm/s, lets the hand explore until it stops, and
   /// carries the grip back to rest. Ends an earlier motion.
   void explore(device::SimulatedHand hand);
-  /// \return whether the grip is at rest and has no motion left to do
-  [[nodiscard]] bool at_rest() const;
   /// \return the number of explorations that ended because their hand stopped
   [[nodiscard]] int explorations() const;
 
