@@ -8,8 +8,6 @@
 #include "support/temp_folder.hpp"
 
 #include <filesystem>
-#include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -65,11 +63,13 @@ struct ProgramFolder {
   }
   /// A line as it is typed, "close @study.db --yes": see typed_words.
   /// \param more  further words
+  /// \param input  as for run_touchtrial
   [[nodiscard]] ProgramResult type(const std::string& line,
-                                   const std::vector<std::string>& more = {}) const {
+                                   const std::vector<std::string>& more = {},
+                                   const std::string& input = "") const {
     std::vector<std::string> words = typed_words(line, path());
     words.insert(words.end(), more.begin(), more.end());
-    return run(words);
+    return run(words, input);
   }
   /// The same; fails the test unless it succeeds.
   ProgramResult done(const std::string& line, const std::vector<std::string>& more = {}) const {

@@ -3,8 +3,6 @@
 #include "support/catch.hpp"
 
 #include <filesystem>
-#include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -339,9 +337,4 @@ TEST_CASE("a seed that is not a 64-bit whole number is refused") {
     CHECK(result.exit_code == 2);
     CHECK(line_count(result.errors) == 1);
   }
-}
-
-TEST_CASE("a misspelt command is answered with the nearest name") {
-  const StudyFolder study;
-  check_refused(study.type("simulat"), 2, {"did you mean simulate"});
 }
