@@ -94,6 +94,20 @@ struct StudyFolder : ProgramFolder {
     replace_file(path() / "quick.json",
                  R"({"feature_noise": 0.1, "explore_s": 1.5, "training_passes": 2})");
   }
+  /// Writes the study file with these members in place of its own, or beside them.
+  void write_study(const json& members, const std::string& file = "cloths.json") const {
+    json study = study_of("classification");
+    study.update(members, true);
+    replace_file(path() / file, study.dump());
+  }
+  /// A whole session of a simulated participant, in virtual time.
+  [[nodiscard]] ProgramResult session(const std::string& participant,
+                                      const std::vector<std::string>& more = {},
+                                      const std::string& db = "study.db") const {
+    return type("run @cloths.json --participant '" + participant + "' --db @" + db +
+                    " --subject @quick.json --headless",
+                more);
+  }
   ProgramResult simulate(const std::string& db, const std::vector<std::string>& more = {},
                          const std::string& seed = "3") const {
     return type("simulate @cloths.json --participants 4 --subject @quick.json --db @" + db +
