@@ -9,40 +9,20 @@ using namespace touchtrial;
 
 namespace {
 
-using Words = std::vector<std::string>;
-
 /// A power run of the small study, fast enough for a test.
-Words power_of(const StudyFolder& study, const Words& more) {
-  Words words = {"power",          study.in("cloths.json"),
-                 "--subject",      study.in("quick.json"),
-                 "--runs",         "120",
-                 "--seed",         "5",
-                 "--explorations", "10",
-                 "--trainings",    "2"};
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
-ProgramResult run_power(const StudyFolder& study, const Words& more) {
-  return study.run(power_of(study, more));
-}
-
-const Words kSizes = {"--participants", "3,5"};
-
-Words with_sizes(const Words& more) {
-  Words words = kSizes;
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
+ProgramResult power(const StudyFolder& study, const std::string& more,
+                    const std::string& runs = "120", const std::string& seed = "5") {
+  return study.type("power @cloths.json --subject @quick.json --explorations 10 --trainings 2 " +
+                    more + " --runs " + runs + " --seed " + seed);
 }
 
 }  // namespace
 
 TEST_CASE("power prints and writes the same numbers with any number of threads") {
   const StudyFolder study;
-  const ProgramResult one = succeeded(run_power(study, with_sizes({"--jobs", "1", "--json"})));
+  const ProgramResult one = succeeded(power(study, "--participants 3,5 --jobs 1 --json"));
   const ProgramResult two =
-      run_power(study, with_sizes({"--jobs", "3", "--json", "--out", study.in("power")}));
-  INFO(two.errors);
+      succeeded(power(study, "--participants 3,5 --jobs 3 --json --out @power"));
   CHECK(one.output == two.output);
   const json report = json::parse(one.output);
   CHECK(report.at("simulated") == true);
@@ -53,100 +33,84 @@ TEST_CASE("power prints and writes the same numbers with any number of threads")
   for (const char* name : {"power.csv", "power.md", "power.svg", "power.pdf"}) {
     CHECK(fs::exists(study.path() / "power" / name));
   }
-  const ProgramResult text = run_power(study, kSizes);
-  CHECK_THAT(text.output,
+  CHECK_THAT(power(study, "--participants 3,5").output,
              Catch::Matchers::StartsWith("simulated on: ideal device (no such device is sold)\n"
                                          "SIMULATED: power given the assumed sensitivity"));
 }
 
 TEST_CASE("combined shards of a power run print the same as one run") {
   const StudyFolder study;
-  const ProgramResult whole = succeeded(run_power(study, with_sizes({"--json"})));
-  for (const char* shard : {"1/3", "3/3"}) {
-    succeeded(run_power(study, with_sizes({"--shard", shard, "--out", study.in("shards")})));
+  const ProgramResult whole = succeeded(power(study, "--participants 3,5 --json"));
+  for (const std::string shard : {"1/3", "3/3"}) {
+    succeeded(power(study, "--participants 3,5 --out @shards --shard " + shard));
   }
   check_refused(study.type("power --combine @shards"), 1, {"missing: 2"});
-  succeeded(run_power(study, with_sizes({"--shard", "2/3", "--out", study.in("elsewhere")})));
-  const Words combine = {"power", "--combine", study.in("shards"), study.in("elsewhere"), "--json"};
-  CHECK(study.run(combine).output == whole.output);
+  succeeded(power(study, "--participants 3,5 --out @elsewhere --shard 2/3"));
+  const std::string combine = "power --combine @shards @elsewhere --json";
+  CHECK(study.type(combine).output == whole.output);
 
   fs::copy(study.path() / "elsewhere" / "shard-0002-of-0003.json",
            study.path() / "shards" / "shard-copy.json");
-  const ProgramResult twice = study.run(combine);
+  const ProgramResult twice = study.type(combine);
   CHECK(twice.output == whole.output);
   CHECK_THAT(twice.errors, holds_text("2/3") && holds_text("used once"));
 
-  succeeded(run_power(study, {"--participants", "3,5", "--shard", "2/3", "--out", study.in("other"),
-                              "--servo", "--no-early-stop"}));
+  succeeded(power(study, "--participants 3,5 --shard 2/3 --out @other --servo --no-early-stop"));
   check_refused(study.type("power --combine @shards @other"), 3, {"other", "--no-early-stop"});
 }
 
 TEST_CASE("a single shard, and more shards than runs, are combined like others") {
   const StudyFolder study;
-  const auto few = [&](const Words& more) {
-    Words words = power_of(study, with_sizes(more));
-    words[5] = "3";
-    return study.run(words);
+  const auto few = [&](const std::string& more) {
+    return succeeded(power(study, "--participants 3,5 " + more, "3"));
   };
-  const ProgramResult whole = succeeded(few({"--json"}));
-  succeeded(few({"--shard", "1/1", "--out", study.in("one")}));
+  const ProgramResult whole = few("--json");
+  few("--shard 1/1 --out @one");
   CHECK(study.type("power --combine @one --json").output == whole.output);
-  for (const char* shard : {"1/4", "2/4", "3/4", "4/4"}) {
-    succeeded(few({"--shard", shard, "--out", study.in("four")}));
+  for (const std::string shard : {"1/4", "2/4", "3/4", "4/4"}) {
+    few("--out @four --shard " + shard);
   }
   CHECK(study.type("power --combine @four --json").output == whole.output);
 }
 
 TEST_CASE("the option --combine accepts no option of the plan, which the shards contain") {
   const StudyFolder study;
-  for (const Words& more :
-       {Words{"--runs", "10"}, Words{"--seed", "2"}, Words{"--participants", "3"},
-        Words{"--subject", "quick.json"}, Words{"--no-early-stop"}, Words{"--servo"}}) {
-    Words words = {"power", "--combine", study.in("shards")};
-    words.insert(words.end(), more.begin(), more.end());
-    check_refused(study.run(words), 2, {"--combine", more.front()});
+  for (const std::string option : {"--runs 10", "--seed 2", "--participants 3",
+                                   "--subject quick.json", "--no-early-stop", "--servo"}) {
+    check_refused(study.type("power --combine @shards " + option), 2,
+                  {"--combine", option.substr(0, option.find(' '))});
   }
 }
 
 TEST_CASE("a power run is resumed only with its own arguments") {
   const StudyFolder study;
-  const Words out = {"--out", study.in("power")};
-  const ProgramResult first = succeeded(run_power(study, with_sizes({"--json", out[0], out[1]})));
-  check_refused(run_power(study, with_sizes(out)), 1, {"power-progress.json", "--resume"});
-  CHECK(run_power(study, with_sizes({"--json", "--resume", out[0], out[1]})).output ==
-        first.output);
-  check_refused(run_power(study, {"--participants", "3,6", "--resume", out[0], out[1]}), 1,
-                {"--participants"});
-  Words other = power_of(study, with_sizes({"--resume", out[0], out[1]}));
-  other[7] = "6";
-  check_refused(study.run(other), 1, {"--seed"});
+  const std::string run = "--participants 3,5 --out @power ";
+  const ProgramResult first = succeeded(power(study, run + "--json"));
+  check_refused(power(study, run), 1, {"power-progress.json", "--resume"});
+  CHECK(power(study, run + "--json --resume").output == first.output);
+  check_refused(power(study, "--participants 3,6 --out @power --resume"), 1, {"--participants"});
+  check_refused(power(study, run + "--resume", "120", "6"), 1, {"--seed"});
   const std::string progress = content(study.path() / "power" / "power-progress.json");
   replace_file(study.path() / "power" / "power-progress.json",
                progress.substr(0, progress.size() / 2));
-  check_refused(run_power(study, with_sizes({"--resume", out[0], out[1]})), 1,
-                {"power-progress.json", "truncated"});
+  check_refused(power(study, run + "--resume"), 1, {"power-progress.json", "truncated"});
 }
 
 TEST_CASE("power refuses invalid arguments in one line") {
   const StudyFolder study;
-  check_refused(run_power(study, {"--participants", "1"}), 2, {"--participants", "1"});
-  check_refused(run_power(study, {"--participants", "8,8"}), 2, {"8 is given twice"});
-  check_refused(run_power(study, {"--participants", "1000000000"}), 2, {"1000000000"});
-  check_refused(run_power(study, {"--participants", "99999999999999999999"}), 2,
-                {"--participants"});
-  check_refused(run_power(study, {"--participants", "eight"}), 2, {"--participants"});
-  check_refused(run_power(study, {"--participants", "8,,12"}), 2, {"--participants"});
-  check_refused(run_power(study, {"--participants", "-8"}), 2, {});
+  for (const std::string sizes :
+       {"1", "8,8", "1000000000", "99999999999999999999", "eight", "8,,12", "-8"}) {
+    INFO(sizes);
+    check_refused(power(study, "--participants " + sizes), 2, {"--participants"});
+  }
   for (const char* runs : {"0", "-1", "1.5", "1000000000", "many"}) {
-    Words words = power_of(study, kSizes);
-    words[5] = runs;
-    check_refused(study.run(words), 2, {"--runs"});
+    check_refused(power(study, "--participants 3,5", runs), 2, {"--runs"});
   }
-  for (const char* shard :
+  for (const std::string shard :
        {"", "0/3", "4/3", "3", "a/b", "1/", "/2", "1/2/3", "1/99999999", "-1/2"}) {
-    check_refused(run_power(study, {"--shard", shard, "--out", study.in("x")}), 2, {"--shard"});
+    check_refused(power(study, "--out @x --shard '" + shard + "'"), 2, {"--shard"});
   }
-  check_refused(run_power(study, {"--methods", "adaptive,edge"}), 2, {"--methods"});
+  check_refused(power(study, "--methods adaptive,edge"), 2, {"--methods"});
   check_refused(study.type("power"), 2, {"STUDY"});
   check_refused(study.type("power @none.json"), 2, {"none.json"});
   check_refused(study.type("power --combine @nowhere"), 1, {"nowhere"});
