@@ -4,9 +4,7 @@
 #include "app/windows/look.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <stdexcept>
-#include <utility>
 
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>

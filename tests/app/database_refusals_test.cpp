@@ -2,9 +2,7 @@
 #include "app/study_folder.hpp"
 #include "support/catch.hpp"
 
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <SQLiteCpp/Database.h>
 #include <sys/stat.h>

@@ -1,12 +1,7 @@
 // The investigator's key: checked, printed, restored, copied and protected, as a user does it.
 #include "app/study_folder.hpp"
-#include "app/touchtrial_process.hpp"
 #include "protocols/design/key_protection.hpp"
 #include "support/catch.hpp"
-
-#include <filesystem>
-#include <string>
-#include <vector>
 
 #include <SQLiteCpp/Database.h>
 

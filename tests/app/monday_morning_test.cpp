@@ -7,10 +7,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstddef>
-#include <filesystem>
 #include <set>
-#include <string>
-#include <vector>
 
 using namespace touchtrial;
 

@@ -5,10 +5,7 @@
 #include "support/child_process.hpp"
 
 #include <csignal>
-#include <filesystem>
 #include <set>
-#include <string>
-#include <vector>
 
 using namespace touchtrial;
 using namespace touchtrial::store;

@@ -1,13 +1,9 @@
 // Studies with several visits and groups, as the program runs them.
 #include "app/study_folder.hpp"
-#include "app/touchtrial_process.hpp"
-#include "core/files.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
 
 #include <map>
-#include <string>
-#include <vector>
 
 namespace touchtrial {
 namespace {

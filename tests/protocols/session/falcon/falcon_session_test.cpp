@@ -1,7 +1,6 @@
 // A whole classification session on an emulated Falcon: study, pack, servo thread, driver, the
 // unmodified libusb, the database, and event codes on a line. Servo ticks and USB exchanges go in
 // lockstep, as fast as the processor goes.
-#include "device/falcon/rig/falcon_rig.hpp"
 #include "protocols/session/falcon/stepped_falcon.hpp"
 #include "protocols/session/person_with_hand.hpp"
 #include "protocols/session/still_time.hpp"
