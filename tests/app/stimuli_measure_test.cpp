@@ -50,5 +50,5 @@ TEST_CASE("measure refuses in one line what is not a picture, too small, missing
   check_refused(folder.type("stimuli measure @tiny.png"), 1, {"tiny.png", "32 px"});
   check_refused(folder.type("stimuli measure @text.png"), 1, {"text.png"});
   check_refused(folder.type("stimuli measure @empty"), 1, {"contains no picture"});
-  check_refused(folder.type("stimuli measure @none.png"), 1, {"none.png"});
+  check_refused(folder.type("stimuli measure @none.png"), 2, {"none.png"});
 }
