@@ -119,7 +119,7 @@ TEST_CASE("device test replays the recording that the settings name, to its end"
 TEST_CASE("device test refuses what it cannot open or read with one line and a remedy") {
   const DeviceFolder folder;
   check_refused(folder.device("test simulatd"), 2, {"did you mean simulated?"});
-  check_refused(folder.device("test replay"), 2, {"replay.trace"});
+  check_refused(folder.device("test replay"), 1, {"replay.trace"});
   check_refused(folder.device("test simulated --seconds nan"), 2, {"--seconds", "nan"});
   check_refused(folder.device("test simulated --rate nan"), 2, {"--rate", "nan"});
 }
