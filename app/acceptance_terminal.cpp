@@ -10,7 +10,6 @@
 #include <cmath>
 #include <csignal>
 #include <iostream>
-#include <limits>
 
 #include <fmt/format.h>
 #include <spawn.h>

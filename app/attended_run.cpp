@@ -2,11 +2,7 @@
 
 #include "app/device_words.hpp"
 #include "core/errors.hpp"
-#include "device/mouse/mouse_device.hpp"
 #include "device/registry.hpp"
-#include "device/servo/servo.hpp"
-#include "device/servo/servo_clock.hpp"
-#include "device/servo/servo_thread.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +10,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <string>
 #include <thread>
 
 #include <fmt/format.h>

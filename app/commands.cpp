@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <memory>
 #include <string_view>
-#include <thread>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -188,9 +187,7 @@ void add_settings_option(CLI::App& command, std::filesystem::path& settings) {
 void add_window_options(CLI::App& command, int& monitor,
                         std::optional<std::pair<int, int>>& size_px,
                         const std::string& size_meaning) {
-  command.add_option("--monitor", monitor, "Monitor of the participant's window")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
+  add_count_option(command, "--monitor", monitor, "Monitor of the participant's window", 1, 16);
   command.add_option_function<std::string>(
       "--window", [&size_px](const std::string& text) { size_px = size_of(text); }, size_meaning);
 }
@@ -223,11 +220,17 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& 
   command.add_option("--seed", seed, meaning)->check(whole_number)->capture_default_str();
 }
 
-void add_jobs_option(CLI::App& command, int& jobs) {
-  jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  command.add_option("--jobs", jobs, "Threads; results do not depend on their number")
-      ->check(CLI::Range(1, 1024))
+CLI::Option* add_count_option(CLI::App& command, const std::string& name, int& count,
+                              const std::string& meaning, int least, int most) {
+  return command.add_option(name, count, meaning)
+      ->check(CLI::Range(least, most))
       ->capture_default_str();
+}
+
+void add_jobs_option(CLI::App& command, int& jobs) {
+  jobs = cores();
+  add_count_option(command, "--jobs", jobs, "Threads; results do not depend on their number", 1,
+                   1024);
 }
 
 void add_yes_flag(CLI::App& command, bool& yes) {

@@ -1,7 +1,6 @@
 #include "app/console.hpp"
 
 #include "analysis/text_table.hpp"
-#include "core/errors.hpp"
 #include "core/printable.hpp"
 
 #include <algorithm>

@@ -1,7 +1,5 @@
 #include "app/device_words.hpp"
 
-#include "device/servo/servo.hpp"
-
 namespace touchtrial::app {
 namespace {
 

@@ -84,10 +84,8 @@ void add_examples_commands(CLI::App& program, Action& action) {
       "demo", "Run both experiments with simulated people on a modelled Touch, and write reports");
   demo->add_option("FOLDER", arguments->folder, "New folder for studies, databases and reports")
       ->capture_default_str();
-  demo->add_option("--participants", arguments->participants,
-                   "Simulated participants of each experiment")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  add_count_option(*demo, "--participants", arguments->participants,
+                   "Simulated participants of each experiment", 1, 1000);
   demo->callback([=, &action] { action = [=] { return run_demo(*arguments); }; });
 }
 

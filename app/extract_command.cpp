@@ -194,11 +194,8 @@ void add_extract_command(CLI::App& program, Action& action) {
   command->add_option("--mapping", arguments->mapping, "Mapping of the texture to a picture")
       ->check(CLI::IsMember(words_of(engine::kMappingNames)))
       ->capture_default_str();
-  command
-      ->add_option("--neighbourhood", arguments->neighbourhood,
-                   "Side n of the force's neighbourhood, odd")
-      ->check(CLI::Range(3, 1001))
-      ->capture_default_str();
+  add_count_option(*command, "--neighbourhood", arguments->neighbourhood,
+                   "Side n of the force's neighbourhood, odd", 3, 1001);
   command->add_option("-o,--output", arguments->output, "Write the texture as an 8-bit PNG");
   command->add_option("--arrows", arguments->arrows,
                       "Draw the force field over an enlarged patch, as PNG");

@@ -280,16 +280,10 @@ void add_fit_command(CLI::App& program, Action& action) {
       ->check(CLI::Range(1, 1000))
       ->needs(accuracies)
       ->capture_default_str();
-  command
-      ->add_option("--explorations", arguments->felt.explorations,
-                   "Explorations of each stimulus from which answers are predicted")
-      ->check(CLI::Range(8, 20000))
-      ->capture_default_str();
-  command
-      ->add_option("--bootstraps", arguments->bootstraps,
-                   "Studies simulated from the fit, for p and intervals")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
+  add_count_option(*command, "--explorations", arguments->felt.explorations,
+                   "Explorations of each stimulus from which answers are predicted", 8, 20000);
+  add_count_option(*command, "--bootstraps", arguments->bootstraps,
+                   "Studies simulated from the fit, for p and intervals", 0, 100000);
   add_seed_option(*command, arguments->felt.seed,
                   "Seed of training (as in simulate), explorations and bootstrap");
   add_jobs_option(*command, arguments->felt.jobs);

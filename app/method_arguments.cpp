@@ -133,14 +133,11 @@ void add_numbers(CLI::App& command, engine::ExtractionOptions& numbers) {
   using Options = engine::ExtractionOptions;
   // The parser has no half-open ranges; check_options checks this one.
   command.add_option("--order", numbers.order, "Fractional order, 0 <= V < 1 (fixed)");
-  command
-      .add_option("--radius", numbers.radius,
-                  "Radius K of the mask (adaptive, fixed) or of the window (median)")
-      ->check(CLI::Range(1, Options::kMaxRadius))
-      ->capture_default_str();
-  command.add_option("--levels", numbers.levels, "Levels of sub-bands (adaptive)")
-      ->check(CLI::Range(1, Options::kMaxLevels))
-      ->capture_default_str();
+  add_count_option(command, "--radius", numbers.radius,
+                   "Radius K of the mask (adaptive, fixed) or of the window (median)", 1,
+                   Options::kMaxRadius);
+  add_count_option(command, "--levels", numbers.levels, "Levels of sub-bands (adaptive)", 1,
+                   Options::kMaxLevels);
   command
       .add_option("--sigma", numbers.sigma_px,
                   "Standard deviation, pixels, 0 < S <= 1000 (gaussian)")

@@ -445,12 +445,11 @@ void add_new_command(CLI::App& program, Action& action) {
             question.text)
         ->check(question.allowed);
   }
-  command->add_option("--size", arguments->size_px, "Side of a picture, pixels; one is 0.2 mm")
-      ->check(CLI::Range(stimuli::kMinCropSizePx, stimuli::kMaxCropSizePx))
-      ->capture_default_str();
-  command->add_option("--crops", arguments->crops, "Crops of the photographs of each texture")
-      ->check(CLI::Range(1, stimuli::kMaxCropsOfClass))
-      ->capture_default_str();
+  add_count_option(*command, "--size", arguments->size_px,
+                   "Side of a picture, pixels; one is 0.2 mm", stimuli::kMinCropSizePx,
+                   stimuli::kMaxCropSizePx);
+  add_count_option(*command, "--crops", arguments->crops,
+                   "Crops of the photographs of each texture", 1, stimuli::kMaxCropsOfClass);
   command->add_flag("--yes", arguments->yes, "Take the usual answers, and ask nothing");
   command->callback([=, &action] { action = [=] { return write_new_study(*arguments); }; });
 }

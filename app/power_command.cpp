@@ -258,11 +258,8 @@ void add_threshold_options(CLI::App& command, ThresholdPowerArguments& arguments
           "Thresholds: which two to compare, first minus second, by their order in the study "
           "(default: 1,2)")
       ->type_name("N,N");
-  command
-      .add_option("--pool", arguments.pool,
-                  "Thresholds: simulated participants from whom samples are drawn")
-      ->check(CLI::Range(10, 10'000))
-      ->capture_default_str();
+  add_count_option(command, "--pool", arguments.pool,
+                   "Thresholds: simulated participants from whom samples are drawn", 10, 10'000);
 }
 
 void add_plan_options(CLI::App& command, PowerArguments& arguments) {

@@ -67,11 +67,8 @@ void add_session_options(CLI::App& command, RunOptions& options) {
       .add_option("--enrolment", options.enrolment,
                   "Enrolment number, one of this station's (default: its next)")
       ->check(CLI::Range(1, design::kMostEnrolments));
-  command
-      .add_option("--visit", options.visit,
-                  "Which visit of the participant this is, in a study with several")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
+  add_count_option(command, "--visit", options.visit,
+                   "Which visit of the participant this is, in a study with several", 1, 100);
   command
       .add_option("--station", options.station,
                   "Name of this station, whose file is <study>.NAME.station")

@@ -49,14 +49,11 @@ void add_simulate_command(CLI::App& program, Action& action) {
                    "Database to make; its key is written to DB.key")
       ->check(place_validator())
       ->required();
-  command->add_option("--participants", options.participants, "Number of participants")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  command
-      ->add_option("--first-participant", options.first_participant,
-                   "Number of the first participant, for a station whose database will be merged")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
+  add_count_option(*command, "--participants", options.participants, "Number of participants", 1,
+                   100000);
+  add_count_option(*command, "--first-participant", options.first_participant,
+                   "Number of the first participant, for a station whose database will be merged",
+                   1, 1'000'000);
   add_seed_option(*command, options.seed, "Seed of everything random in participants");
   add_subject_option(*command, arguments->study.subject);
   add_on_option(*command, arguments->study.on);

@@ -131,14 +131,11 @@ void add_picture_options(CLI::App& command, stimuli::ImportOptions& options) {
   command.add_option("--study", options.study, "Study file to write, ending in .json")->required();
   command.add_option("--out", options.pictures,
                      "Folder of the pictures to write (default: <study>.pictures)");
-  command.add_option("--size", options.size_px, "Side of a crop, pixels")
-      ->check(CLI::Range(stimuli::kMinCropSizePx, stimuli::kMaxCropSizePx))
-      ->capture_default_str();
-  command
-      .add_option("--crops", options.crops,
-                  "Number of crops of each class, which are its exemplars")
-      ->check(CLI::Range(1, stimuli::kMaxCropsOfClass))
-      ->capture_default_str();
+  add_count_option(command, "--size", options.size_px, "Side of a crop, pixels",
+                   stimuli::kMinCropSizePx, stimuli::kMaxCropSizePx);
+  add_count_option(command, "--crops", options.crops,
+                   "Number of crops of each class, which are its exemplars", 1,
+                   stimuli::kMaxCropsOfClass);
   command.add_option("--pitch-mm", options.pitch_mm, "Size of a crop's pixel on the plane, mm")
       ->capture_default_str();
   add_seed_option(command, options.seed, "Seed of the crops and the study's schedules");
@@ -175,9 +172,8 @@ void add_generate_command(CLI::App& stimuli, Action& action) {
       "Make the default pictures: textures, objects, their materials, practice pictures, flat");
   command->add_option("-o,--out", arguments->folder, "Folder to write into")->capture_default_str();
   add_seed_option(*command, arguments->choice.seed, "Seed of the pictures");
-  command->add_option("--size", arguments->choice.size_px, "Side of a picture, pixels")
-      ->check(CLI::Range(stimuli::kMinStimulusSizePx, stimuli::kMaxStimulusSizePx))
-      ->capture_default_str();
+  add_count_option(*command, "--size", arguments->choice.size_px, "Side of a picture, pixels",
+                   stimuli::kMinStimulusSizePx, stimuli::kMaxStimulusSizePx);
   command
       ->add_option("--exemplars", arguments->choice.exemplars,
                    "Number of different pictures of each label (default: five of each texture, one "

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstddef>
-#include <string>
 
 namespace touchtrial::app {
 

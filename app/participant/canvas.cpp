@@ -3,7 +3,6 @@
 #include "app/windows/look.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cfloat>
 #include <cmath>
 #include <iterator>

@@ -2,9 +2,7 @@
 
 #include "app/experimenter/console_window.hpp"
 #include "app/participant/exploring_screen.hpp"
-#include "app/participant/input_event.hpp"
 #include "app/participant/window_drawing.hpp"
-#include "app/windows/glfw_support.hpp"
 #include "app/windows/look.hpp"
 #include "core/errors.hpp"
 #include "device/platform/stop_signals.hpp"
@@ -18,9 +16,7 @@
 #include <mutex>
 #include <set>
 #include <stdexcept>
-#include <string>
 #include <thread>
-#include <utility>
 
 #include <GLFW/glfw3.h>
 #include <spdlog/spdlog.h>

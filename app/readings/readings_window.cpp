@@ -106,7 +106,7 @@ void draw_plots(const std::vector<Plot>& plots, float height, float density) {
 }  // namespace
 
 ReadingsWindow::ReadingsWindow(device::PointerExchange& exchange)
-    : exchange_(exchange), window_({"Touchtrial: device test", 1200, 800, false}) {
+    : exchange_(exchange), window_({"Touchtrial: device test", 1200, 800}) {
   window_.on_stop_key([this] { stop_asked_ = true; });
 }
 

@@ -4,9 +4,7 @@
 #include "app/windows/look.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <stdexcept>
-#include <utility>
 
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -52,20 +50,13 @@ struct GlfwWindow::State {
   explicit State(const WindowOptions& options) : window(make_window(options)) {
     glfwMakeContextCurrent(window);
     glfwSwapInterval(1);
-    if (options.hide_cursor) glfwSetInputMode(window, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
     glfwSetWindowUserPointer(window, this);
-    // ImGui's backend forwards events to callbacks that were set before it.
-    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { tell_pointer(w); });
-    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) { tell_pointer(w); });
+    // ImGui's backend forwards events to a callback that was set before it.
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
       if (key == GLFW_KEY_SPACE && action == GLFW_PRESS) tell_stop(w);
     });
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
-    // Without this flag, ImGui's backend shows the cursor again with every picture.
-    if (options.hide_cursor) {
-      ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
-    }
     scale = screen_scale(window);
     load_fonts(scale.density);
     ImGui_ImplGlfw_InitForOpenGL(window, true);
@@ -79,15 +70,6 @@ struct GlfwWindow::State {
   }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
-
-  static void tell_pointer(GLFWwindow* window) {
-    const auto* state = static_cast<State*>(glfwGetWindowUserPointer(window));
-    if (!state->listener) return;
-    WindowPointer pointer;
-    glfwGetCursorPos(window, &pointer.position.x, &pointer.position.y);
-    pointer.pressed = glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
-    state->listener(pointer);
-  }
 
   static void tell_stop(GLFWwindow* window) {
     const auto* state = static_cast<State*>(glfwGetWindowUserPointer(window));
@@ -106,7 +88,6 @@ struct GlfwWindow::State {
   GlfwLibrary library;
   GLFWwindow* window;
   ScreenScale scale;
-  std::function<void(const WindowPointer&)> listener;
   std::function<void()> stop_listener;
   double frame_began_s = 0.0;
   bool keeps_pictures = false;
@@ -116,17 +97,12 @@ struct GlfwWindow::State {
 GlfwWindow::GlfwWindow(const WindowOptions& options) : state_(std::make_unique<State>(options)) {}
 GlfwWindow::~GlfwWindow() = default;
 
-void GlfwWindow::on_pointer(std::function<void(const WindowPointer&)> listener) {
-  state_->listener = std::move(listener);
-}
-
 void GlfwWindow::on_stop_key(std::function<void()> listener) {
   state_->stop_listener = std::move(listener);
 }
 
 void GlfwWindow::begin_frame() {
   state_->take_events();
-  State::tell_pointer(state_->window);
   state_->scale = screen_scale(state_->window);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();

@@ -14,13 +14,6 @@ struct WindowOptions {
   std::string title;
   int width_px = 1280;  ///< >= 1, before scaling for the screen's density; limited to the screen
   int height_px = 800;
-  bool hide_cursor = false;  ///< for windows that draw their own pointer
-};
-
-/// The pointer's position in window units, and whether its left button is held.
-struct WindowPointer {
-  Vec2 position;
-  bool pressed = false;
 };
 
 /// One window at a time. All functions belong to the program's main thread, as windowing systems
@@ -35,9 +28,6 @@ class GlfwWindow {
   ~GlfwWindow();
   GlfwWindow(const GlfwWindow&) = delete;
   GlfwWindow& operator=(const GlfwWindow&) = delete;
-
-  /// Sets a function that `begin_frame` calls for every motion and press, and once per frame.
-  void on_pointer(std::function<void(const WindowPointer&)> listener);
 
   /// Sets a function that `begin_frame` calls whenever the space bar goes down, however briefly:
   /// this key stops the force in every window.

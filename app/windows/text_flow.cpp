@@ -1,7 +1,6 @@
 #include "app/windows/text_flow.hpp"
 
 #include <cstddef>
-#include <utility>
 
 #include <imgui.h>
 

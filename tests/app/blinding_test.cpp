@@ -8,8 +8,6 @@
 #include <cctype>
 #include <map>
 #include <set>
-#include <string>
-#include <vector>
 
 #include <SQLiteCpp/Database.h>
 #include <SQLiteCpp/Statement.h>

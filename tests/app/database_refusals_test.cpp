@@ -2,9 +2,7 @@
 #include "app/study_folder.hpp"
 #include "support/catch.hpp"
 
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <SQLiteCpp/Database.h>
 #include <sys/stat.h>
@@ -15,13 +13,7 @@ using namespace touchtrial;
 namespace {
 
 ProgramResult note(const StudyFolder& study, const std::string& database) {
-  return study.run({"note", database, "--participant", "P001", "came late"});
-}
-
-ProgramResult run_session(const StudyFolder& study, const std::string& file,
-                          const std::string& database) {
-  return study.run({"run", study.in(file), "--participant", "P009", "--db", study.in(database),
-                    "--subject", study.in("quick.json"), "--headless"});
+  return study.type("note @" + database + " --participant P001 'came late'");
 }
 
 /// Runs the program as an ordinary user, because permissions do not bind root.
@@ -42,12 +34,12 @@ TEST_CASE("a database that another program writes is refused, and is not changed
   {
     SQLite::Database other(study.in("study.db"), SQLite::OPEN_READWRITE);
     other.exec("BEGIN IMMEDIATE");
-    check_refused(note(study, study.in("study.db")), 1,
+    check_refused(note(study, "study.db"), 1,
                   {"study.db: ", "is in use by another program", "try again"});
     study.done("report @study.db");  // reading still works
     other.exec("ROLLBACK");
   }
-  succeeded(note(study, study.in("study.db")));
+  succeeded(note(study, "study.db"));
 }
 
 TEST_CASE("every command names a database with a corrupted page as damaged") {
@@ -59,23 +51,19 @@ TEST_CASE("every command names a database with a corrupted page as damaged") {
   // The first page contains the schema, the second the root of the events.
   for (std::size_t i = kPage; i < 2 * kPage; ++i) bytes[i] = 0xa5;
   replace_file(study.path() / "study.db", ByteView(bytes));
-  check_refused(note(study, study.in("study.db")), 3,
+  check_refused(note(study, "study.db"), 3,
                 {"study.db: ", "is damaged", "restore it from a backup"});
   check_refused(study.type("report @study.db"), 3,
                 {"study.db: ", "is damaged", "restore it from a backup"});
   const ProgramResult verified = study.type("verify @study.db");
-  INFO(verified.output << verified.errors);
   CHECK(verified.exit_code == 3);
-  CHECK(verified.output.find("damaged") != std::string::npos);
+  CHECK_THAT(verified.output, holds_text("damaged"));
 }
 
 TEST_CASE("a session is not put into another study's database") {
   const StudyFolder study;
   succeeded(study.simulate("study.db", {"--keep-blind"}));
-  json other = study_of("classification");
-  other["study"] = "others";
-  other["seed"] = 12;
-  replace_file(study.path() / "others.json", other.dump());
+  study.write_study({{"study", "others"}, {"seed", 12}}, "others.json");
   study.done("prepare @others.json");
   const std::string before = content(study.path() / "study.db");
   const ProgramResult refused = study.type(
@@ -93,10 +81,10 @@ TEST_CASE("a file that is not a study's database is refused, and is not changed"
         .exec("CREATE TABLE birds(name)");
   }
   fs::create_directory(study.path() / "folder.db");
-  check_refused(note(study, study.in("letter.db")), 1, {"letter.db", "is no Touchtrial database"});
-  check_refused(note(study, study.in("others.db")), 1, {"others.db", "none of Touchtrial"});
-  check_refused(note(study, study.in("folder.db")), 1, {"folder.db", "is a folder"});
-  check_refused(run_session(study, "cloths.json", "letter.db"), 1, {"letter.db"});
+  check_refused(note(study, "letter.db"), 1, {"letter.db", "is no Touchtrial database"});
+  check_refused(note(study, "others.db"), 1, {"others.db", "none of Touchtrial"});
+  check_refused(note(study, "folder.db"), 1, {"folder.db", "is a folder"});
+  check_refused(study.session("P009", {}, "letter.db"), 1, {"letter.db"});
   CHECK(content(study.path() / "letter.db") == std::string(300, 'x'));
 }
 
@@ -110,19 +98,15 @@ TEST_CASE("in a read-only folder, reading works and writing says what is wrong")
   succeeded(study.simulate("study.db", {"--keep-blind"}));
   REQUIRE(::chmod(study.in("study.db").c_str(), 0644) == 0);
   REQUIRE(::chmod(study.path().c_str(), 0555) == 0);
-  const auto as_user = [&](const std::vector<std::string>& arguments) {
-    return run_as_ordinary_user(study, arguments);
+  const auto as_user = [&](const std::string& line) {
+    return run_as_ordinary_user(study, typed_words(line, study.path()));
   };
-  const ProgramResult reported = as_user({"report", study.in("study.db"), "--json"});
-  const ProgramResult noted =
-      as_user({"note", study.in("study.db"), "--participant", "P001", "came late"});
-  const ProgramResult file_only = [&] {  // the file may be written, but nothing beside it
-    REQUIRE(::chmod(study.in("study.db").c_str(), 0666) == 0);
-    return as_user({"note", study.in("study.db"), "--participant", "P001", "came late"});
-  }();
+  const ProgramResult reported = as_user("report @study.db --json");
+  const ProgramResult noted = as_user("note @study.db --participant P001 late");
+  REQUIRE(::chmod(study.in("study.db").c_str(), 0666) == 0);  // and nothing beside it
+  const ProgramResult file_only = as_user("note @study.db --participant P001 late");
   const ProgramResult simulated =
-      as_user({"simulate", study.in("cloths.json"), "--participants", "1", "--db",
-               study.in("new.db"), "--subject", study.in("quick.json")});
+      as_user("simulate @cloths.json --participants 1 --db @new.db --subject @quick.json");
   REQUIRE(::chmod(study.path().c_str(), 0755) == 0);
   INFO(reported.errors);
   CHECK(reported.exit_code == 0);
@@ -133,7 +117,7 @@ TEST_CASE("in a read-only folder, reading works and writing says what is wrong")
 }
 
 TEST_CASE("a refusal prints file names in any script, and bytes that are not text as numbers") {
-  const TempFolder folder;
+  const ProgramFolder folder;
   const std::vector<std::pair<std::string, std::string>> names = {
       {"t\u00e4st-\u20ac-\U0001f600.db", "t\u00e4st-\u20ac-\U0001f600.db"},
       {"a\xff.db", "a\\xff.db"},
@@ -144,7 +128,7 @@ TEST_CASE("a refusal prints file names in any script, and bytes that are not tex
       {"\xf4\x90\x80\x80.db", "\\xf4\\x90\\x80\\x80.db"}};
   for (const auto& [name, printed] : names) {
     INFO(printed);
-    const ProgramResult refused = run_touchtrial(folder.path(), {"verify", name});
+    const ProgramResult refused = folder.run({"verify", name});
     CHECK(refused.exit_code != 0);
     CHECK(line_count(refused.errors) == 1);
     CHECK(refused.errors.find(printed) != std::string::npos);

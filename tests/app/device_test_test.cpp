@@ -1,62 +1,19 @@
 // touchtrial device test, device accept and device bring-up as people and scripts run them. Every
 // test waits for the program's output, never for a time, and tolerates a machine that stalls: the
 // program must then end with a fault.
-#include "app/touchtrial_process.hpp"
-#include "core/files.hpp"
+#include "app/device_folder.hpp"
 #include "support/catch.hpp"
-#include "support/child_process.hpp"
-#include "support/temp_folder.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <sstream>
-#include <string>
-#include <thread>
-#include <vector>
-
-#include <nlohmann/json.hpp>
 
 using namespace touchtrial;
-using nlohmann::json;
 using touchtrial::testing::ChildProcess;
 
 namespace {
-
-/// A folder with the test's own device settings.
-class DeviceFolder {
- public:
-  explicit DeviceFolder(const json& settings = json::object()) {
-    replace_file(folder_.path() / "devices.json", settings.dump());
-  }
-
-  [[nodiscard]] std::vector<std::string> words(const std::string& command,
-                                               const std::vector<std::string>& more) const {
-    std::vector<std::string> all = {"device", command};
-    all.insert(all.end(), more.begin(), more.end());
-    all.push_back("--settings");
-    all.push_back((folder_.path() / "devices.json").string());
-    return all;
-  }
-  [[nodiscard]] ProgramResult run(const std::string& command,
-                                  const std::vector<std::string>& more) const {
-    return run_touchtrial(folder_.path(), words(command, more));
-  }
-  /// Beside the test, in this folder.
-  [[nodiscard]] ChildProcess start(const std::string& command,
-                                   const std::vector<std::string>& more) const {
-    std::vector<std::string> all = {TOUCHTRIAL_PROGRAM};
-    for (const std::string& word : words(command, more)) all.push_back(word);
-    return {all, {}, folder_.path().string()};
-  }
-  [[nodiscard]] std::filesystem::path path(const std::string& name) const {
-    return folder_.path() / name;
-  }
-
- private:
-  TempFolder folder_;
-};
 
 json dhd_settings() {
   return {{"dhd", {{"library", TOUCHTRIAL_FAKE_DHD}, {"workspace_mm", {160, 160, 110}}}}};
@@ -73,14 +30,20 @@ std::string recorded_stroke() {
   return csv.str();
 }
 
+/// A test of the simulated device that somebody has to end.
+struct EndlessTest : DeviceFolder {
+  EndlessTest() { REQUIRE(program.says("wall  ")); }
+  ChildProcess program = start("test simulated --seconds 3000");
+};
+
+/// What `device accept` prints before its first run.
+constexpr const char* kFirstPrompt = "no force acts";
+
 }  // namespace
 
 TEST_CASE("device test goes from wall to texture in one run, and the hand stays on the plane") {
-  const DeviceFolder folder;
-  const ProgramResult result = folder.run("test", {"simulated", "--seconds", "2", "--json"});
-  INFO(result.errors);
-  REQUIRE(result.exit_code == 0);
-  const json test = json::parse(result.output);
+  const json test =
+      json::parse(succeeded(DeviceFolder().device("test simulated --seconds 2 --json")).output);
   CHECK(test.at("driver") == "simulated");
   CHECK(test.at("scheduling").at("policy").is_string());
   CHECK(test.at("scheduling").at("memory_locked").is_boolean());
@@ -102,103 +65,69 @@ TEST_CASE("device test goes from wall to texture in one run, and the hand stays 
   CHECK(test.at("fault_record") == "");
 }
 
-TEST_CASE("device test refuses durations and rates that are no numbers") {
-  for (const std::string option : {"--seconds", "--rate"}) {
-    const ProgramResult result = DeviceFolder().run("test", {"simulated", option, "nan"});
-    CHECK(result.exit_code == 2);
-    CHECK(line_count(result.errors) == 1);
-    CHECK_THAT(result.errors, holds_text(option) && holds_text("nan"));
-  }
-}
-
 TEST_CASE("device test can show only the wall, and has a summary for people") {
   const ProgramResult result =
-      DeviceFolder().run("test", {"simulated", "--seconds", "0.5", "--wall-only"});
-  REQUIRE(result.exit_code == 0);
-  CHECK_THAT(result.output, holds_text("wall") && holds_text("late:") && holds_text("time was up"));
-  CHECK(result.output.find("texture") == std::string::npos);
+      succeeded(DeviceFolder().device("test simulated --seconds 0.5 --wall-only"));
+  CHECK_THAT(result.output, holds_text("wall") && holds_text("late:") &&
+                                holds_text("time was up") && !holds_text("texture"));
 }
 
 TEST_CASE("device test --watch shows readings without a force") {
+  const DeviceFolder folder;
   const ProgramResult result =
-      DeviceFolder().run("test", {"simulated", "--watch", "--seconds", "0.5", "--json"});
-  INFO(result.errors);
-  REQUIRE(result.exit_code == 0);
+      succeeded(folder.device("test simulated --watch --seconds 0.5 --json"));
   const json phases = json::parse(result.output).at("phases");
   REQUIRE(phases.size() == 1);
   CHECK(phases.at(0).at("phase") == "watch");
   CHECK(phases.at(0).at("ticks") > 0);
   CHECK(phases.at(0).at("greatest_force_n") == 0.0);
-  CHECK(DeviceFolder().run("test", {"simulated", "--watch", "--wall-only"}).exit_code == 2);
+  check_refused(folder.device("test simulated --watch --wall-only"), 2, {});
 }
 
-TEST_CASE("device test ends at the letter q on a pipe, and not at the pipe's end") {
-  const DeviceFolder folder;
-  ChildProcess quit = folder.start("test", {"simulated", "--seconds", "3000"});
-  REQUIRE(quit.says("wall  "));
-  quit.write("q");
-  CHECK(quit.finish() == 0);
-  CHECK_THAT(quit.output(), holds_text("stopped by q"));
-
-  ChildProcess at_end = folder.start("test", {"simulated", "--seconds", "3000"});
-  at_end.close_input();
-  REQUIRE(at_end.says("wall  "));
-  at_end.send_signal(SIGTERM);
-  CHECK(at_end.finish() == 128 + SIGTERM);
-}
-
-TEST_CASE("device test releases the force at a space, and still reports the run") {
-  const DeviceFolder folder;
-  ChildProcess test = folder.start("test", {"simulated", "--seconds", "3000"});
-  REQUIRE(test.says("wall  "));
-  test.write(" ");
-  CHECK(test.finish() == 0);
-  CHECK_THAT(test.output(), holds_text("let go on request"));
+TEST_CASE("device test ends at q and releases the force at a space, and reports the run") {
+  const auto [key, end] = GENERATE(
+      table<const char*, const char*>({{"q", "stopped by q"}, {" ", "let go on request"}}));
+  EndlessTest test;
+  test.program.write(key);
+  CHECK(test.program.finish() == 0);
+  CHECK_THAT(test.program.output(), holds_text(end));
 }
 
 TEST_CASE("device test that a signal ends says so, and exits with the code that a shell expects") {
   const auto [signal, name] =
       GENERATE(table<int, std::string>({{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}}));
-  const DeviceFolder folder;
-  ChildProcess test = folder.start("test", {"simulated", "--seconds", "3000"});
-  REQUIRE(test.says("wall  "));
-  test.send_signal(signal);
-  CHECK(test.finish() == 128 + signal);
-  CHECK_THAT(test.output(), holds_text("stopped by " + name) && holds_text("the force is zero"));
-  CHECK_FALSE(std::filesystem::exists(folder.path("device-test-simulated-fault.csv")));
+  EndlessTest test;
+  test.program.close_input();  // which ends nothing
+  test.program.send_signal(signal);
+  CHECK(test.program.finish() == 128 + signal);
+  CHECK_THAT(test.program.output(),
+             holds_text("stopped by " + name) && holds_text("the force is zero"));
+  CHECK_FALSE(fs::exists(test.in("device-test-simulated-fault.csv")));
 }
 
 TEST_CASE("device test replays the recording that the settings name, to its end") {
   const DeviceFolder folder(json{{"replay", {{"trace", "stroke.csv"}}}});
-  replace_file(folder.path("stroke.csv"), recorded_stroke());
-  const ProgramResult result = folder.run("test", {"replay", "--seconds", "600", "--json"});
-  INFO(result.errors);
-  REQUIRE(result.exit_code == 0);
-  const json test = json::parse(result.output);
+  replace_file(folder.path() / "stroke.csv", recorded_stroke());
+  const json test =
+      json::parse(succeeded(folder.device("test replay --seconds 600 --json")).output);
   CHECK(test.at("run").at("end") == "hand_stopped");
   CHECK(test.at("run").at("contact_s") > 0.0);
   REQUIRE(test.at("phases").size() == 1);
   CHECK(std::abs(test.at("phases").at(0).at("greatest_force_n").get<double>() - 0.4) < 1e-9);
 }
 
-TEST_CASE("device test refuses what it cannot open with one line and a remedy") {
+TEST_CASE("device test refuses what it cannot open or read with one line and a remedy") {
   const DeviceFolder folder;
-  const ProgramResult unknown = folder.run("test", {"simulatd"});
-  CHECK(unknown.exit_code == 2);
-  CHECK(line_count(unknown.errors) == 1);
-  CHECK_THAT(unknown.errors, holds_text("did you mean simulated?"));
-  const ProgramResult no_recording = folder.run("test", {"replay"});
-  CHECK(no_recording.exit_code != 0);
-  CHECK(line_count(no_recording.errors) == 1);
-  CHECK_THAT(no_recording.errors, holds_text("replay.trace"));
+  check_refused(folder.device("test simulatd"), 2, {"did you mean simulated?"});
+  check_refused(folder.device("test replay"), 1, {"replay.trace"});
+  check_refused(folder.device("test simulated --seconds nan"), 2, {"--seconds", "nan"});
+  check_refused(folder.device("test simulated --rate nan"), 2, {"--rate", "nan"});
 }
 
 TEST_CASE("device list and test use the library that the settings name") {
   const DeviceFolder folder(dhd_settings());
-  const ProgramResult list = folder.run("list", {"--json"});
-  REQUIRE(list.exit_code == 0);
   bool found = false;
-  const json devices = json::parse(list.output).at("devices");
+  const json devices = json::parse(succeeded(folder.device("list --json")).output).at("devices");
   for (const json& device : devices) {
     if (device.at("driver") != "dhd") continue;
     found = true;
@@ -207,75 +136,60 @@ TEST_CASE("device list and test use the library that the settings name") {
   }
   CHECK(found);
 
-  ChildProcess test = folder.start("test", {"dhd", "--seconds", "0.5"});
+  ChildProcess test = folder.start("test dhd --seconds 0.5");
   const int code = test.finish();
   INFO(test.output());
   CHECK_THAT(test.output(), holds_text("dhd: omega.3, serial 4242"));
-  const bool stood_still =
-      code == 1 && std::filesystem::exists(folder.path("device-test-dhd-fault.csv"));
+  const bool stood_still = code == 1 && fs::exists(folder.in("device-test-dhd-fault.csv"));
   CHECK((code == 0 || stood_still));
 }
 
 TEST_CASE("device initialise asks before it moves anything, and says who must do it instead") {
-  const ProgramResult simulated = DeviceFolder().run("initialise", {"simulated"});
-  CHECK(simulated.exit_code == 2);
-  CHECK_THAT(simulated.errors, holds_text("touchtrial device test simulated"));
-
   const DeviceFolder folder(dhd_settings());
-  const ProgramResult unasked = folder.run("initialise", {"dhd"});
-  CHECK(unasked.exit_code == 2);
-  CHECK_THAT(unasked.errors, holds_text("the arm will move") && holds_text("--yes"));
-  const ProgramResult by_hand = folder.run("initialise", {"dhd", "--yes"});
-  CHECK(by_hand.exit_code == 1);
-  CHECK(line_count(by_hand.errors) == 1);
-  CHECK_THAT(by_hand.errors, holds_text("libdrd.so") && holds_text("rest position"));
+  check_refused(folder.device("initialise simulated"), 2, {"touchtrial device test simulated"});
+  check_refused(folder.device("initialise dhd"), 2, {"the arm will move", "--yes"});
+  check_refused(folder.device("initialise dhd --yes"), 1, {"libdrd.so", "rest position"});
 }
 
 TEST_CASE("device accept requires motors, every answer, and a device or a model") {
-  const ProgramResult simulated = DeviceFolder().run("accept", {"simulated"});
-  CHECK(simulated.exit_code == 1);
-  CHECK(line_count(simulated.errors) == 1);
-  CHECK_THAT(simulated.errors, holds_text("no motors"));
-  const ProgramResult nothing = DeviceFolder().run("accept", {});
-  CHECK(nothing.exit_code == 2);
-  CHECK_THAT(nothing.errors, holds_text("--emulate"));
-
   const DeviceFolder folder(dhd_settings());
-  const ProgramResult silent = folder.run("accept", {"dhd"});
+  const ProgramResult simulated = folder.device("accept simulated");
+  CHECK(simulated.exit_code == 1);
+  CHECK_THAT(simulated.errors, holds_text("no motors"));
+  check_refused(folder.device("accept"), 2, {"--emulate"});
+  check_refused(folder.device("accept --emulate falcn"), 2, {"falcn"});
+  const ProgramResult silent = folder.device("accept dhd");
   CHECK(silent.exit_code == 2);
-  CHECK_THAT(silent.errors, holds_text("no force acts") && holds_text("answer every prompt"));
-  CHECK_FALSE(std::filesystem::exists(folder.path("dhd-certificate.json")));
+  CHECK_THAT(silent.errors, holds_text(kFirstPrompt) && holds_text("answer every prompt"));
+  CHECK_FALSE(fs::exists(folder.in("dhd-certificate.json")));
 }
 
 TEST_CASE("device accept ends at q and at a signal, without a certificate") {
   const DeviceFolder folder(dhd_settings());
-  ChildProcess quit = folder.start("accept", {"dhd"});
-  REQUIRE(quit.says("no force acts"));
+  ChildProcess quit = folder.start("accept dhd");
+  REQUIRE(quit.says(kFirstPrompt));
   quit.write("q\n");
   CHECK(quit.finish() == 1);
   CHECK_THAT(quit.output(), holds_text("nothing was written"));
-  ChildProcess ended = folder.start("accept", {"dhd"});
-  REQUIRE(ended.says("no force acts"));
-  ended.send_signal(SIGTERM);
-  CHECK(ended.finish() == 128 + SIGTERM);
-
-  ChildProcess signalled = folder.start("accept", {"dhd"});
-  REQUIRE(signalled.says("no force acts"));
-  signalled.send_signal(SIGINT);
-  CHECK(signalled.finish() == 128 + SIGINT);
-  CHECK_THAT(signalled.output(), holds_text("stopped by SIGINT"));
-  CHECK_FALSE(std::filesystem::exists(folder.path("dhd-certificate.json")));
+  for (const int signal : {SIGTERM, SIGINT}) {
+    ChildProcess ended = folder.start("accept dhd");
+    REQUIRE(ended.says(kFirstPrompt));
+    ended.send_signal(signal);
+    CHECK(ended.finish() == 128 + signal);
+    CHECK_THAT(ended.output(), holds_text("stopped by SIG"));
+  }
+  CHECK_FALSE(fs::exists(folder.in("dhd-certificate.json")));
 }
 
 TEST_CASE("device accept that leaves out every step writes a certificate that fails") {
   const DeviceFolder folder(dhd_settings());
-  ChildProcess skipping = folder.start("accept", {"dhd"});
+  ChildProcess skipping = folder.start("accept dhd");
   skipping.write("s\nwhat\ns\ns\n");
   const int code = skipping.finish();
   INFO(skipping.output());
   CHECK(code == 1);
   CHECK_THAT(skipping.output(), holds_text("press Enter to go on") && holds_text("Failed."));
-  const json certificate = json::parse(text_of(read_file(folder.path("dhd-certificate.json"))));
+  const json certificate = folder.object_in("dhd-certificate.json");
   CHECK(certificate.at("passed") == false);
   CHECK(certificate.at("driver") == "dhd");
   CHECK(certificate.at("emulated") == "");
@@ -284,9 +198,7 @@ TEST_CASE("device accept that leaves out every step writes a certificate that fa
 
 TEST_CASE("device accept takes what was typed before a prompt for no answer to it") {
   const DeviceFolder folder(dhd_settings());
-  std::vector<std::string> words =
-      folder.words("accept", {"dhd", "--certificate", folder.path("c.json").string()});
-  TerminalRun run(words);
+  TerminalRun run(folder.words("accept dhd --certificate @c.json"));
   run.answer("[Enter, s, q] ", "s\r\r\r\r\r\r\r");
   run.answer("no force acts for 12 s", "q");
   CHECK(run.finish() == 1);
@@ -299,8 +211,7 @@ TEST_CASE("device accept takes what was typed before a prompt for no answer to i
 bool only_a_fresh_enter_begins_the_run() {
   constexpr const char* kLiveLine = "us late";
   const DeviceFolder folder(dhd_settings());
-  TerminalRun run(folder.words(
-      "accept", {"dhd", "--skip", "rest", "--certificate", folder.path("c.json").string()}));
+  TerminalRun run(folder.words("accept dhd --skip rest --certificate @c.json"));
   run.hold_enter("[Enter, s, q] ", std::chrono::seconds(2));
   std::chrono::milliseconds pause{1500};
   if (run.shows(kLiveLine, pause)) return false;
@@ -324,11 +235,8 @@ TEST_CASE("device accept takes a held Enter for one answer, and goes on at a fre
 }
 
 TEST_CASE("device accept loses no answer after that to a reset") {
-  const json settings = {{"openhaptics", {{"library", TOUCHTRIAL_FAKE_HD}}}};
-  const DeviceFolder folder(settings);
-  std::vector<std::string> words = folder.words("accept", {"openhaptics"});
-  words.insert(words.begin(), TOUCHTRIAL_PROGRAM);
-  ChildProcess program(words, {"FAKE_HD_NEEDS_RESET=1"}, folder.path("").string());
+  const DeviceFolder folder(json{{"openhaptics", {{"library", TOUCHTRIAL_FAKE_HD}}}});
+  ChildProcess program = folder.start("accept openhaptics", {"FAKE_HD_NEEDS_RESET=1"});
   program.write("\nq\n");
   program.close_input();
   CHECK(program.finish() == 1);
@@ -337,180 +245,140 @@ TEST_CASE("device accept loses no answer after that to a reset") {
 
 TEST_CASE("device accept refuses files that it could not write before it opens the device") {
   const DeviceFolder folder(dhd_settings());
-  const auto refusal = [&](const std::string& certificate) {
-    const ProgramResult result =
-        folder.run("accept", {"dhd", "--certificate", folder.path(certificate).string()});
-    CHECK(result.exit_code != 0);
-    CHECK(line_count(result.errors) == 1);
-    return result.errors;
+  const auto accept = [&](const std::string& certificate) {
+    return folder.device("accept dhd --certificate @" + certificate);
   };
-  CHECK_THAT(refusal("c.html"), holds_text("ends in .json"));
-  CHECK_THAT(refusal("no/such/c.json"), holds_text("cannot be written"));
-  make_folder(folder.path("c.html"));
-  CHECK_THAT(refusal("c.json"), holds_text("c.html") && holds_text("--certificate"));
-  CHECK_THAT(refusal("devices.json"), holds_text("is read by this acceptance"));
-  CHECK_FALSE(std::filesystem::exists(folder.path("c.json.trial")));
+  check_refused(accept("c.html"), 2, {"ends in .json"});
+  check_refused(accept("no/such/c.json"), 1, {"cannot be written"});
+  make_folder(folder.path() / "c.html");
+  check_refused(accept("c.json"), 1, {"c.html", "--certificate"});
+  check_refused(accept("devices.json"), 2, {"is read by this acceptance"});
+  CHECK_FALSE(fs::exists(folder.in("c.json.trial")));
 }
 
 TEST_CASE("device accept never replaces the model that it rehearses on") {
   const DeviceFolder folder;
   const std::string model = R"({"name": "modelled", "mass_kg": 0.1, "max_force_n": 4})";
-  replace_file(folder.path("mine-model.json"), model);
-  const ProgramResult result =
-      folder.run("accept", {"--emulate", folder.path("mine-model.json").string(), "--certificate",
-                            folder.path("mine-certificate.json").string()});
-  CHECK(result.exit_code == 2);
-  CHECK_THAT(result.errors, holds_text("mine-model.json") && holds_text("--certificate"));
-  CHECK(text_of(read_file(folder.path("mine-model.json"))) == model);
+  replace_file(folder.path() / "mine-model.json", model);
+  check_refused(
+      folder.device("accept --emulate @mine-model.json --certificate @mine-certificate.json"), 2,
+      {"mine-model.json", "--certificate"});
+  CHECK(content(folder.in("mine-model.json")) == model);
   // Nor does a rehearsal on what a rehearsal wrote.
-  ChildProcess first = folder.start("accept", {"--emulate", "mine-model.json", "--skip", "push"});
-  CHECK(first.finish() == 1);
-  const auto written = read_file(folder.path("emulated-modelled-model.json"));
-  CHECK(json::parse(text_of(written)).at("name") == "emulated-modelled");
-  ChildProcess second =
-      folder.start("accept", {"--emulate", "emulated-modelled-model.json", "--skip", "push"});
-  CHECK(second.finish() == 1);
-  CHECK(read_file(folder.path("emulated-modelled-model.json")) == written);
+  CHECK(folder.start("accept --emulate mine-model.json --skip push").finish() == 1);
+  const std::string written = content(folder.in("emulated-modelled-model.json"));
+  CHECK(json::parse(written).at("name") == "emulated-modelled");
+  CHECK(folder.start("accept --emulate emulated-modelled-model.json --skip push").finish() == 1);
+  CHECK(content(folder.in("emulated-modelled-model.json")) == written);
 }
 
 TEST_CASE("device accept rehearses on a device model, and says that it proves no device") {
   const DeviceFolder folder;
-  ChildProcess rehearsal = folder.start("accept", {"--emulate", "falcon"});
+  ChildProcess rehearsal = folder.start("accept --emulate falcon");
   const int code = rehearsal.finish();
   INFO(rehearsal.output());
   REQUIRE(code == 0);
   CHECK_THAT(rehearsal.output(),
              holds_text("REHEARSAL") && holds_text("proves the program, not a device"));
-  const json certificate =
-      json::parse(text_of(read_file(folder.path("emulated-falcon-certificate.json"))));
+  json certificate = folder.object_in("emulated-falcon-certificate.json");
   CHECK(certificate.at("emulated") == "falcon");
   CHECK(certificate.at("passed") == true);
-  const std::string page = text_of(read_file(folder.path("emulated-falcon-certificate.html")));
-  CHECK_THAT(page, holds_text("REHEARSAL") && holds_text("<svg"));
-  const json model = json::parse(text_of(read_file(folder.path("emulated-falcon-model.json"))));
+  CHECK_THAT(content(folder.in("emulated-falcon-certificate.html")),
+             holds_text("REHEARSAL") && holds_text("<svg"));
+  const json model = folder.object_in("emulated-falcon-model.json");
   CHECK(model.at("mass_kg") > 0.1);
   CHECK(model.at("provenance").at("mass_kg").at("confidence") == "derived");
 
   // As if a device had passed: a later acceptance keeps this certificate, and one that failed is
   // not kept.
-  json passed = certificate;
-  passed["emulated"] = "";
+  certificate["emulated"] = "";
   const DeviceFolder lab(dhd_settings());
-  replace_file(lab.path("dhd-certificate.json"), passed.dump());
+  replace_file(lab.path() / "dhd-certificate.json", certificate.dump());
   for (int time = 0; time < 2; ++time) {
-    ChildProcess skipping = lab.start("accept", {"dhd"});
+    ChildProcess skipping = lab.start("accept dhd");
     skipping.write("s\ns\ns\n");
     CHECK(skipping.finish() == 1);
-    CHECK(json::parse(text_of(read_file(lab.path("dhd-certificate.json")))).at("passed") == false);
-    CHECK(text_of(read_file(lab.path("dhd-certificate.json.old"))) == passed.dump());
+    CHECK(lab.object_in("dhd-certificate.json").at("passed") == false);
+    CHECK(content(lab.in("dhd-certificate.json.old")) == certificate.dump());
   }
 }
 
 TEST_CASE("device accept refuses a broken emulated device, and takes an accelerometer's record") {
   const DeviceFolder folder;
-  replace_file(folder.path("broken.json"),
+  replace_file(folder.path() / "broken.json",
                R"({"name": "broken", "mass_kg": 0.1, "coulomb_n": 0.2, "max_force_n": 4,
                    "planted": {"force_sign_scale": [1, 1, -1]}})");
   std::string record = "time_s,x_m_s2,y_m_s2,z_m_s2\n";
-  for (int i = 0; i < 2000; ++i)
+  for (int i = 0; i < 2000; ++i) {
     record += std::to_string(0.001 * i) + ",0,0," + std::to_string(i % 2) + "\n";
-  replace_file(folder.path("wall.csv"), record);
-  const std::vector<std::string> words = {
-      "--emulate",       folder.path("broken.json").string(),
-      "--accelerometer", "wall=" + folder.path("wall.csv").string(),
-      "--certificate",   folder.path("c.json").string(),
-      "--json"};
-  const ProgramResult result = folder.run("accept", words);
+  }
+  replace_file(folder.path() / "wall.csv", record);
+  const ProgramResult result =
+      folder.device("accept --emulate @broken.json --accelerometer wall=" + folder.in("wall.csv") +
+                    " --certificate @c.json --json");
   INFO(result.errors);
   CHECK(result.exit_code == 1);
   const json certificate = json::parse(result.output);
   CHECK(certificate.at("passed") == false);
   CHECK_THAT(certificate.at("failures").dump(), holds_text("axis z") && holds_text("sign"));
   CHECK(certificate.at("spectra").at(0).at("felt") == "wall");
-  CHECK(folder.run("accept", {"--emulate", "falcn"}).exit_code == 2);
 }
-
-namespace {
-
-json bring_up_file(const DeviceFolder& folder) {
-  return json::parse(text_of(read_file(folder.path("dhd-bring-up.json"))));
-}
-
-}  // namespace
 
 TEST_CASE("device bring-up keeps what it has at q and at a signal, and says what was not done") {
-  for (const bool by_signal : {false, true}) {
-    const DeviceFolder folder(dhd_settings());
-    ChildProcess program = folder.start("bring-up", {"omega"});
-    REQUIRE(program.says("let go of it slowly"));
-    program.write("s\n");
-    REQUIRE(program.says("carry it straight up"));
-    if (by_signal) {
-      program.send_signal(SIGTERM);
-    } else {
-      program.write("q\n");
-    }
-    const int code = program.finish();
-    INFO(program.output());
-    CHECK(code == (by_signal ? 128 + SIGTERM : 1));
-    const json file = bring_up_file(folder);
-    CHECK(file.at("driver") == "dhd");
-    CHECK(file.at("ended") == "stopped");
-    CHECK(file.at("library") == "3.17.5.1900");
-    CHECK(file.at("steps").at("rest") == "left_out");
-    CHECK(file.at("steps").at("ways") == "interrupted");
-    CHECK(file.at("steps").at("questions") == "not_reached");
-    CHECK(file.dump().find("4242") == std::string::npos);
+  const bool by_signal = GENERATE(false, true);
+  const DeviceFolder folder(dhd_settings());
+  ChildProcess program = folder.start("bring-up omega");
+  REQUIRE(program.says("let go of it slowly"));
+  program.write("s\n");
+  REQUIRE(program.says("carry it straight up"));
+  if (by_signal) {
+    program.send_signal(SIGTERM);
+  } else {
+    program.write("q\n");
   }
+  const int code = program.finish();
+  INFO(program.output());
+  CHECK(code == (by_signal ? 128 + SIGTERM : 1));
+  const json file = folder.object_in("dhd-bring-up.json");
+  CHECK(file.at("driver") == "dhd");
+  CHECK(file.at("ended") == "stopped");
+  CHECK(file.at("library") == "3.17.5.1900");
+  CHECK(file.at("steps").at("rest") == "left_out");
+  CHECK(file.at("steps").at("ways") == "interrupted");
+  CHECK(file.at("steps").at("questions") == "not_reached");
+  CHECK(file.dump().find("4242") == std::string::npos);
 }
 
 TEST_CASE("device bring-up keeps what it has at the end of the input") {
   const DeviceFolder folder(dhd_settings());
-  const ProgramResult result =
-      folder.run("bring-up", {"dhd", "--out", folder.path("dhd-bring-up.json").string()});
-  CHECK(result.exit_code == 2);
-  CHECK(bring_up_file(folder).at("steps").at("rest") == "interrupted");
+  CHECK(folder.device("bring-up dhd --out @dhd-bring-up.json").exit_code == 2);
+  CHECK(folder.object_in("dhd-bring-up.json").at("steps").at("rest") == "interrupted");
 }
 
 TEST_CASE("device bring-up that leaves out every step asks its questions, and its file is read") {
   const DeviceFolder folder(dhd_settings());
-  ChildProcess skipping = folder.start("bring-up", {"dhd"});
+  ChildProcess skipping = folder.start("bring-up dhd");
   // rest, three ways, six pushes, steps, range, program, cable; then five questions.
   skipping.write("s\ns\ns\ns\ns\ns\ns\ns\ns\ns\ns\ns\ns\ns\n9\n1\n\n\n\n\n");
   const int code = skipping.finish();
   INFO(skipping.output());
   CHECK(code == 0);
-  CHECK(bring_up_file(folder).at("ended") == "complete");
-  const ProgramResult read = run_touchtrial(
-      folder.path(""),
-      {"device", "bring-up", "--json", "--read", folder.path("dhd-bring-up.json").string()});
-  CHECK(read.exit_code == 0);
-  const json verdict = json::parse(read.output);
+  CHECK(folder.object_in("dhd-bring-up.json").at("ended") == "complete");
+  const json verdict = folder.printed("device bring-up --json --read @dhd-bring-up.json");
   // The library's file is named libfake_dhd.so.
   CHECK_FALSE(verdict.at("stand_in").get<std::string>().empty());
   CHECK(verdict.at("settled") == json::array());
   CHECK(verdict.at("open").size() > 5);
   // Nothing is replaced.
-  const ProgramResult again =
-      folder.run("bring-up", {"dhd", "--out", folder.path("dhd-bring-up.json").string()});
-  CHECK(again.exit_code == 1);
-  CHECK_THAT(again.errors, holds_text("--out"));
-  replace_file(folder.path("hostile.json"), R"({"kind": "touchtrial device bring-up 1"})");
-  const ProgramResult hostile = run_touchtrial(
-      folder.path(""), {"device", "bring-up", "--read", folder.path("hostile.json").string()});
-  CHECK(hostile.exit_code == 2);
-  CHECK(line_count(hostile.errors) == 1);
+  check_refused(folder.device("bring-up dhd --out @dhd-bring-up.json"), 1, {"--out"});
+  replace_file(folder.path() / "hostile.json", R"({"kind": "touchtrial device bring-up 1"})");
+  check_refused(folder.type("device bring-up --read @hostile.json"), 2, {"hostile.json"});
 }
 
 TEST_CASE("device bring-up lists the facts that nobody has verified") {
   const DeviceFolder folder;
-  const ProgramResult all =
-      run_touchtrial(folder.path(""), {"device", "bring-up", "--facts", "--json"});
-  CHECK(all.exit_code == 0);
-  CHECK(json::parse(all.output).size() == 4);
-  const ProgramResult one =
-      run_touchtrial(folder.path(""), {"device", "bring-up", "omega", "--facts", "--json"});
-  CHECK(json::parse(one.output).size() == 1);
-  CHECK(folder.run("bring-up", {"simulated"}).exit_code == 1);
-  CHECK(folder.run("bring-up", {}).exit_code == 2);
+  CHECK(folder.printed("device bring-up --facts --json").size() == 4);
+  CHECK(folder.printed("device bring-up omega --facts --json").size() == 1);
+  CHECK(folder.device("bring-up simulated").exit_code == 1);
+  CHECK(folder.device("bring-up").exit_code == 2);
 }

@@ -1,12 +1,7 @@
 // The investigator's key: checked, printed, restored, copied and protected, as a user does it.
 #include "app/study_folder.hpp"
-#include "app/touchtrial_process.hpp"
 #include "protocols/design/key_protection.hpp"
 #include "support/catch.hpp"
-
-#include <filesystem>
-#include <string>
-#include <vector>
 
 #include <SQLiteCpp/Database.h>
 
@@ -28,10 +23,6 @@ struct KeyedStudy : StudyFolder {
                                   const std::string& input = "") const {
     words.insert(words.begin(), "key");
     return run_touchtrial(path(), words, input);
-  }
-  /// One rehearsed session in study.db, under the prepared study's secrets.
-  void rehearse() const {
-    done("run @cloths.json --participant P01 --db @study.db --subject @quick.json --headless");
   }
 };
 
@@ -58,7 +49,7 @@ TEST_CASE("key check proves a prepared study, and says where the key lies") {
 TEST_CASE(
     "the key that was named is found again by its database's place, and nothing else is kept") {
   const KeyedStudy study;
-  study.rehearse();
+  succeeded(study.session("P01"));
   const fs::path memory = study.path() / ".config/touchtrial/keys.json";
   fs::create_directory(study.path() / "stick");
   fs::rename(study.path() / "cloths.key", study.path() / "stick/cloths.key");
@@ -120,7 +111,7 @@ TEST_CASE("key check counts the sessions of a database that the key opens") {
 
 TEST_CASE("a key that was lost is made again from its printed sheet") {
   const KeyedStudy study;
-  study.rehearse();
+  succeeded(study.session("P01"));
   const std::string key = content(study.path() / "cloths.key");
   const std::string station = content(study.path() / "cloths.station");
   study.done("key sheet @cloths.key --out @sheet.txt");
@@ -189,9 +180,7 @@ TEST_CASE("a protected key opens with its passphrase alone, and stays protected"
                            study.in("two.txt"), "--passphrase-file", one}));
   CHECK_THAT(checked.output, holds_text("(protected by a passphrase)"));
 
-  json changed = study_of("classification");
-  changed["trials"]["repeats"] = 3;
-  replace_file(study.path() / "cloths.json", changed.dump());
+  study.write_study({{"trials", {{"repeats", 3}}}});
   succeeded(study.run({"prepare", study.in("cloths.json"), "--passphrase-file", one}));
   int keys = 0;
   for (const auto& file : fs::directory_iterator(study.path())) {
@@ -225,13 +214,8 @@ TEST_CASE("run and prepare open a station's file with its passphrase") {
   const KeyedStudy study;
   const std::string station = study.in("cloths.station");
   succeeded(study.key({"protect", station, "--new-passphrase-file", study.in("two.txt")}));
-  const std::vector<std::string> session = {
-      "run",       study.in("cloths.json"), "--participant", "P01", "--db", study.in("study.db"),
-      "--subject", study.in("quick.json"),  "--headless"};
-  check_refused(study.run(session), 1, {"cloths.station", "--passphrase-file"});
-  std::vector<std::string> opened = session;
-  opened.insert(opened.end(), {"--passphrase-file", study.in("two.txt")});
-  const ProgramResult done = succeeded(study.run(opened));
+  check_refused(study.session("P01"), 1, {"cloths.station", "--passphrase-file"});
+  succeeded(study.session("P01", {"--passphrase-file", study.in("two.txt")}));
   check_refused(study.type("prepare @cloths.json"), 1, {"cloths.station"});
   study.done("prepare @cloths.json --passphrase-file @two.txt");
   CHECK(design::is_protected(station));
@@ -241,18 +225,13 @@ TEST_CASE("a protected file of another station is refused before its passphrase 
   const KeyedStudy study;
   study.done("plan @cloths.json --participants 4 --stations 2");
   const std::string other = study.in("cloths.2.station");
-  const auto session = [&](const std::string& participant, const std::string& station) {
-    return study.run({"run", study.in("cloths.json"), "--participant", participant, "--db",
-                      study.in("study.db"), "--subject", study.in("quick.json"), "--headless",
-                      "--station", station});
-  };
-  succeeded(session("P01", "1"));
+  succeeded(study.session("P01", {"--station", "1"}));
   succeeded(study.key({"protect", other, "--new-passphrase-file", study.in("two.txt")}));
-  check_refused(session("P02", "2"), 1,
+  check_refused(study.session("P02", {"--station", "2"}), 1,
                 {"cloths.2.station: is not the file of station 1", "study.db"});
-  const std::vector<std::string> note = {
-      "note", study.in("study.db"), "--participant", "P01", "came late", "--station-file", other};
-  check_refused(study.run(note), 1, {"cloths.2.station: is not the file of station 1"});
+  check_refused(
+      study.type("note @study.db --participant P01 late --station-file @cloths.2.station"), 1,
+      {"cloths.2.station: is not the file of station 1"});
   // Without a name, the file of the database's own station is found, whatever lies beside it.
   study.done("note @study.db --participant P01 late");
   fs::copy_file(other, study.path() / "cloths.1.station", fs::copy_options::overwrite_existing);

@@ -15,9 +15,8 @@ struct SimulatedStations : StudyFolder {
   SimulatedStations() {
     succeeded(simulate("one.db"));
     for (const std::string first : {"1", "3"}) {
-      succeeded(StudyFolder::run({"simulate", in("cloths.json"), "--participants", "2",
-                                  "--first-participant", first, "--seed", "3", "--db",
-                                  in("s" + first + ".db"), "--subject", in("quick.json")}));
+      done("simulate @cloths.json --participants 2 --seed 3 --subject @quick.json --db @s" + first +
+           ".db --first-participant " + first);
     }
   }
   [[nodiscard]] ProgramResult merge(const std::vector<std::string>& names,
@@ -135,17 +134,12 @@ TEST_CASE("the summary of a merge says what was collected, and where the key is"
 
 TEST_CASE("a merged study has the consents beside its stations, and nothing else of the people") {
   const SimulatedStations study;
-  const auto consent = [&](const std::string& database, const std::string& participant,
-                           const std::string& version) {
-    return run_touchtrial(study.path(),
-                          {"consent", study.in(database), "--participant", participant, "--version",
-                           version, "--details", "-"},
-                          "age: 34\ncontact: ann@example.org\n")
-        .exit_code;
-  };
-  REQUIRE(consent("s1.db", "P001", "3") == 0);
-  REQUIRE(consent("s1.db", "P001", "4") == 0);
-  REQUIRE(consent("s3.db", "P003", "4") == 0);
+  for (const std::string consent :
+       {"@s1.db --participant P001 --version 3", "@s1.db --participant P001 --version 4",
+        "@s3.db --participant P003 --version 4"}) {
+    succeeded(study.type("consent " + consent + " --details -", {},
+                         "age: 34\ncontact: ann@example.org\n"));
+  }
   const ProgramResult ran =
       succeeded(study.merge({"s1.db", "s3.db", "s1.db"}, {"-o", study.in("C.db"), "--json"}));
   CHECK(json::parse(ran.output).at("consents") == 3);
@@ -161,14 +155,9 @@ TEST_CASE("a merged study has the consents beside its stations, and nothing else
 
 TEST_CASE("a database that lacks what the head file beside it knows is not merged") {
   const StudyFolder study;
-  const auto simulate = [&](const std::string& name, const std::string& participants,
-                            const std::string& first) {
-    succeeded(study.run({"simulate", study.in("cloths.json"), "--participants", participants,
-                         "--first-participant", first, "--seed", "3", "--db", study.in(name),
-                         "--subject", study.in("quick.json")}));
-  };
-  simulate("s1.db", "2", "1");
-  simulate("s3.db", "2", "3");
+  const std::string two = "simulate @cloths.json --participants 2 --seed 3 --subject @quick.json ";
+  study.done(two + "--db @s1.db");
+  study.done(two + "--first-participant 3 --db @s3.db");
   fs::copy_file(study.in("s1.db"), study.in("older.db"));
   study.done("note @s1.db --participant P001 late");
   fs::copy_file(study.in("older.db"), study.in("s1.db"), fs::copy_options::overwrite_existing);
@@ -188,19 +177,16 @@ TEST_CASE("the key of a study with people is not copied") {
   study.done("prepare @cloths.json");
   int number = 0;
   for (const std::string participant : {"P01", "P02"}) {
-    succeeded(
-        study.run({"run", study.in("cloths.json"), "--participant", participant, "--enrolment",
-                   std::to_string(++number), "--db", study.in(participant + ".db"), "--subject",
-                   study.in("quick.json"), "--headless", "--yes"}));
+    succeeded(study.session(participant, {"--enrolment", std::to_string(++number), "--yes"},
+                            participant + ".db"));
     fs::copy_file(study.in("cloths.key"), study.in(participant + ".db.key"));
   }
   const ProgramResult ran = study.done("merge @P01.db @P02.db -o @C.db");
   CHECK(ran.output.find("name it with --key") != std::string::npos);
   CHECK_FALSE(fs::exists(study.in("C.db.key")));
   study.done("verify @C.db --key @cloths.key");
-  check_refused(
-      study.type("run @cloths.json --participant P03 --db @C.db --subject @quick.json --headless"),
-      1, {"takes no sessions of its own; run them in this station's database"});
+  check_refused(study.session("P03", {}, "C.db"), 1,
+                {"takes no sessions of its own; run them in this station's database"});
 }
 
 TEST_CASE("a merge of an altered station file ends like its verification") {
@@ -217,9 +203,7 @@ TEST_CASE("a merge of an altered station file ends like its verification") {
 
 TEST_CASE("a refused merge names the file, and makes none") {
   const SimulatedStations study;
-  json other = study_of("classification");
-  other["seed"] = 12;
-  replace_file(study.in("other.json"), other.dump());
+  study.write_study({{"seed", 12}}, "other.json");
   study.done("simulate @other.json --participants 1 --subject @quick.json --db @other.db");
   check_refused(study.merge({"s1.db", "other.db"}, {"-o", study.in("C.db")}), 1,
                 {"they are of different studies"});

@@ -2,10 +2,6 @@
 #include "app/study_folder.hpp"
 #include "support/catch.hpp"
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
 using namespace touchtrial;
 
 namespace {

@@ -1,29 +1,19 @@
-#include "app/touchtrial_process.hpp"
-#include "core/files.hpp"
-#include "core/random.hpp"
-#include "engine/image_file.hpp"
+#include "app/study_folder.hpp"
 #include "support/catch.hpp"
-#include "support/temp_folder.hpp"
+#include "support/environment.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <string>
 #include <string_view>
-#include <vector>
-
-#include <nlohmann/json.hpp>
 
 using namespace touchtrial;
 using namespace touchtrial::engine;
-using nlohmann::json;
-namespace fs = std::filesystem;
 
 namespace {
 
-std::string noisy_picture(const fs::path& path, int side) {
+/// Writes a blotchy picture.
+void write_noise(const fs::path& path, int side) {
   RandomStream random(4, "paper test");
   GreyImage image(side, side);
   for (int y = 0; y < side; ++y) {
@@ -34,11 +24,6 @@ std::string noisy_picture(const fs::path& path, int side) {
   }
   make_folder(path.parent_path());
   write_png(path, image);
-  return path.string();
-}
-
-std::string text_in(const fs::path& path) {
-  return text_of(read_file(path));
 }
 
 /// The number at a place of a text, and moves the place behind it.
@@ -88,7 +73,7 @@ bool is_same(const std::string& a, const std::string& b) {
 /// An SVG file without the pixels in it. Of what gnuplot draws, whose lines depend on its version,
 /// only the title and the description.
 std::string words_in_svg(const fs::path& path) {
-  std::string svg = text_in(path);
+  std::string svg = content(path);
   svg.erase(std::min(svg.find("</desc>"), svg.size()));
   constexpr std::string_view kPixels = "base64,";
   for (std::size_t at = 0; (at = svg.find(kPixels, at)) != std::string::npos;) {
@@ -98,37 +83,20 @@ std::string words_in_svg(const fs::path& path) {
   return svg;
 }
 
-/// While it lives, programs that are started find no other program.
-class NoOtherPrograms {
- public:
-  explicit NoOtherPrograms(const fs::path& folder) : before_(std::getenv("PATH")) {
-    setenv("PATH", folder.c_str(), 1);
-  }
-  ~NoOtherPrograms() { setenv("PATH", before_.c_str(), 1); }
-  NoOtherPrograms(const NoOtherPrograms&) = delete;
-  NoOtherPrograms& operator=(const NoOtherPrograms&) = delete;
-
- private:
-  std::string before_;
-};
-
 }  // namespace
 
 TEST_CASE("docs/paper.md is what paper prints for the program's own pictures") {
-  const TempFolder folder;
-  const fs::path out = folder.path() / "paper";
-  const ProgramResult result = run_touchtrial(folder.path(), {"paper", "--out", out.string()});
-  INFO(result.errors);
-  REQUIRE(result.exit_code == 0);
+  const ProgramFolder folder;
+  folder.done("paper --out @paper");
   const fs::path docs = fs::path(TOUCHTRIAL_SOURCE_DIR) / "docs";
-  const std::string printed = text_in(out / "paper.md");
-  const std::string kept = text_in(docs / "paper.md");
+  const std::string printed = content(folder.in("paper/paper.md"));
+  const std::string kept = content(docs / "paper.md");
   const std::size_t same = first_difference(printed, kept);
   INFO("printed: " << printed.substr(same, 200)
                    << "\nin docs: " << kept.substr(std::min(same, kept.size()), 200)
                    << "\nrun touchtrial paper --out DIR and copy paper.md and images into docs");
   CHECK(is_same(printed, kept));
-  for (const fs::directory_entry& one : fs::directory_iterator(out / "images")) {
+  for (const fs::directory_entry& one : fs::directory_iterator(folder.in("paper/images"))) {
     INFO(one.path());
     CHECK(is_same(words_in_svg(one.path()), words_in_svg(docs / "images" / one.path().filename())));
     CHECK_THAT(kept, holds_text("(images/" + one.path().filename().string() + ")"));
@@ -136,65 +104,50 @@ TEST_CASE("docs/paper.md is what paper prints for the program's own pictures") {
 }
 
 TEST_CASE("paper measures given pictures, twice into one folder with the same result") {
-  const TempFolder folder;
-  const std::string first = noisy_picture(folder.path() / "a" / "wall.png", 170);
-  const std::string second = noisy_picture(folder.path() / "b" / "wall.png", 161);
-  const fs::path out = folder.path() / "out";
-  const std::vector<std::string> arguments = {"paper", first, second, "--out", out.string()};
-  const ProgramResult result = run_touchtrial(folder.path(), arguments);
-  INFO(result.errors);
-  REQUIRE(result.exit_code == 0);
-  const std::string page = text_in(out / "paper.html");
-  const json numbers = json::parse(text_in(out / "paper.json"));
+  const ProgramFolder folder;
+  write_noise(folder.path() / "a" / "wall.png", 170);
+  write_noise(folder.path() / "b" / "wall.png", 161);
+  const std::string paper = "paper @a/wall.png @b/wall.png --out @out";
+  folder.done(paper);
+  const std::string page = content(folder.in("out/paper.html"));
+  const json numbers = json::parse(content(folder.in("out/paper.json")));
   REQUIRE(numbers["pictures"].size() == 2);
-  CHECK(numbers["pictures"][0]["picture"] == first);
-  CHECK(numbers["pictures"][1]["picture"] == second);
+  CHECK(numbers["pictures"][0]["picture"] == folder.in("a/wall.png"));
+  CHECK(numbers["pictures"][1]["picture"] == folder.in("b/wall.png"));
   CHECK(numbers["pictures"][1]["orders"].size() == 19);
   CHECK(numbers["compared"].size() == 2);
   CHECK_THAT(page, holds_text("data:image/png;base64,"));
-  CHECK(run_touchtrial(folder.path(), arguments).exit_code == 0);
-  CHECK(text_in(out / "paper.html") == page);
+  folder.done(paper);
+  CHECK(content(folder.in("out/paper.html")) == page);
 }
 
 TEST_CASE("paper without gnuplot warns and describes the figure that it cannot draw") {
-  const TempFolder folder;
-  const std::string picture = noisy_picture(folder.path() / "wall.png", 161);
-  const fs::path out = folder.path() / "out";
-  const NoOtherPrograms none(folder.path());
-  const ProgramResult result =
-      run_touchtrial(folder.path(), {"paper", picture, "--out", out.string()});
-  CHECK(result.exit_code == 0);
+  const ProgramFolder folder;
+  write_noise(folder.path() / "wall.png", 161);
+  const EnvironmentVariable no_programs("PATH", folder.path().c_str());
+  const ProgramResult result = folder.done("paper @wall.png --out @out");
   CHECK(line_count(result.errors) == 1);
   CHECK_THAT(result.errors, holds_text("gnuplot"));
-  CHECK_THAT(text_in(out / "paper.md"), holds_text("Not drawn: Entropy and MS-SSIM"));
+  CHECK_THAT(content(folder.in("out/paper.md")), holds_text("Not drawn: Entropy and MS-SSIM"));
 }
 
 TEST_CASE("paper refuses bad pictures and folders in one line, and writes nothing") {
-  const TempFolder folder;
-  const std::string good = noisy_picture(folder.path() / "good.png", 161);
+  const ProgramFolder folder;
+  write_noise(folder.path() / "good.png", 161);
   write_png(folder.path() / "pixel.png", GreyImage(1, 1, 9));
   replace_file(folder.path() / "text.png", "no picture");
-  const auto refusal = [&](std::vector<std::string> arguments, int code) {
-    arguments.insert(arguments.begin(), "paper");
-    const ProgramResult result = run_touchtrial(folder.path(), arguments);
-    CHECK(result.exit_code == code);
-    CHECK(line_count(result.errors) == 1);
-    CHECK(result.output.empty());
-    return result.errors;
-  };
-  const std::string out = (folder.path() / "out").string();
-  const auto picture = [&](const char* name) { return (folder.path() / name).string(); };
-  CHECK_THAT(refusal({good, picture("none.png"), "--out", out}, 1), holds_text("none.png"));
-  CHECK_THAT(refusal({picture("text.png"), "--out", out}, 1), holds_text("text.png"));
-  CHECK_THAT(refusal({picture("pixel.png"), "--out", out}, 1),
-             holds_text("pixel.png: has 1 x 1 px; MS-SSIM needs at least 161"));
-  CHECK_THAT(refusal({good}, 2), holds_text("--out"));
-  CHECK_FALSE(fs::exists(out));
-  CHECK_THAT(refusal({good, "--out", picture("text.png")}, 1), holds_text("is no folder"));
+  check_refused(folder.type("paper @good.png @none.png --out @out"), 1, {"none.png"});
+  check_refused(folder.type("paper @text.png --out @out"), 1, {"text.png"});
+  check_refused(folder.type("paper @pixel.png --out @out"), 1,
+                {"pixel.png: has 1 x 1 px; MS-SSIM needs at least 161"});
+  check_refused(folder.type("paper @good.png"), 2, {"--out"});
+  CHECK_FALSE(fs::exists(folder.in("out")));
+  check_refused(folder.type("paper @good.png --out @text.png"), 1, {"is no folder"});
   make_folder(folder.path() / "mine");
-  replace_file(folder.path() / "mine" / "paper.md", "my own paper");
-  CHECK_THAT(refusal({good, "--out", picture("mine")}, 1), holds_text("paper.md: exists already"));
-  CHECK(text_in(folder.path() / "mine" / "paper.md") == "my own paper");
-  replace_file(folder.path() / "mine" / "paper.json", "[\"not ours\"]");
-  CHECK_THAT(refusal({good, "--out", picture("mine")}, 1), holds_text("exists already"));
+  replace_file(folder.path() / "mine/paper.md", "my own paper");
+  const std::string into_mine = "paper @good.png --out @mine";
+  check_refused(folder.type(into_mine), 1, {"paper.md: exists already"});
+  CHECK(content(folder.in("mine/paper.md")) == "my own paper");
+  replace_file(folder.path() / "mine/paper.json", "[\"not ours\"]");
+  check_refused(folder.type(into_mine), 1, {"exists already"});
 }

@@ -9,67 +9,41 @@ using namespace touchtrial;
 
 namespace {
 
-using Words = std::vector<std::string>;
-
 /// A power run of the small study, fast enough for a test.
-Words power_of(const StudyFolder& study, const Words& more) {
-  Words words = {"power",          study.in("cloths.json"),
-                 "--subject",      study.in("quick.json"),
-                 "--runs",         "120",
-                 "--seed",         "5",
-                 "--explorations", "10",
-                 "--trainings",    "2"};
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
-ProgramResult run_power(const StudyFolder& study, const Words& more) {
-  return study.run(power_of(study, more));
-}
-
-const Words kSizes = {"--participants", "3,5"};
-
-Words with_sizes(const Words& more) {
-  Words words = kSizes;
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
+ProgramResult power(const StudyFolder& study, const std::string& more,
+                    const std::string& runs = "120", const std::string& seed = "5") {
+  return study.type("power @cloths.json --subject @quick.json --explorations 10 --trainings 2 " +
+                    more + " --runs " + runs + " --seed " + seed);
 }
 
 }  // namespace
 
 TEST_CASE("power prints the same numbers with any number of threads") {
   const StudyFolder study;
-  const ProgramResult one = succeeded(run_power(study, with_sizes({"--jobs", "1", "--json"})));
-  const ProgramResult two = run_power(study, with_sizes({"--jobs", "3", "--json"}));
-  INFO(two.errors);
+  const ProgramResult one = succeeded(power(study, "--participants 3,5 --jobs 1 --json"));
+  const ProgramResult two = succeeded(power(study, "--participants 3,5 --jobs 3 --json"));
   CHECK(one.output == two.output);
   const json report = json::parse(one.output);
   CHECK(report.at("simulated") == true);
   CHECK(report.at("simulated_on") == "ideal device (no such device is sold)");
   CHECK(report.at("sizes").size() == 2);
   CHECK(report.at("sizes").at(0).at("type_one_error").at("runs") == 120);
-  const ProgramResult text = run_power(study, kSizes);
-  CHECK_THAT(text.output,
+  CHECK_THAT(power(study, "--participants 3,5").output,
              Catch::Matchers::StartsWith("simulated on: ideal device (no such device is sold)\n"
                                          "SIMULATED: power given the assumed sensitivity"));
 }
 
 TEST_CASE("power refuses invalid arguments in one line") {
   const StudyFolder study;
-  check_refused(run_power(study, {"--participants", "1"}), 2, {"--participants", "1"});
-  check_refused(run_power(study, {"--participants", "8,8"}), 2, {"8 is given twice"});
-  check_refused(run_power(study, {"--participants", "1000000000"}), 2, {"1000000000"});
-  check_refused(run_power(study, {"--participants", "99999999999999999999"}), 2,
-                {"--participants"});
-  check_refused(run_power(study, {"--participants", "eight"}), 2, {"--participants"});
-  check_refused(run_power(study, {"--participants", "8,,12"}), 2, {"--participants"});
-  check_refused(run_power(study, {"--participants", "-8"}), 2, {});
-  for (const char* runs : {"0", "-1", "1.5", "1000000000", "many"}) {
-    Words words = power_of(study, kSizes);
-    words[5] = runs;
-    check_refused(study.run(words), 2, {"--runs"});
+  for (const std::string sizes :
+       {"1", "8,8", "1000000000", "99999999999999999999", "eight", "8,,12", "-8"}) {
+    INFO(sizes);
+    check_refused(power(study, "--participants " + sizes), 2, {"--participants"});
   }
-  check_refused(run_power(study, {"--methods", "adaptive,edge"}), 2, {"--methods"});
+  for (const char* runs : {"0", "-1", "1.5", "1000000000", "many"}) {
+    check_refused(power(study, "--participants 3,5", runs), 2, {"--runs"});
+  }
+  check_refused(power(study, "--methods adaptive,edge"), 2, {"--methods"});
   check_refused(study.type("power"), 2, {"STUDY"});
   check_refused(study.type("power @none.json"), 2, {"none.json"});
 }

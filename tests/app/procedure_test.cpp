@@ -2,14 +2,9 @@
 #include "app/study_folder.hpp"
 #include "support/catch.hpp"
 
-#include <string>
-#include <vector>
-
 using namespace touchtrial;
 
 namespace {
-
-using Words = std::vector<std::string>;
 
 /// A study of one or two thresholds, short enough to be simulated in a test.
 struct ThresholdFolder : StudyFolder {
@@ -27,29 +22,24 @@ struct ThresholdFolder : StudyFolder {
     replace_file(path() / "quick.json", R"({"feature_noise": 0.05, "training_passes": 2})");
   }
 
-  [[nodiscard]] ProgramResult procedure(const Words& more) const {
-    return type("procedure @detection.json", more);
+  [[nodiscard]] ProgramResult procedure(const std::string& options) const {
+    return type("procedure @detection.json " + options);
   }
-  [[nodiscard]] ProgramResult power(const Words& more) const {
-    return type("power @detection.json --subject @quick.json --runs 50", more);
+  [[nodiscard]] ProgramResult power(const std::string& options) const {
+    return type("power @detection.json --subject @quick.json --runs 50 " + options);
+  }
+  [[nodiscard]] ProgramResult procedure_of(const std::string& answers) const {
+    return procedure("--answers '" + answers + "'");
   }
 };
-
-void check_line(const ProgramResult& result, const Words& says) {
-  INFO(result.errors);
-  CHECK(result.exit_code == 2);
-  CHECK(result.output.empty());
-  CHECK(line_count(result.errors) == 1);
-  for (const std::string& word : says) CHECK_THAT(result.errors, holds_text(word));
-}
 
 }  // namespace
 
 TEST_CASE("procedure shows the levels for a list of answers") {
   const ThresholdFolder study;
-  const ProgramResult first = succeeded(study.procedure({"--answers", ""}));
+  const ProgramResult first = succeeded(study.procedure_of(""));
   CHECK(json::parse(first.output).at("levels").size() == 1);
-  const ProgramResult more = succeeded(study.procedure({"--answers", "1,0,1", "--json"}));
+  const ProgramResult more = succeeded(study.procedure("--answers 1,0,1 --json"));
   const json walk = json::parse(more.output);
   CHECK(walk.at("track") == "granite");
   CHECK(walk.at("answers") == json::array({1, 0, 1}));
@@ -60,25 +50,20 @@ TEST_CASE("procedure shows the levels for a list of answers") {
 
 TEST_CASE("procedure refuses what is no answer, too many of them, and other studies") {
   const ThresholdFolder study;
-  check_line(study.procedure({"--answers", "1,2"}), {"--answers", "\"2\"", "1 for right"});
-  check_line(study.procedure({"--answers", "1,"}), {"--answers", "is not an answer"});
-  check_line(study.procedure({"--answers", "1,1,1,1,1,1,1"}), {"7 answers", "6 trials"});
-  check_line(study.procedure({"--answers", "1", "--track", "2"}), {"--track", "has 1 track"});
-  check_line(study.procedure({}), {"--answers"});
-  check_line(study.type("procedure @cloths.json --answers 1"),
-             {"cloths.json", "classification", "protocol threshold"});
+  check_refused(study.procedure_of("1,2"), 2, {"--answers", "\"2\"", "1 for right"});
+  check_refused(study.procedure_of("1,"), 2, {"--answers", "is not an answer"});
+  check_refused(study.procedure_of("1,1,1,1,1,1,1"), 2, {"7 answers", "6 trials"});
+  check_refused(study.procedure("--answers 1 --track 2"), 2, {"--track", "has 1 track"});
+  check_refused(study.procedure(""), 2, {"--answers"});
+  check_refused(study.type("procedure @cloths.json --answers 1"), 2,
+                {"cloths.json", "classification", "protocol threshold"});
 }
 
 TEST_CASE("power plans the thresholds of a study, the same with any number of threads") {
   const ThresholdFolder study(2);
-  const Words plan = {"--pool",  "10", "--participants", "4,6", "--trials", "4,6",
-                      "--width", "3",  "--json"};
-  Words two = plan;
-  two.insert(two.end(), {"--jobs", "2"});
-  Words one = plan;
-  one.insert(one.end(), {"--jobs", "1"});
-  const ProgramResult result = succeeded(study.power(two));
-  CHECK(study.power(one).output == result.output);
+  const std::string plan = "--pool 10 --participants 4,6 --trials 4,6 --width 3 --json --jobs ";
+  const ProgramResult result = succeeded(study.power(plan + "2"));
+  CHECK(study.power(plan + "1").output == result.output);
   const json report = json::parse(result.output);
   CHECK(report.at("simulated") == true);
   REQUIRE(report.at("trials").size() == 2);
@@ -90,20 +75,20 @@ TEST_CASE("power plans the thresholds of a study, the same with any number of th
   CHECK(size.at("participants") == 6);
   CHECK(size.at("thresholds").at(0).at("within").at("samples") == 50);
   CHECK(size.at("difference").at("power").at("samples") == 50);
-  const ProgramResult text = study.power({"--pool", "10", "--participants", "4"});
+  const ProgramResult text = study.power("--pool 10 --participants 4");
   CHECK_THAT(text.output, Catch::Matchers::StartsWith("simulated on: ideal device") &&
                               holds_text("Difference: granite less linen"));
 }
 
 TEST_CASE("power refuses options of other protocols, and impossible ones of thresholds") {
   const ThresholdFolder study;
-  check_line(study.power({"--margin", "0.1"}), {"--margin", "not for studies of the protocol"});
-  check_line(study.power({"--explorations", "10"}), {"--explorations"});
-  check_line(study.power({"--difference", "1,2"}), {"--difference", "1 threshold"});
-  check_line(study.power({"--difference", "1"}), {"--difference"});
-  check_line(study.power({"--trials", "6,6"}), {"--trials"});
-  check_line(study.power({"--trials", "6,x"}), {"--trials", "'x'"});
-  check_line(study.power({"--width", "0"}), {"--width"});
-  check_line(study.type("power @cloths.json --width 1"),
-             {"--width", "is for studies of the protocol threshold"});
+  check_refused(study.power("--margin 0.1"), 2, {"--margin", "not for studies of the protocol"});
+  check_refused(study.power("--explorations 10"), 2, {"--explorations"});
+  check_refused(study.power("--difference 1,2"), 2, {"--difference", "1 threshold"});
+  check_refused(study.power("--difference 1"), 2, {"--difference"});
+  check_refused(study.power("--trials 6,6"), 2, {"--trials"});
+  check_refused(study.power("--trials 6,x"), 2, {"--trials", "'x'"});
+  check_refused(study.power("--width 0"), 2, {"--width"});
+  check_refused(study.type("power @cloths.json --width 1"), 2,
+                {"--width", "is for studies of the protocol threshold"});
 }

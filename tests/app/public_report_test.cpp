@@ -2,9 +2,6 @@
 #include "app/study_folder.hpp"
 #include "support/catch.hpp"
 
-#include <string>
-#include <vector>
-
 using namespace touchtrial;
 
 namespace {

@@ -1,16 +1,13 @@
 // The commands that record something beside the sessions: consent, exclude, replace, withdraw,
 // note.
 #include "app/study_folder.hpp"
-#include "app/touchtrial_process.hpp"
 #include "core/cipher.hpp"
-#include "core/files.hpp"
 #include "protocols/design/deviation_codes.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/personal_data.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
-#include "support/temp_folder.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -40,18 +37,19 @@ struct PeopleStudy : StudyFolder {
     if (command == "withdraw" || command == "unblind") arguments.emplace_back("--yes");
     return StudyFolder::run(arguments);
   }
-  /// One more participant, in virtual time.
-  [[nodiscard]] ProgramResult session_of(const std::string& participant) const {
-    return StudyFolder::run({"run", in("cloths.json"), "--participant", participant, "--db",
-                             in("study.db"), "--subject", in("quick.json"), "--headless"});
+  void put_person(const std::string& participant, const std::string& contact) const {
+    PersonalData(personal_data_path(database()))
+        .put({.participant = participant,
+              .consent_version = "3",
+              .consented_utc = "2026-01-02T03:04:05Z",
+              .age = 30,
+              .gender = "",
+              .contact = contact});
   }
   [[nodiscard]] StudyStore store() const {
     return StudyStore::open(database(), StudyStore::Access::read_only);
   }
-  [[nodiscard]] json quality() const {
-    const ProgramResult reported = done("report @study.db --json");
-    return json::parse(reported.output);
-  }
+  [[nodiscard]] json quality() const { return printed("report @study.db --json"); }
   [[nodiscard]] json outcomes() const {
     done("close @study.db --yes");
     done("unblind @study.db --reason test --yes");
@@ -61,8 +59,7 @@ struct PeopleStudy : StudyFolder {
 
 /// Checks that there are as many answers as trials, and that all checks of `verify` pass.
 void check_verified(const PeopleStudy& study) {
-  const ProgramResult verified = study.done("verify @study.db --json");
-  CHECK(json::parse(verified.output).at("complete") == true);
+  CHECK(study.printed("verify @study.db --json").at("complete") == true);
 }
 
 SessionRow session_of(const StudyStore& store, const std::string& participant) {
@@ -110,13 +107,10 @@ Opened opened_by(const StudyStore& store, int session, const SecretKey& key) {
 }
 
 TEST_CASE("consent is recorded in a file of its own that only its owner may read") {
-  const TempFolder folder;
-  const fs::path database = folder.path() / "study.db";
-  succeeded(run_touchtrial(folder.path(),
-                           {"consent", database.string(), "--participant", "P07", "--version",
-                            "2026-03", "--details", "-"},
-                           "age: 34\n\ngender:  woman \n"));
-  const fs::path file = personal_data_path(database);
+  const ProgramFolder folder;
+  succeeded(folder.type("consent @study.db --participant P07 --version 2026-03 --details -", {},
+                        "age: 34\n\ngender:  woman \n"));
+  const fs::path file = personal_data_path(folder.in("study.db"));
   CHECK((fs::status(file).permissions() & fs::perms(0777)) == fs::perms(0600));
   const auto record = PersonalData(file).find("P07");
   REQUIRE(record);
@@ -124,76 +118,60 @@ TEST_CASE("consent is recorded in a file of its own that only its owner may read
   CHECK(record->age == 34);
   CHECK(record->gender == "woman");
   CHECK(record->contact.empty());
-  CHECK_FALSE(fs::exists(database));
+  CHECK_FALSE(fs::exists(folder.in("study.db")));
 }
 
 TEST_CASE("every consent is kept and shown, and an id that may be mistyped is asked about") {
-  const TempFolder folder;
-  const std::string database = (folder.path() / "study.db").string();
-  const auto consent = [&](const std::vector<std::string>& more, const std::string& input = "") {
-    std::vector<std::string> arguments = {"consent", database};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_touchtrial(folder.path(), arguments, input);
+  const ProgramFolder folder;
+  const auto consent = [&](const std::string& options, const std::string& input = "") {
+    return folder.type("consent @study.db " + options, {}, input);
   };
-  const auto signed_by = [&](const std::string& id, const std::string& version) {
-    return consent({"--participant", id, "--version", version});
-  };
-  const std::string details = "age: 34\ncontact: ann@example.org\n";
-  succeeded(consent({"--participant", "P07", "--version", "1", "--details", "-"}, details));
-  const ProgramResult again = succeeded(signed_by("P07", "2"));
-  CHECK(again.output.find("the consent to version 1 of 20") != std::string::npos);
-  CHECK(again.output.find("are kept") != std::string::npos);
-  const auto record = PersonalData(personal_data_path(database)).find("P07");
+  succeeded(
+      consent("--participant P07 --version 1 --details -", "age: 34\ncontact: ann@example.org\n"));
+  const ProgramResult again = succeeded(consent("--participant P07 --version 2"));
+  CHECK_THAT(again.output, holds_text("the consent to version 1 of 20") && holds_text("are kept"));
+  const auto record = PersonalData(personal_data_path(folder.in("study.db"))).find("P07");
   REQUIRE(record);
   CHECK(record->consent_version == "2");
   CHECK(record->age == 34);
   CHECK(record->contact == "ann@example.org");
 
-  const json shown = json::parse(consent({"--participant", "P07", "--show", "--json"}).output);
+  const json shown = folder.printed("consent @study.db --participant P07 --show --json");
   REQUIRE(shown["consents"].size() == 2);
   CHECK(shown["consents"][0]["version"] == "1");
   CHECK(shown["consents"][0]["age"] == 34);
   CHECK(shown["consents"][1]["age"].is_null());
-  CHECK(consent({"--participant", "P07", "--show"}).output.find("ann@example.org") !=
-        std::string::npos);
-  check_refused(consent({"--participant", "P08", "--show"}), 1, {"no consent of participant P08"});
+  CHECK_THAT(consent("--participant P07 --show").output, holds_text("ann@example.org"));
+  check_refused(consent("--participant P08 --show"), 1, {"no consent of participant P08"});
 
   // The next in the row is nobody's slip; other capitals, zeros and swapped digits may be one.
-  succeeded(signed_by("P08", "2"));
-  for (const char* const id : {"p07", "P7", "P007", "P70", "PP07", "O07"}) {
-    check_refused(signed_by(id, "2"), 2, {id, "P07", "--yes"});
+  succeeded(consent("--participant P08 --version 2"));
+  for (const std::string id : {"p07", "P7", "P007", "P70", "PP07", "O07"}) {
+    check_refused(consent("--version 2 --participant " + id), 2, {id, "P07", "--yes"});
   }
-  CHECK(signed_by("P70", "2").exit_code == 2);
-  succeeded(consent({"--participant", "P70", "--version", "2", "--yes"}));
-  const ProgramResult list = consent({"--list"});
-  CHECK(list.output.find("P70") != std::string::npos);
-  CHECK(list.output.find("ann@") == std::string::npos);
-  const json people = json::parse(consent({"--list", "--json"}).output)["participants"];
+  succeeded(consent("--participant P70 --version 2 --yes"));
+  CHECK_THAT(consent("--list").output, holds_text("P70") && !holds_text("ann@"));
+  const json people = folder.printed("consent @study.db --list --json")["participants"];
   REQUIRE(people.size() == 3);
   CHECK(people[0]["consents"] == 2);
   CHECK(people[0]["version"] == "2");
-  check_refused(consent({"--version", "2"}), 2, {"--participant"});
-  check_refused(
-      run_touchtrial(folder.path(), {"consent", (folder.path() / "none.db").string(), "--list"}), 1,
-      {"none.db: there is neither such a database nor a consent beside it"});
+  check_refused(consent("--version 2"), 2, {"--participant"});
+  check_refused(folder.type("consent @none.db --list"), 1,
+                {"none.db: there is neither such a database nor a consent beside it"});
 }
 
 TEST_CASE("consent refuses details that it cannot read") {
-  const TempFolder folder;
-  const fs::path database = folder.path() / "study.db";
-  const auto refused = [&](const std::vector<std::string>& more, const std::string& input,
-                           const std::vector<std::string>& words) {
-    std::vector<std::string> arguments = {"consent", database.string(), "--participant",
-                                          "P07",     "--version",       "1"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    check_refused(run_touchtrial(folder.path(), arguments, input), 2, words);
-    CHECK_FALSE(fs::exists(personal_data_path(database)));
-  };
-  refused({"--details", "-"}, "", {"standard input", "empty"});
-  refused({"--details", "-"}, "age: 34\nphone: 12345\n", {"line 2", "contact: WORDS"});
-  refused({"--details", "-"}, "age: 34\nage: 35\n", {"line 2", "twice"});
-  refused({"--details", "-"}, "age: old\n", {"age", "0 to 130"});
-  refused({"--details", "-"}, "age: 131\n", {"age", "0 to 130"});
+  const ProgramFolder folder;
+  const auto [input, words] = GENERATE(table<std::string, std::vector<std::string>>(
+      {{"", {"standard input", "empty"}},
+       {"age: 34\nphone: 12345\n", {"line 2", "contact: WORDS"}},
+       {"age: 34\nage: 35\n", {"line 2", "twice"}},
+       {"age: old\n", {"age", "0 to 130"}},
+       {"age: 131\n", {"age", "0 to 130"}}}));
+  check_refused(
+      folder.type("consent @study.db --participant P07 --version 1 --details -", {}, input), 2,
+      words);
+  CHECK_FALSE(fs::exists(personal_data_path(folder.in("study.db"))));
 }
 
 TEST_CASE("a limit on the size of files ends a command in one line, and the database holds") {
@@ -284,8 +262,8 @@ TEST_CASE("a replacement inherits the participant's enrolment number and its sch
   check_refused(study.people("replace", "P002", {"--with", "P022", "--reason", "ill"}), 1,
                 {"already replaced by participant P021"});
 
-  succeeded(study.session_of("P005"));
-  succeeded(study.session_of("P021"));
+  succeeded(study.session("P005"));
+  succeeded(study.session("P021"));
   const StudyStore store = study.store();
   CHECK(session_of(store, "P005").enrolment == 5);
   CHECK(session_of(store, "P021").enrolment == 2);
@@ -303,12 +281,7 @@ TEST_CASE(
     "a withdrawal while others read goes as far as it can, says what is left, and is finished") {
   const PeopleStudy study;
   const fs::path personal = personal_data_path(study.database());
-  PersonalData(personal).put({.participant = "P001",
-                              .consent_version = "3",
-                              .consented_utc = "2026-01-02T03:04:05Z",
-                              .age = 30,
-                              .gender = "",
-                              .contact = "somebody@example.org"});
+  study.put_person("P001", "somebody@example.org");
   const Bytes wrapped =
       study.store().wrapped_key(session_of(study.store(), "P001").session).value();
   const std::vector<std::string> reason = {"--erase", "--reason", "asked to"};
@@ -326,12 +299,7 @@ TEST_CASE(
   CHECK(files_with(study, wrapped).empty());
   CHECK(session_of(study.store(), "P001").withdrawn);
 
-  PersonalData(personal).put({.participant = "P002",
-                              .consent_version = "3",
-                              .consented_utc = "2026-01-02T03:04:05Z",
-                              .age = {},
-                              .gender = "",
-                              .contact = "else@example.org"});
+  study.put_person("P002", "else@example.org");
   {
     SQLite::Database reader(personal.string(), SQLite::OPEN_READONLY);
     reader.exec("BEGIN");
@@ -350,7 +318,7 @@ TEST_CASE("a withdrawal says and records what it could not erase") {
   const PeopleStudy study;
   const ProgramResult withdrawn =
       study.people("withdraw", "P001", {"--erase", "--reason", "asked to"});
-  CHECK(withdrawn.output.find("every other copy of the database") != std::string::npos);
+  CHECK_THAT(withdrawn.output, holds_text("destroy every other copy of the database"));
   CHECK(withdrawn.output.find("run `touchtrial sync` now") != std::string::npos);
   const WithdrawalBody body = withdrawal_from_json(study.store().events(0).back().body);
   CHECK(body.kept == Kept::safety_record);
@@ -362,14 +330,8 @@ TEST_CASE("a withdrawal says and records what it could not erase") {
 
 TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") {
   const PeopleStudy study;
-  succeeded(study.session_of("P005"));
-  PersonalData(personal_data_path(study.database()))
-      .put({.participant = "P005",
-            .consent_version = "3",
-            .consented_utc = "2026-01-02T03:04:05Z",
-            .age = 30,
-            .gender = "",
-            .contact = "somebody@example.org"});
+  succeeded(study.session("P005"));
+  study.put_person("P005", "somebody@example.org");
   const design::StudyKey investigator = key_of(study);
   const int session = session_of(study.store(), "P005").session;
   const Bytes wrapped = study.store().wrapped_key(session).value();
@@ -421,11 +383,9 @@ TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") 
   CHECK(study.outcomes().at("trials") == 4 * 6);
 }
 
-TEST_CASE("a participant who withdrew can be replaced, and copies must be destroyed") {
+TEST_CASE("a participant who withdrew can be replaced") {
   const PeopleStudy study;
-  const ProgramResult withdrawn =
-      succeeded(study.people("withdraw", "P001", {"--erase", "--reason", "asked to"}));
-  CHECK(withdrawn.output.find("destroy every other copy of the database") != std::string::npos);
+  succeeded(study.people("withdraw", "P001", {"--erase", "--reason", "asked to"}));
   check_refused(study.people("withdraw", "P001", {"--erase", "--reason", "again"}), 1,
                 {"P001", "already withdrawn"});
   check_refused(study.people("withdraw", "P9", {"--erase", "--reason", "who"}), 1,
@@ -435,8 +395,8 @@ TEST_CASE("a participant who withdrew can be replaced, and copies must be destro
   check_refused(study.people("withdraw", "P002", {"--reason", "asked to"}), 2,
                 {"--keep-data", "--erase"});
   succeeded(study.people("replace", "P001", {"--with", "P031", "--reason", "place is wanted"}));
-  check_refused(study.session_of("P001"), 1, {"P001"});
-  succeeded(study.session_of("P031"));
+  check_refused(study.session("P001"), 1, {"P001"});
+  succeeded(study.session("P031"));
   CHECK(session_of(study.store(), "P031").enrolment == 1);
   check_verified(study);
   const json sessions = study.quality().at("sessions");
@@ -478,25 +438,12 @@ TEST_CASE("the safety record of an erased person is erased by a command of its o
 
 TEST_CASE("one participant's outcomes are exported after a recorded look at them, and no others") {
   const PeopleStudy study;
-  PersonalData(personal_data_path(study.database()))
-      .put({.participant = "P002",
-            .consent_version = "3",
-            .consented_utc = "2026-01-02T03:04:05Z",
-            .age = 30,
-            .gender = "",
-            .contact = "somebody@example.org"});
-  const auto exported = [&](const std::string& folder, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"export", study.in("study.db"), "--participant", "P002",
-                                          "--out",  study.in(folder)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return study.run(arguments);
-  };
-  const std::vector<std::string> key = {"--key", study.in("study.db.key")};
-  const auto text = [&](const std::string& file) {
-    return text_of(ByteView(read_file(study.path() / file)));
-  };
-  check_refused(exported("never", key), 1, {"P002", "unblind DB --participant P002"});
-  succeeded(exported("clear", {}));
+  study.put_person("P002", "somebody@example.org");
+  const std::string export_one = "export @study.db --participant P002 --out ";
+  const auto text = [&](const std::string& file) { return content(study.path() / file); };
+  check_refused(study.type(export_one + "@never --key @study.db.key"), 1,
+                {"P002", "unblind DB --participant P002"});
+  study.done(export_one + "@clear");
   CHECK(text("clear/P002_trials.csv").find("response") == std::string::npos);
   CHECK(line_count(text("clear/P002_trials.csv")) == 1 + 6);
   CHECK(text("clear/P002_personal.csv").find("somebody@example.org") != std::string::npos);
@@ -504,7 +451,7 @@ TEST_CASE("one participant's outcomes are exported after a recorded look at them
   check_refused(study.type("unblind @study.db --participant P9 --reason x --yes"), 1,
                 {"P9", "no session"});
   study.done("unblind @study.db --participant P002 --reason 'asked for the data' --yes");
-  succeeded(exported("whole", key));
+  study.done(export_one + "@whole --key @study.db.key");
   CHECK(text("whole/P002_trials.csv").find("response") != std::string::npos);
   CHECK(text("whole/P002_trials.csv").find("P001") == std::string::npos);
   CHECK(fs::exists(study.path() / "whole/P002_events.csv"));
@@ -580,19 +527,12 @@ TEST_CASE("every command that records prints the head for the day sheet") {
 
 TEST_CASE("what cannot be undone says whom it concerns and what is lost, and is not done unasked") {
   const PeopleStudy study;
-  PersonalData(personal_data_path(study.database()))
-      .put({.participant = "P001",
-            .consent_version = "3",
-            .consented_utc = "2026-01-02T03:04:05Z",
-            .age = {},
-            .gender = "",
-            .contact = ""});
+  study.put_person("P001", "");
   const std::vector<Event> before = study.store().events(0);
-  const auto check_unasked = [&](const std::vector<std::string>& arguments,
-                                 const std::vector<std::string>& words) {
-    check_refused(study.run(arguments), 2, words);
+  const auto check_unasked = [&](const std::string& line, const std::vector<std::string>& words) {
+    check_refused(study.type(line), 2, words);
     CHECK(study.store().events(0).size() == before.size());
-    TerminalRun asked(arguments);
+    TerminalRun asked(typed_words(line, study.path()));
     asked.answer("type yes to go on: ", "y");
     CHECK(asked.finish() == 2);
     for (const std::string& word : words) {
@@ -601,19 +541,17 @@ TEST_CASE("what cannot be undone says whom it concerns and what is lost, and is 
     CHECK_THAT(asked.shown(), holds_text("not confirmed; nothing was done"));
     CHECK(study.store().events(0).size() == before.size());
   };
-  const std::string db = study.in("study.db");
-  const std::vector<std::string> erasing = {"withdraw", db,         "--participant", "P001",
-                                            "--erase",  "--reason", "asked to"};
+  const std::string erasing = "withdraw @study.db --participant P001 --erase --reason 'asked to'";
   check_unasked(erasing, {"P001", "session 1 with 6 answers", "personal data", "--yes"});
-  check_unasked({"withdraw", db, "--participant", "P002", "--keep-data", "--reason", "moves away"},
+  check_unasked("withdraw @study.db --participant P002 --keep-data --reason 'moves away'",
                 {"P002", "takes no further part", "the data stay", "--yes"});
-  check_unasked({"close", db}, {"takes no session any more", "it has 4", "--yes"});
-  check_unasked({"unblind", db, "--interim", "--reason", "look"},
+  check_unasked("close @study.db", {"takes no session any more", "it has 4", "--yes"});
+  check_unasked("unblind @study.db --interim --reason look",
                 {"every session that has ended", "--yes"});
-  check_unasked({"unblind", db, "--participant", "P003", "--reason", "look"},
+  check_unasked("unblind @study.db --participant P003 --reason look",
                 {"participant P003", "--yes"});
   CHECK(PersonalData(personal_data_path(study.database())).find("P001"));
-  TerminalRun agreed(erasing);
+  TerminalRun agreed(typed_words(erasing, study.path()));
   agreed.answer("type yes to go on: ", "yes");
   CHECK(agreed.finish() == 0);
   CHECK(session_of(study.store(), "P001").erased);
@@ -621,10 +559,9 @@ TEST_CASE("what cannot be undone says whom it concerns and what is lost, and is 
 }
 
 TEST_CASE("what is recorded is signed with a station's file or with a key, not with both") {
-  const PeopleStudy study;
-  check_refused(study.people("note", "P001",
-                             {"late", "--key", study.in("study.db.key"), "--station-file",
-                              study.in("cloths.station")}),
+  const ProgramFolder study;
+  check_refused(study.type("note @study.db --participant P001 late --key @study.db.key "
+                           "--station-file @cloths.station"),
                 2, {"--key excludes --station-file"});
 }
 
@@ -635,7 +572,7 @@ TEST_CASE("a second look at the same sessions is refused, and one at more is not
   const std::size_t events = study.store().events(0).size();
   check_refused(look(), 1, {"study.db", "nothing has been collected since the last look"});
   CHECK(study.store().events(0).size() == events);
-  succeeded(study.session_of("P005"));
+  succeeded(study.session("P005"));
   succeeded(look());
   check_verified(study);
 }

@@ -2,8 +2,6 @@
 #include "app/study_folder.hpp"
 #include "support/catch.hpp"
 
-#include <string>
-
 using namespace touchtrial;
 
 namespace {

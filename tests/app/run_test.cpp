@@ -5,10 +5,7 @@
 #include "support/child_process.hpp"
 
 #include <csignal>
-#include <filesystem>
 #include <set>
-#include <string>
-#include <vector>
 
 using namespace touchtrial;
 using namespace touchtrial::store;
@@ -93,9 +90,7 @@ TEST_CASE("run makes the database, acknowledges every response, and is refused a
 
 TEST_CASE("run asks about an id like another's, and about a number beyond the plan") {
   const StudyFolder study;
-  json file = study_of("classification");
-  file["registration"] = {{"participants", 8}, {"estimand", "mean-accuracy"}};
-  replace_file(study.path() / "cloths.json", file.dump());
+  study.write_study({{"registration", {{"participants", 8}, {"estimand", "mean-accuracy"}}}});
   const auto refused = [&](const std::string& participant, const std::vector<std::string>& more,
                            const std::string& part) {
     const ProgramResult result = run(study, participant, more);
@@ -262,9 +257,7 @@ TEST_CASE("pilot sessions and changed studies are refused") {
   succeeded(run(study, "P01"));
   check_refused(run(study, "P02", {"--pilot"}), 1, {"pilot"});
 
-  json changed = study_of("classification");
-  changed["trials"]["repeats"] = 3;
-  replace_file(study.path() / "cloths.json", changed.dump());
+  study.write_study({{"trials", {{"repeats", 3}}}});
   check_refused(run(study, "P02"), 2, {"prepare"});
 }
 

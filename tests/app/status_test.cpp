@@ -61,10 +61,8 @@ void add_session(const StudyFolder& folder, const std::string& participant, int 
 
 /// A study of two visits, a week apart, with a plan.
 void write_visits(const StudyFolder& folder, int planned) {
-  json study = study_of("classification");
-  study["visits"] = {{"count", 2}, {"least_days", 7}};
-  study["registration"] = {{"participants", planned}};
-  replace_file(folder.path() / "cloths.json", study.dump());
+  folder.write_study({{"visits", {{"count", 2}, {"least_days", 7}}},
+                      {"registration", {{"participants", planned}}}});
 }
 
 json status_of(const StudyFolder& folder, const std::vector<std::string>& more = {}) {
@@ -109,9 +107,7 @@ TEST_CASE("status of a station of several names the station, and another study i
   const std::string line = status_of(folder)["next"].back()["command"];
   CHECK(line.find(" " + folder.in("cloths.json") + " ") != std::string::npos);
   CHECK(line.ends_with(" --station right"));
-  json other = study_of("classification");
-  other["study"] = "others";
-  replace_file(folder.path() / "others.json", other.dump());
+  folder.write_study({{"study", "others"}}, "others.json");
   check_refused(folder.type("status @study.db --study @others.json"), 2, {"is the study others"});
 }
 
@@ -177,9 +173,7 @@ TEST_CASE("status proposes the visit that is due, and names it in the line to co
 
 TEST_CASE("the plan of a simulated study comes from the files beside its database") {
   const StudyFolder folder;
-  json study = study_of("classification");
-  study["registration"] = {{"participants", 6}};
-  replace_file(folder.path() / "cloths.json", study.dump());
+  folder.write_study({{"registration", {{"participants", 6}}}});
   succeeded(folder.simulate("study.db", {"--keep-blind"}));
   CHECK(status_of(folder)["planned"] == 6);
 }

@@ -8,8 +8,6 @@
 #include "support/temp_folder.hpp"
 
 #include <filesystem>
-#include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -65,11 +63,13 @@ struct ProgramFolder {
   }
   /// A line as it is typed, "close @study.db --yes": see typed_words.
   /// \param more  further words
+  /// \param input  as for run_touchtrial
   [[nodiscard]] ProgramResult type(const std::string& line,
-                                   const std::vector<std::string>& more = {}) const {
+                                   const std::vector<std::string>& more = {},
+                                   const std::string& input = "") const {
     std::vector<std::string> words = typed_words(line, path());
     words.insert(words.end(), more.begin(), more.end());
-    return run(words);
+    return run(words, input);
   }
   /// The same; fails the test unless it succeeds.
   ProgramResult done(const std::string& line, const std::vector<std::string>& more = {}) const {
@@ -93,6 +93,20 @@ struct StudyFolder : ProgramFolder {
     replace_file(path() / "cloths.json", study_of(protocol).dump());
     replace_file(path() / "quick.json",
                  R"({"feature_noise": 0.1, "explore_s": 1.5, "training_passes": 2})");
+  }
+  /// Writes the study file with these members in place of its own, or beside them.
+  void write_study(const json& members, const std::string& file = "cloths.json") const {
+    json study = study_of("classification");
+    study.update(members, true);
+    replace_file(path() / file, study.dump());
+  }
+  /// A whole session of a simulated participant, in virtual time.
+  [[nodiscard]] ProgramResult session(const std::string& participant,
+                                      const std::vector<std::string>& more = {},
+                                      const std::string& db = "study.db") const {
+    return type("run @cloths.json --participant '" + participant + "' --db @" + db +
+                    " --subject @quick.json --headless",
+                more);
   }
   ProgramResult simulate(const std::string& db, const std::vector<std::string>& more = {},
                          const std::string& seed = "3") const {

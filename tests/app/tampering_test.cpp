@@ -19,10 +19,7 @@ namespace {
 struct PreparedStudy : StudyFolder {
   PreparedStudy() {
     done("prepare @cloths.json");
-    for (const std::string participant : {"P01", "P02"}) {
-      succeeded(StudyFolder::run({"run", in("cloths.json"), "--participant", participant, "--db",
-                                  in("study.db"), "--subject", in("quick.json"), "--headless"}));
-    }
+    for (const std::string participant : {"P01", "P02"}) succeeded(session(participant));
   }
   [[nodiscard]] ProgramResult verify(const std::vector<std::string>& more = {}) const {
     return type("verify @study.db --key @cloths.key", more);

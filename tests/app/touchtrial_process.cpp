@@ -4,7 +4,6 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <thread>
 
@@ -64,6 +63,7 @@ ProgramResult run_touchtrial(const std::filesystem::path& folder,
 std::vector<std::string> typed_words(const std::string& line, const std::filesystem::path& folder) {
   std::vector<std::string> words;
   for (std::size_t at = 0; at < line.size(); ++at) {
+    if (line[at] == ' ') continue;
     const bool is_quoted = line[at] == '\'';
     const std::size_t begin = at + (is_quoted ? 1 : 0);
     at = std::min(line.find(is_quoted ? '\'' : ' ', begin), line.size());

@@ -1,13 +1,9 @@
 // Studies with several visits and groups, as the program runs them.
 #include "app/study_folder.hpp"
-#include "app/touchtrial_process.hpp"
-#include "core/files.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
 
 #include <map>
-#include <string>
-#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -15,26 +11,20 @@ namespace {
 /// A study of two visits, a week apart, and two groups.
 struct VisitFolder : StudyFolder {
   explicit VisitFolder(bool open = false) {
-    json study = study_of("classification");
-    study["visits"] = {{"count", 2}, {"least_days", 7}};
-    study["groups"] = {{"labels", {"trained", "control"}}, {"open", open}};
-    replace_file(path() / "cloths.json", study.dump());
+    write_study({{"visits", {{"count", 2}, {"least_days", 7}}},
+                 {"groups", {{"labels", {"trained", "control"}}, {"open", open}}}});
   }
   [[nodiscard]] ProgramResult visit(const std::string& participant, const std::string& number,
-                                    const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {
-        "run",  in("cloths.json"), "--participant", participant,      "--visit",   number,
-        "--db", in("study.db"),    "--subject",     in("quick.json"), "--headless"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments);
+                                    std::vector<std::string> more = {}) const {
+    more.insert(more.end(), {"--visit", number});
+    return session(participant, more);
   }
-  [[nodiscard]] ProgramResult simulate_two(const std::string& db, const std::string& first) const {
-    return run({"simulate", in("cloths.json"), "--participants", "2", "--first-participant", first,
-                "--seed", "3", "--db", in(db), "--subject", in("quick.json")});
+  void simulate_two(const std::string& db, const std::string& first) const {
+    done("simulate @cloths.json --participants 2 --seed 3 --subject @quick.json --db @" + db +
+         " --first-participant " + first);
   }
   [[nodiscard]] json checks(const std::string& db) const {
-    const ProgramResult verified = succeeded(run({"verify", in(db), "--json"}));
-    return json::parse(verified.output);
+    return printed("verify @" + db + " --json");
   }
 };
 
@@ -84,8 +74,8 @@ TEST_CASE(
 TEST_CASE("stations of a study with visits merge into what one simulation makes") {
   const VisitFolder study;
   succeeded(study.simulate("all.db"));
-  succeeded(study.simulate_two("a.db", "1"));
-  succeeded(study.simulate_two("b.db", "3"));
+  study.simulate_two("a.db", "1");
+  study.simulate_two("b.db", "3");
   const ProgramResult merged = study.done("merge @a.db @b.db --out @merged.db");
   static_cast<void>(study.checks("merged.db"));
   const auto sessions = [&](const std::string& db) {
@@ -129,8 +119,7 @@ TEST_CASE("an exclusion is of the participant, with all visits, and ends them") 
   succeeded(study.visit("P07", "2"));
   succeeded(study.visit("P08", "1"));
   for (const std::string participant : {"P07", "P08"}) {
-    succeeded(study.run(
-        {"exclude", study.in("study.db"), "--participant", participant, "--reason", "asleep"}));
+    study.done("exclude @study.db --reason asleep --participant " + participant);
   }
   const auto store =
       store::StudyStore::open(study.path() / "study.db", store::StudyStore::Access::read_only);

@@ -7,13 +7,10 @@
 #include "support/temp_folder.hpp"
 #include "windows/virtual_screen.hpp"
 
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <set>
-#include <string>
 
 namespace touchtrial {
 namespace {

@@ -8,11 +8,6 @@
 #include "stimuli/generator.hpp"
 #include "support/catch.hpp"
 
-#include <array>
-#include <memory>
-#include <string>
-#include <vector>
-
 namespace touchtrial {
 namespace {
 

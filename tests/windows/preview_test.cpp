@@ -10,11 +10,8 @@
 #include "windows/virtual_screen.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
-#include <string>
 #include <variant>
-#include <vector>
 
 namespace touchtrial {
 namespace {

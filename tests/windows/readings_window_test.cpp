@@ -13,8 +13,6 @@
 #include "windows/virtual_screen.hpp"
 
 #include <chrono>
-#include <functional>
-#include <memory>
 
 namespace touchtrial {
 namespace {

@@ -12,12 +12,7 @@
 #include "windows/virtual_screen.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <cstdlib>
-#include <filesystem>
 #include <map>
-#include <string>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 

@@ -14,13 +14,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
-#include <string>
 #include <vector>
 
 #include <imgui.h>

@@ -9,11 +9,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <thread>
 #include <tuple>
 #include <utility>

@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
-#include <string>
 #include <string_view>
 #include <vector>
 

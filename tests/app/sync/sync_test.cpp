@@ -1,6 +1,5 @@
 // sync, and merge from a server, run against a real server.
 #include "app/study_folder.hpp"
-#include "core/random.hpp"
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
 #include "support/child_process.hpp"

@@ -11,7 +11,6 @@
 #include "protocols/simulation/population.hpp"
 
 #include <cmath>
-#include <numeric>
 #include <span>
 
 namespace touchtrial::example {

@@ -12,8 +12,6 @@
 #include "protocols/simulation/simulation.hpp"
 #include "support/catch.hpp"
 
-#include <string>
-
 #include <nlohmann/json.hpp>
 
 namespace touchtrial {

@@ -3,7 +3,6 @@
 #include "protocols/store/person_texts.hpp"
 #include "support/catch.hpp"
 
-#include <algorithm>
 #include <tuple>
 
 using namespace touchtrial;

@@ -5,14 +5,10 @@
 #include "protocols/design/laboratory.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/design/refusal.hpp"
-#include "protocols/design/study_examples.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/design/study_sections.hpp"
-#include "support/catch.hpp"
 
-#include <algorithm>
 #include <set>
-#include <string>
 #include <vector>
 
 namespace touchtrial {

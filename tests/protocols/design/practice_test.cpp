@@ -3,9 +3,7 @@
 #include "core/errors.hpp"
 #include "protocols/design/laboratory.hpp"
 #include "protocols/design/refusal.hpp"
-#include "support/catch.hpp"
 
-#include <algorithm>
 #include <set>
 
 namespace touchtrial {

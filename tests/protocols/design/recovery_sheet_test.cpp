@@ -6,10 +6,8 @@
 #include "core/hash.hpp"
 #include "protocols/design/refusal.hpp"
 #include "protocols/design/study_examples.hpp"
-#include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
-#include <string>
 #include <vector>
 
 namespace touchtrial {

@@ -5,7 +5,6 @@
 #include "protocols/design/study_sections.hpp"
 #include "support/catch.hpp"
 
-#include <string>
 #include <string_view>
 #include <vector>
 

@@ -1,9 +1,5 @@
-#include "protocols/design/schedule.hpp"
-#include "protocols/design/study.hpp"
 #include "protocols/design/study_examples.hpp"
 #include "support/catch.hpp"
-
-#include <filesystem>
 
 namespace touchtrial {
 namespace {

@@ -7,12 +7,10 @@
 #include "protocols/design/refusal.hpp"
 #include "protocols/design/study_examples.hpp"
 #include "protocols/design/study_key.hpp"
-#include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
 #include <algorithm>
 #include <set>
-#include <string>
 #include <vector>
 
 #include <sys/stat.h>

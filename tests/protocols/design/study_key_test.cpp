@@ -4,7 +4,6 @@
 #include "core/files.hpp"
 #include "protocols/design/refusal.hpp"
 #include "protocols/design/study_examples.hpp"
-#include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
 #include <set>

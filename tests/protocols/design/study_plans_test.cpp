@@ -4,7 +4,6 @@
 #include "protocols/design/study_examples.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/design/study_sections.hpp"
-#include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
 namespace touchtrial {

@@ -3,14 +3,12 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/design/languages.hpp"
-#include "protocols/design/study.hpp"
 #include "protocols/design/study_examples.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
 #include <functional>
 #include <set>
-#include <string>
 #include <vector>
 
 namespace touchtrial {

@@ -4,13 +4,11 @@
 #include "protocols/design/station.hpp"
 #include "protocols/design/study_examples.hpp"
 #include "protocols/design/study_key.hpp"
-#include "support/catch.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <set>
-#include <string>
 #include <vector>
 
 namespace touchtrial {

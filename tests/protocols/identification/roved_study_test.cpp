@@ -9,9 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 

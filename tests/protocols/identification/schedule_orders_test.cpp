@@ -4,10 +4,8 @@
 #include "protocols/design/refusal.hpp"
 #include "protocols/design/study_examples.hpp"
 #include "protocols/design/study_key.hpp"
-#include "support/catch.hpp"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 namespace touchtrial {

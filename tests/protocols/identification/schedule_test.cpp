@@ -1,4 +1,3 @@
-#include "protocols/design/schedule.hpp"
 
 #include "core/errors.hpp"
 #include "protocols/design/order_test_support.hpp"
@@ -6,8 +5,6 @@
 #include "protocols/design/study_examples.hpp"
 #include "support/catch.hpp"
 
-#include <algorithm>
-#include <map>
 #include <set>
 #include <utility>
 

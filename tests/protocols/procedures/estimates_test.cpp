@@ -1,4 +1,3 @@
-#include "protocols/procedures/estimates.hpp"
 
 #include "protocols/procedures/simulated_tracks.hpp"
 #include "support/catch.hpp"

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
-#include <string>
 #include <tuple>
 
 using namespace touchtrial;

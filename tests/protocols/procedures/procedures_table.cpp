@@ -10,9 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

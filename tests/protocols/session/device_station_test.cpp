@@ -1,4 +1,3 @@
-#include "protocols/session/device_station.hpp"
 
 #include "core/errors.hpp"
 #include "protocols/session/fake_station.hpp"

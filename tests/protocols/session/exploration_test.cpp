@@ -6,16 +6,11 @@
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/session/stroker.hpp"
 #include "protocols/session/tiny_study.hpp"
-#include "protocols/simulation/felt_exploration.hpp"
 #include "support/catch.hpp"
 #include "support/realtime_watch.hpp"
 
 #include <atomic>
 #include <cmath>
-#include <limits>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace touchtrial {
 namespace {

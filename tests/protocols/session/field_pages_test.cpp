@@ -2,12 +2,10 @@
 // inaccessible, so that reading one would end the program.
 #include "protocols/session/exploration.hpp"
 #include "protocols/session/stroker.hpp"
-#include "support/catch.hpp"
 #include "support/guarded_bytes.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace touchtrial {
 namespace {

@@ -8,10 +8,8 @@
 #include "protocols/session/exploration.hpp"
 #include "support/catch.hpp"
 
-#include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 namespace touchtrial::session {

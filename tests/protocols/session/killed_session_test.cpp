@@ -1,6 +1,5 @@
 // Whole sessions, each interrupted at one commit by a kill or a power cut, then resumed and
 // finished.
-#include "core/errors.hpp"
 #include "core/random.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/resting_stylus.hpp"
@@ -13,10 +12,7 @@
 #include "support/catch.hpp"
 #include "support/fault_vfs.hpp"
 
-#include <array>
 #include <map>
-#include <memory>
-#include <set>
 
 namespace touchtrial {
 namespace {

@@ -4,7 +4,6 @@
 #include "protocols/identification/simulation/identifying_participant.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/fake_station.hpp"
-#include "protocols/session/real_time_explorer.hpp"
 #include "protocols/session/session_runner.hpp"
 #include "protocols/session/still_time.hpp"
 #include "protocols/session/tiny_study.hpp"
@@ -17,11 +16,9 @@
 #include "support/realtime_watch.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
-#include <thread>
 
 namespace touchtrial {
 namespace {

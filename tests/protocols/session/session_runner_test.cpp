@@ -9,12 +9,9 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include <sys/resource.h>
 

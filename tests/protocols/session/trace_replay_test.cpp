@@ -6,8 +6,6 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <utility>
-#include <vector>
 
 namespace touchtrial {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <functional>
-#include <vector>
 
 namespace touchtrial {
 namespace {

@@ -5,7 +5,6 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <string>
 #include <vector>
 
 namespace touchtrial {

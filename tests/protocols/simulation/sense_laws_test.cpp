@@ -1,6 +1,5 @@
 // Laws of the sense by published thresholds: what the simulated participant detects and tells apart
 // is what the curves and the noise say. That is self-consistency and no proof that people do.
-#include "device/model/device_model.hpp"
 #include "engine/perception/vibration_threshold.hpp"
 #include "protocols/simulation/felt_decision.hpp"
 #include "protocols/simulation/felt_floor.hpp"
@@ -10,8 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <string>
-#include <vector>
 
 namespace touchtrial {
 namespace {

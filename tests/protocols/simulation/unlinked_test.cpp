@@ -7,23 +7,8 @@
 #include "protocols/simulation/clear_features.hpp"
 #include "protocols/simulation/confusion_of.hpp"
 #include "protocols/simulation/felt_exploration.hpp"
-#include "protocols/simulation/permutations.hpp"
 #include "protocols/simulation/simulated_participant.hpp"
 #include "protocols/store/payload_json.hpp"
-#include "support/catch.hpp"
-#include "support/temp_folder.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <map>
-#include <optional>
-#include <set>
-#include <string>
-#include <vector>
-
-#include <SQLiteCpp/Database.h>
-#include <SQLiteCpp/Statement.h>
 
 namespace touchtrial {
 namespace {

@@ -3,7 +3,6 @@
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/csv_reading.hpp"
 #include "analysis/exports/export_psych_ds.hpp"
-#include "analysis/outcomes.hpp"
 #include "analysis/sealed_sessions.hpp"
 #include "analysis/verification/verification.hpp"
 #include "core/errors.hpp"

@@ -3,7 +3,6 @@
 #include "support/catch.hpp"
 
 #include <cstdlib>
-#include <string>
 
 using namespace touchtrial;
 using namespace touchtrial::collect;

@@ -9,7 +9,6 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <string>
 
 #include <SQLiteCpp/Database.h>
 

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
 
 namespace touchtrial {
 namespace {

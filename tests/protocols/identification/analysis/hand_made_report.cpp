@@ -2,8 +2,6 @@
 
 #include "analysis/confusion_of_counts.hpp"
 
-#include <vector>
-
 namespace touchtrial {
 namespace {
 

@@ -1,4 +1,3 @@
-#include "protocols/identification/analysis/cues/ideal_observer.hpp"
 
 #include "engine/perception/felt_classifier.hpp"
 #include "protocols/identification/analysis/felt_fixtures.hpp"

@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 

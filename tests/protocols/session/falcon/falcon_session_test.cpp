@@ -2,7 +2,9 @@
 // unmodified libusb, the database, and event codes on a line. Servo ticks and USB exchanges go in
 // lockstep, as fast as the processor goes.
 #include "device/falcon/rig/falcon_rig.hpp"
-#include "protocols/session/falcon/stepped_falcon.hpp"
+#include "device/falcon/usb_falcon.hpp"
+#include "device/falcon/usbfs_shim/usb_model.hpp"
+#include "device/falcon/usbfs_shim/usbfs_shim.hpp"
 #include "protocols/session/person_with_hand.hpp"
 #include "protocols/session/still_time.hpp"
 #include "protocols/session/whole_session.hpp"
@@ -10,9 +12,111 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 namespace touchtrial::device::falcon {
 namespace {
+
+constexpr Vec3 kRestMm = {0.0, 15.0, 0.0};
+/// More than homing takes.
+constexpr int kHomingSteps = 1200;
+
+/// A Falcon on the bus, switched on and never loaded, with a hand on its grip.
+struct EmulatedFalcon {
+  explicit EmulatedFalcon(const device::PlanePlacement& placement) : hand(placement, kRestMm) {
+    emulator.set_hand([this](Vec3 force_n) { return hand.tick(force_n); });
+  }
+
+  /// Cable and power: firmware and homing are gone afterwards.
+  void unplug() {
+    plugged = false;
+    usb.unplug();
+    emulator.unplug();
+  }
+  void plug() {
+    emulator.replug(false);
+    usb.plug();
+    plugged = true;
+  }
+
+  HandOnFalcon hand;
+  FalconEmulator emulator;
+  testing::EmulatorUsbModel model{emulator};
+  testing::ShimmedUsbDevice usb{model};
+  std::atomic<bool> plugged{true};
+};
+
+std::unique_ptr<FalconDevice> open_in_lockstep(const device::FalconSettings& settings,
+                                               Lockstep& lockstep) {
+  FalconOptions options;
+  options.pace = lockstep.pace();
+  options.scheduling = {device::SchedulingPolicy::other, 0, false};
+  return std::make_unique<FalconDevice>(open_usb_falcon(settings.serial), settings,
+                                        std::move(options));
+}
+
+/// The real driver, one exchange through libusb a servo tick.
+class SteppedFalcon final : public device::HapticDevice {
+ public:
+  /// \param before_read  on the servo's thread, while the USB thread rests
+  SteppedFalcon(const device::FalconSettings& settings, std::function<void()> before_read)
+      : falcon_(open_in_lockstep(settings, lockstep_)), before_read_(std::move(before_read)) {}
+
+  [[nodiscard]] device::DeviceInfo info() const override { return falcon_->info(); }
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
+    before_read_();
+    lockstep_.step();
+    return falcon_->read(sample);
+  }
+  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
+    return falcon_->write(force_n);
+  }
+  [[nodiscard]] Vec3 support_force_n(const device::DeviceSample& sample) noexcept override {
+    return falcon_->support_force_n(sample);
+  }
+  void halt() noexcept override { falcon_->halt(); }
+  void rearm() noexcept override { falcon_->rearm(); }
+  [[nodiscard]] device::DeviceFault fault() const noexcept override { return falcon_->fault(); }
+  [[nodiscard]] device::DeviceReadiness readiness() const noexcept override {
+    return falcon_->readiness();
+  }
+  void steps(int count) noexcept { lockstep_.steps(count); }
+
+ private:
+  Lockstep lockstep_;
+  std::unique_ptr<FalconDevice> falcon_;
+  std::function<void()> before_read_;
+};
+
+/// Does what the program asks for: plugs the Falcon in, homes its grip, and consents.
+class Experimenter final : public session::Attendant {
+ public:
+  Experimenter(EmulatedFalcon& falcon, SteppedFalcon*& device) : falcon_(falcon), device_(device) {}
+
+  [[nodiscard]] Says attend(const std::string& need) override {
+    // What the motors of an unplugged Falcon do is unknown, and beyond anyone's reach.
+    if (falcon_.plugged) strongest_n = std::max(strongest_n, norm(falcon_.emulator.force_n()));
+    if (need.empty()) {
+      ++consents;
+      return Says::arm;
+    }
+    if (!falcon_.plugged) {
+      falcon_.plug();
+    } else if (device_ != nullptr) {
+      falcon_.hand.home();
+      device_->steps(kHomingSteps);
+    }
+    return Says::wait;
+  }
+
+  int consents = 0;
+  double strongest_n = 0.0;  ///< before consent to force
+
+ private:
+  EmulatedFalcon& falcon_;
+  SteppedFalcon*& device_;
+};
 
 /// The middle of a plane of 40 mm, 10 mm below the middle of the workspace.
 constexpr device::PlanePlacement kPlacement{device::PlaneOrientation::horizontal,

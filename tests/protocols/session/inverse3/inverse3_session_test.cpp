@@ -10,10 +10,6 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace touchtrial {
 namespace {

@@ -7,13 +7,10 @@
 #include "protocols/session/person_with_hand.hpp"
 #include "protocols/session/still_time.hpp"
 #include "protocols/session/whole_session.hpp"
-#include "support/catch.hpp"
 
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <memory>
-#include <string>
 #include <utility>
 
 namespace touchtrial {
