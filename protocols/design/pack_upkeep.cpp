@@ -83,6 +83,7 @@ EarlierFields::EarlierFields(const std::filesystem::path& folder, const StudyKey
       pack_ = engine::Pack(folder).manifest();
     } catch (const FileError& error) {
       damage_ = error.what();
+      damage_.erase(damage_.rfind("; "));  // the remedy is what prepare does
     }
     if (damage_.empty() && is_of_other(pack_, key)) {
       if (!key.simulated) {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <exception>
 #include <utility>
 
 namespace touchtrial::design {
@@ -53,17 +52,9 @@ std::vector<fs::path> shown_pictures(const Study& study) {
 std::vector<Digest> picture_digests(const Study& study) {
   const std::vector<fs::path> names = shown_pictures(study);
   std::vector<Digest> digests(names.size());
-  std::vector<std::exception_ptr> failures(names.size());
-  in_parallel(0, names.size(), [&](std::size_t i) {
-    try {
-      digests[i] = picture_digest(names[i], study.folder / names[i]);
-    } catch (const FileError&) {
-      failures[i] = std::current_exception();
-    }
+  all_in_parallel(names.size(), [&](std::size_t i) {
+    digests[i] = picture_digest(names[i], study.folder / names[i]);
   });
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
-  }
   std::ranges::sort(digests);
   return digests;
 }
@@ -86,7 +77,7 @@ void require_signed(const engine::Pack& pack, const std::string& study_id, const
   const engine::PackManifest& manifest = pack.manifest();
   if (manifest.study_id != study_id) {
     refuse(pack.folder(),
-           "is another study's pack; name it and the file of secrets that was made with it "
+           "is another study's pack; name the pack and the file of secrets that were made together "
            "(--pack, --station-file, --key)");
   }
   if (!is_signed(manifest, investigator)) {

@@ -213,10 +213,10 @@ TEST_CASE("a picture that participants see is signed by its name and bytes, in n
   replace_file(laboratory.image(0), second);
   replace_file(laboratory.image(1), first);
   CHECK(refused(laboratory.image(0).string() + ": participants would see another picture"));
+  replace_file(laboratory.image(1), second);
   std::filesystem::remove(laboratory.image(0));
   CHECK(refused(laboratory.image(0).string() + ": does not exist"));
   replace_file(laboratory.image(0), first);
-  replace_file(laboratory.image(1), second);
   CHECK_NOTHROW(design::require_whole(engine::Pack(laboratory.pack()), key));
 
   // Other bytes of the same pixels: the fields stay, and the list is signed anew.
