@@ -68,6 +68,7 @@ struct CheckedStudy {
   design::PackPlace place;  ///< beside which stations' files are looked for
   fs::path key_path;
   design::StudyKey key;
+  fs::path pictures;  ///< the study file's folder; empty: the one that a station's file names
 };
 
 CheckedStudy checked_study(const KeyCheckArguments& arguments) {
@@ -77,7 +78,7 @@ CheckedStudy checked_study(const KeyCheckArguments& arguments) {
     }
     design::StudyKey key = design::load_study_key(arguments.subject);
     const fs::path pack = arguments.pack.empty() ? key.pack_folder : arguments.pack;
-    return {{pack, arguments.subject}, arguments.subject, std::move(key)};
+    return {{pack, arguments.subject}, arguments.subject, std::move(key), {}};
   }
   const design::Study study = design::load_study(arguments.subject);
   const design::PackPlace place = pack_place_for(arguments.subject, arguments.pack);
@@ -90,7 +91,7 @@ CheckedStudy checked_study(const KeyCheckArguments& arguments) {
   if (!design::are_same(key.study, study)) {
     throw VerificationError(design::misfit_of(study, key, key_path, "--key"));
   }
-  return {place, key_path, std::move(key)};
+  return {place, key_path, std::move(key), study.folder};
 }
 
 /// As `run` chooses it.
@@ -124,7 +125,8 @@ StationFinding station_finding(const CheckedStudy& study, const std::string& nam
   StationFinding finding{name, file, ""};
   try {
     require_clear_part(study.key, name, file);
-    const design::StationKey station = design::load_station_key(file);
+    design::StationKey station = design::load_station_key(file);
+    if (!study.pictures.empty()) station.study.folder = study.pictures;
     if (!name.empty() && station.station.name != name) {
       throw VerificationError("is the file of station " + station.station.name);
     }

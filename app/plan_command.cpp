@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -144,6 +145,8 @@ int plan_enrolment(const PlanArguments& arguments) {
                     ": there is no key, which a plan divides between stations; go to the machine "
                     "that has it, or for a new study run `touchtrial prepare` first");
   }
+  std::optional<design::PackLock> lock;
+  if (divides && is_there(place.pack)) lock.emplace(place.pack);
   design::StudyKey key = design::load_study_key(place.key);
   if (arguments.groups) {
     print(groups_text(key, arguments.participants, arguments.json));

@@ -4,12 +4,9 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/passphrases.hpp"
+#include "app/prepared_secrets.hpp"
 #include "app/shipped_files.hpp"
 #include "app/study_inputs.hpp"
-#include "core/cipher.hpp"
-#include "core/errors.hpp"
-#include "core/files.hpp"
-#include "protocols/design/key_protection.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/design/study.hpp"
 
@@ -134,63 +131,6 @@ struct PrepareArguments {
   bool passphrase = false;
 };
 
-/// Keeps the key of an earlier version of the study, which databases that it sealed still need.
-void keep_earlier_key(const design::StudyKey& earlier, const fs::path& path) {
-  constexpr std::size_t kSealDigits = 8;
-  fs::path kept = path;
-  kept += "." + to_hex(earlier.seal).substr(0, kSealDigits);
-  // Its bytes, so that it stays under its passphrase.
-  replace_file(kept, read_file(path), FileMode::owner_only);
-  spdlog::warn(
-      "{}: the study has changed; the earlier key is kept as {}, because databases that it sealed "
-      "need it",
-      path.string(), kept.string());
-}
-
-/// A new key would make another study of this one, and replace the station's file that its
-/// databases need.
-void refuse_new_key(const design::PackPlace& place) {
-  const fs::path station = place.station();
-  const fs::path found = is_there(station) ? station : place.pack;
-  if (!is_there(station) && !is_there(place.pack / "pack.json")) return;
-  throw FileError(place.key.string() + ": is not here, but " + found.string() +
-                  " was made with it; lay the key here, or make a new study in another folder with "
-                  "--pack");
-}
-
-/// Writes the key, under a passphrase if one is wanted or protects it already.
-void save_key(const PrepareArguments& arguments, const design::StudyKey& key,
-              const fs::path& path) {
-  if (arguments.passphrase && !is_there(path)) {
-    design::save_study_key(path, key, new_passphrase(path, passphrase_files()));
-  } else {
-    design::save_study_key(path, key);
-  }
-}
-
-/// The key of the study, new or with the secrets of an earlier one, so that codes and fields stay
-/// valid.
-design::StudyKey key_for(const design::Study& study, const design::PackPlace& place) {
-  const fs::path& path = place.key;
-  if (!is_there(path)) {
-    refuse_new_key(place);
-    SystemEntropy entropy;
-    return design::make_study_key(study, entropy, false);
-  }
-  const design::StudyKey earlier = design::load_study_key(path);
-  if (earlier.simulated) {
-    throw UsageError(path.string() +
-                     ": is the key of a simulated study; give another folder with --pack");
-  }
-  if (earlier.study.name != study.name) {
-    throw UsageError(path.string() + ": is the key of study \"" + earlier.study.name +
-                     "\"; give another folder with --pack");
-  }
-  design::StudyKey key = design::rekeyed(earlier, study);
-  if (key.seal != earlier.seal) keep_earlier_key(earlier, path);
-  return key;
-}
-
 std::string stimulus_row(const design::PreparedStimulus& stimulus, std::size_t method_width) {
   const engine::FieldStatistics& statistics = stimulus.statistics;
   return fmt::format(
@@ -277,14 +217,13 @@ int prepare(const PrepareArguments& arguments) {
   static_cast<void>(simulation::level_devices(study));  // whether the device is there
   const PlaneGeometry plane = design::plane_of(study);
   const design::PackPlace place = pack_place_for(arguments.study, arguments.pack);
-  if (arguments.passphrase && is_there(place.key) && !design::is_protected(place.key)) {
-    design::protect(place.key, new_passphrase(place.key, passphrase_files()));
-  }
-  design::StudyKey key = key_for(study, place);
-  key.pack_folder = place.pack;
-  save_key(arguments, key, place.key);
-  save_station_files(key, place);
-  design::PrepareReport report = prepare_here(key, {});
+  design::PackLock lock(place.pack);
+  lock.lock_key(place.key);
+  PreparedSecrets secrets(study, place, arguments.passphrase);
+  const design::StudyKey& key = secrets.key();
+  design::PrepareReport report = prepare_here(
+      lock, key,
+      {.publish_secrets = [&secrets] { secrets.publish(); }, .is_new_key = secrets.is_new()});
   const simulation::StimulusLevels levels = levels_of_pack(key);
   for (std::string& warning : planning::level_warnings(study, levels)) {
     report.warnings.push_back(std::move(warning));

@@ -290,14 +290,17 @@ int cores() {
   return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
-design::PrepareReport prepare_here(const design::StudyKey& key, design::PrepareOptions options) {
+design::PrepareReport prepare_here(const design::PackLock& lock, const design::StudyKey& key,
+                                   design::PrepareOptions options) {
   options.level_gains = level_gains(key);
-  return design::prepare_pack(key, key.pack_folder, progress_bar("preparing"), options);
+  return design::prepare_pack(lock, key, progress_bar("preparing"), options);
 }
 
 void prepare_simulated_pack(const design::StudyKey& key) {
   static_cast<void>(design::plane_of(key.study));
-  const design::PrepareReport prepared = prepare_here(key, {.statistics = false, .wait = true});
+  using Lock = design::PackLock;
+  const Lock lock(key.pack_folder, Lock::Use::prepare, Lock::Wait::yes);
+  const design::PrepareReport prepared = prepare_here(lock, key, {.statistics = false});
   for (const std::string& warning : prepared.warnings) spdlog::warn("{}", warning);
 }
 

@@ -106,8 +106,9 @@ void save_station_files(const design::StudyKey& key, const design::PackPlace& pl
 /// \return how many threads work on levels: one for each core
 [[nodiscard]] int cores();
 
-/// design::prepare_pack into the key's pack_folder, with a progress bar.
-[[nodiscard]] design::PrepareReport prepare_here(const design::StudyKey& key,
+/// design::prepare_pack of a study that may state its level, with a progress bar.
+[[nodiscard]] design::PrepareReport prepare_here(const design::PackLock& lock,
+                                                 const design::StudyKey& key,
                                                  design::PrepareOptions options);
 
 /// Makes what is missing of the key's pack, with a progress bar, and prints the warnings. Waits

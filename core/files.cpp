@@ -118,6 +118,13 @@ void replace_file(const std::filesystem::path& path, std::string_view content, F
   replace_file(path, bytes_of(content), mode);
 }
 
+void rename_file(const std::filesystem::path& file, const std::filesystem::path& name) {
+  if (std::rename(file.c_str(), name.c_str()) != 0) {
+    fail(name, "cannot be written", errno, "check the folder and its permissions");
+  }
+  sync_folder(name.parent_path());
+}
+
 bool move_to_free_name(const std::filesystem::path& file, const std::filesystem::path& name) {
   int failed = ::renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), RENAME_NOREPLACE);
   if (failed != 0 && (errno == EINVAL || errno == ENOSYS)) {

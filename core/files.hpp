@@ -36,6 +36,10 @@ void require_owner_only(const std::filesystem::path& path);
 /// \throws FileError if the folder does not exist afterwards
 void make_folder(const std::filesystem::path& folder);
 
+/// Renames a complete file, over one that has the new name, and syncs the folder.
+/// \throws FileError with the system's reason
+void rename_file(const std::filesystem::path& file, const std::filesystem::path& name);
+
 /// Renames a complete file, unless something already has the new name, and syncs the folder.
 /// \return whether the name was free
 /// \throws FileError with the system's reason

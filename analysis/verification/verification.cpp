@@ -8,6 +8,7 @@
 #include "core/errors.hpp"
 #include "core/named.hpp"
 #include "protocols/design/protocol.hpp"
+#include "protocols/design/signed_pack.hpp"
 #include "protocols/store/damage.hpp"
 #include "protocols/store/payload_json.hpp"
 
@@ -283,24 +284,22 @@ std::string check_traces(const store::StudyStore& store, const design::StudyKey&
 
 std::string check_pack(const store::StudyStore& store, const design::StudyKey* key,
                        const engine::Pack& pack) {
-  if (pack.manifest().study_id != store.commitment().study_id) {
-    throw VerificationError("the pack is of study " + one_line(pack.manifest().study_id));
-  }
-  if (pack.digest() != store.commitment().pack) {
+  const store::StudyCommitment& commitment = store.commitment();
+  design::require_signed(pack, commitment.study_id, commitment.seal, commitment.investigator);
+  if (pack.digest() != commitment.pack) {
     throw VerificationError("the pack is not the one that the database was begun with");
   }
-  for (const engine::PackEntry& entry : pack.manifest().entries) {
-    if (pack.is_intact(entry.code)) continue;
-    throw VerificationError("field " + entry.code + " of the pack is not what was prepared");
-  }
-  if (key == nullptr) {
-    return fmt::format("{} fields intact; not compared with the key",
-                       pack.manifest().entries.size());
-  }
+  const std::string intact =
+      fmt::format("signed, {} fields intact", pack.manifest().entries.size());
+  if (key == nullptr) return intact + "; not compared with the key";
   for (const design::KeyedStimulus& stimulus : key->stimuli)
     static_cast<void>(pack.entry(stimulus.code));
-  return fmt::format("{} fields intact, every code of the key among them",
-                     pack.manifest().entries.size());
+  const std::array folders = {key->study.folder, pack.folder().parent_path()};
+  const std::size_t shown = design::shown_pictures(key->study).size();
+  const std::size_t absent = design::require_pictures(pack, key->study, folders).size();
+  return intact +
+         fmt::format(", every code of the key among them; {} of {} shown pictures compared",
+                     shown - absent, shown);
 }
 
 /// The place of a hash on a chain, in words; empty if the chain does not contain it.

@@ -317,7 +317,7 @@ class PersonsSession {
       : options_(options),
         study_(study),
         database_(options, study),
-        source_(study.pack, study.key),
+        source_(study.source),
         desk_(is_attended(options)),
         terminal_(desk_, standard_terminal()),
         device_(options, source_.plane(), desk_),
@@ -407,7 +407,7 @@ class PersonsSession {
   const RunOptions& options_;
   const RunStudy& study_;
   RunDatabase database_;
-  session::StimulusSource source_;
+  const session::StimulusSource& source_;
   ExperimenterDesk desk_;
   TerminalFace terminal_;
   SessionDevice device_;
@@ -456,7 +456,7 @@ class SimulatedSession {
       : options_(options),
         study_(study),
         database_(options, study),
-        source_(study.pack, study.key),
+        source_(study.source),
         instruments_(instruments_for(options)),
         subject_(subject_for(*options.subject, study.key.study, options.on)),
         population_(simulation::population_of(
@@ -513,7 +513,7 @@ class SimulatedSession {
   const RunOptions& options_;
   const RunStudy& study_;
   RunDatabase database_;
-  session::StimulusSource source_;
+  const session::StimulusSource& source_;
   std::unique_ptr<session::Instruments> instruments_;
   simulation::SubjectModel subject_;
   std::unique_ptr<const simulation::Population> population_;

@@ -6,6 +6,8 @@
 #include "core/files.hpp"
 #include "core/utc.hpp"
 #include "protocols/design/key_protection.hpp"
+#include "protocols/design/pack_lock.hpp"
+#include "protocols/design/signed_pack.hpp"
 #include "protocols/session/commitment.hpp"
 
 #include <string>
@@ -38,28 +40,25 @@ fs::path key_in_reach(const RunOptions& options, const design::PackPlace& place)
   return options.is_simulated() || !is_there(place.key) ? fs::path() : place.key;
 }
 
-void require_intact(const engine::Pack& pack, const design::StudyCodes& key) {
-  const std::string folder = pack.folder().string();
-  if (pack.manifest().study_id != key.study_id) {
-    throw FileError(folder +
-                    ": is another study's pack; name it and the station's file with --pack and "
-                    "--station-file");
-  }
-  for (const engine::PackEntry& entry : pack.manifest().entries) {
-    if (!pack.is_intact(entry.code)) {
-      throw FileError(folder + ": field " + entry.code +
-                      " is not what was prepared; copy the pack anew, or run `touchtrial prepare`");
-    }
-  }
+/// Maps the pack while nobody prepares it, so that a session has one whole pack.
+/// \param key  moved from
+RunStudy checked_study(design::StationKey&& key, const fs::path& pack_folder,
+                       design::PackLock::Wait wait) {
+  const design::PackLock lock(pack_folder, design::PackLock::Use::read, wait);
+  engine::Pack pack(pack_folder);
+  design::require_whole(pack, key);
+  session::StimulusSource source(pack, key);
+  return {std::move(key), std::move(pack), std::move(source)};
 }
 
 RunStudy simulated_study(const RunOptions& options, const design::Study& study) {
   design::StudyKey key = simulated_key(study, options.study);
   refuse_other_key(key_path_for(options.database, {}), key);
   prepare_simulated_pack(key);
-  engine::Pack pack(key.pack_folder);
-  design::StationKey station = design::station_key(key, design::kOnlyStation);
-  return {std::move(station), std::move(pack), {}, std::move(key)};
+  RunStudy made = checked_study(design::station_key(key, design::kOnlyStation), key.pack_folder,
+                                design::PackLock::Wait::yes);
+  made.own_key = std::move(key);
+  return made;
 }
 
 [[noreturn]] void refuse(const RunOptions& options, const std::string& why) {
@@ -72,6 +71,11 @@ void require_same(const store::StudyCommitment& stored, const store::StudyCommit
     refuse(options,
            "is the database of another study, or of this one before it was prepared anew; "
            "give another --db");
+  }
+  if (stored.investigator != ours.investigator) {
+    refuse(options,
+           "is of another investigator than the station's file; copy that file anew from the "
+           "investigator's machine, or give another --db");
   }
   if (stored.station && stored.station != ours.station) {
     refuse(options, "is the database of station " + one_line(stored.station->name) +
@@ -122,10 +126,11 @@ RunStudy run_study_for(const RunOptions& options) {
                      ": is a simulated study's; give people another --db and a "
                      "prepared study");
   }
-  engine::Pack pack(options.pack.empty() && is_there(key.pack_folder) ? key.pack_folder
-                                                                      : place.pack);
-  require_intact(pack, key);
-  return {std::move(key), std::move(pack), key_in_reach(options, place)};
+  const fs::path pack =
+      options.pack.empty() && is_there(key.pack_folder) ? key.pack_folder : place.pack;
+  RunStudy checked = checked_study(std::move(key), pack, design::PackLock::Wait::no);
+  checked.key_in_reach = key_in_reach(options, place);
+  return checked;
 }
 
 namespace {

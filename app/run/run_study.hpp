@@ -5,6 +5,7 @@
 #include "app/run/run_session.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/design/study_key.hpp"
+#include "protocols/session/stimulus_source.hpp"
 #include "protocols/store/session_lock.hpp"
 #include "protocols/store/study_store.hpp"
 
@@ -16,6 +17,7 @@ namespace touchtrial::app {
 struct RunStudy {
   design::StationKey key;
   engine::Pack pack;
+  session::StimulusSource source;  ///< of the pack
   /// The investigator's key, if it lies beside the pack; else empty.
   std::filesystem::path key_in_reach{};
   /// Of a simulated study that was not prepared: its key, for the database that is made.
@@ -25,7 +27,8 @@ struct RunStudy {
 /// Loads the pack and this station's file; never the investigator's key. For a simulated
 /// participant of a study that was not prepared, makes a simulated study.
 /// \throws StudyError if the study file is not that of the station's file
-/// \throws FileError if pack or station file is missing or damaged, with the remedy
+/// \throws FileError if pack, station's file or a shown picture is missing, damaged or not what the
+///   investigator signed, or if another process prepares the pack, with the remedy
 [[nodiscard]] RunStudy run_study_for(const RunOptions& options);
 
 /// The database of a session, with a lock on its participant. If there is none yet, it is made when

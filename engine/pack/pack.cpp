@@ -54,16 +54,25 @@ void write_manifest(const std::filesystem::path& folder, const PackManifest& man
 Pack::Pack(std::filesystem::path folder)
     : folder_(std::move(folder)), manifest_(read_manifest(folder_)) {}
 
-Digest Pack::digest() const {
+Digest digest_of(const PackManifest& manifest) {
   FieldHasher hasher;
-  hasher.add("touchtrial pack 2").add(manifest_.study_id);
-  for (const PackEntry& entry : manifest_.entries) {
+  hasher.add("touchtrial pack 3").add(manifest.study_id);
+  hasher.add(ByteView(manifest.seal)).add(ByteView(manifest.investigator_box));
+  hasher.add(static_cast<std::int64_t>(manifest.entries.size()));
+  for (const PackEntry& entry : manifest.entries) {
     hasher.add(entry.code).add(ByteView(entry.checksum)).add(ByteView(entry.input_tag));
     for (const NamedGain& gain : kGains) {
       hasher.add(std::bit_cast<std::int64_t>(entry.gains.*gain.value));
     }
   }
+  for (const Digest& picture : manifest.pictures) hasher.add(ByteView(picture));
   return hasher.finish();
+}
+
+MappedField map_field(const std::filesystem::path& path) {
+  MappedFile file(path);
+  const FieldView view = decode_field(file.bytes(), path);
+  return MappedField(std::move(file), view);
 }
 
 const PackEntry& Pack::entry(const std::string& code) const {
@@ -76,10 +85,7 @@ const PackEntry& Pack::entry(const std::string& code) const {
 }
 
 MappedField Pack::map(const std::string& code) const {
-  const std::filesystem::path path = field_path(folder_, entry(code).code);
-  MappedFile file(path);
-  const FieldView view = decode_field(file.bytes(), path);
-  return MappedField(std::move(file), view);
+  return map_field(field_path(folder_, entry(code).code));
 }
 
 bool Pack::is_intact(const std::string& code) const {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/files.hpp"
-#include "core/hash.hpp"
+#include "core/public_keys.hpp"
 #include "engine/rendering/texture_field.hpp"
 
 #include <filesystem>
@@ -28,9 +28,19 @@ struct PackEntry {
 struct PackManifest {
   std::string study_id;            ///< the key's public identity, hexadecimal
   std::vector<PackEntry> entries;  ///< sorted by code, no code twice
+  Digest seal{};                   ///< of the study as it was when the pack was made
+  PublicKey investigator_box{};    ///< seals for the investigator
+  /// Of the pictures that participants see, and feel in practice: sorted, so that their order says
+  /// nothing of codes.
+  std::vector<Digest> pictures{};
+  Signature signature{};  ///< the investigator's, of digest_of
 
   friend bool operator==(const PackManifest&, const PackManifest&) = default;
 };
+
+/// What the investigator signs, and by which a database recognises its pack: SHA-256 over all of
+/// the table of contents but the signature.
+[[nodiscard]] Digest digest_of(const PackManifest& manifest);
 
 /// Whether a text may name a field: 16 lower-case letters and digits, as in base32 and hexadecimal,
 /// so that no code can be a path.
@@ -62,6 +72,11 @@ class MappedField {
   FieldView view_;
 };
 
+/// Maps a field's file. Header and size are checked; pages of samples are read when they are
+/// touched, and only a checksum says whether they are those that were written.
+/// \throws FileError if the file is missing, truncated or not a field
+[[nodiscard]] MappedField map_field(const std::filesystem::path& file);
+
 /// A pack on disk, opened read-only. Any number of threads may use one.
 class Pack {
  public:
@@ -72,17 +87,14 @@ class Pack {
   [[nodiscard]] const PackManifest& manifest() const noexcept { return manifest_; }
   [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
 
-  /// SHA-256 over the canonical table of contents, by which a database recognises its pack. It
-  /// depends on the content of pack.json and not on its layout.
-  [[nodiscard]] Digest digest() const;
+  /// digest_of its manifest.
+  [[nodiscard]] Digest digest() const { return digest_of(manifest_); }
 
   /// The entry of a code.
   /// \throws FileError if the pack has no such code
   [[nodiscard]] const PackEntry& entry(const std::string& code) const;
 
-  /// Maps a field. Header and size are checked; pages of samples are read when they are touched.
-  /// Only is_intact checks whether the samples are those that were written.
-  /// \throws FileError if the file is missing, truncated or not a field
+  /// map_field of a code's file.
   [[nodiscard]] MappedField map(const std::string& code) const;
 
   /// Whether a field's bytes still have their checksum.

@@ -35,8 +35,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little,
               "fields are written and mapped in the layout that they have in memory");
-/// Of a pack: its fields and its table of contents.
-constexpr std::uint32_t kPackVersion = 3;
+constexpr std::uint32_t kFieldVersion = 3;
+constexpr std::int64_t kListVersion = 4;
 
 /// What the heights of a file are, by the model that renders them.
 enum class Layout : std::uint32_t { coefficients = 2, heights = 3 };
@@ -47,7 +47,7 @@ Layout layout_of(ModelKind model) {
 
 struct Header {
   std::array<char, 8> magic = {'T', 'T', 'F', 'I', 'E', 'L', 'D', '1'};
-  std::uint32_t version = kPackVersion;
+  std::uint32_t version = kFieldVersion;
   Layout layout = Layout::heights;
   std::uint32_t height_px = 0;
   std::uint32_t width_px = 0;
@@ -67,9 +67,9 @@ Header checked_header(ByteView file, const std::filesystem::path& path) {
   if (file.size() < sizeof header) refuse(path, "is too short for a field file");
   std::memcpy(&header, file.data(), sizeof header);
   if (header.magic != Header{}.magic) refuse(path, "is not a field file");
-  if (header.version != kPackVersion) {
+  if (header.version != kFieldVersion) {
     refuse(path, "has field version " + std::to_string(header.version) + ", not " +
-                     std::to_string(kPackVersion));
+                     std::to_string(kFieldVersion));
   }
   if (header.layout != Layout::heights && header.layout != Layout::coefficients) {
     refuse(path, "has the unknown sample layout " +
@@ -189,12 +189,13 @@ PackEntry read_entry(const JsonValue& place) {
 
 PackManifest read_manifest_json(const JsonValue& place) {
   using Integers = std::numeric_limits<std::int64_t>;
-  const JsonObject root = place.object({"fields", "format", "study_id", "version"});
+  const JsonObject root = place.object({"fields", "format", "investigator_box", "pictures", "seal",
+                                        "signature", "study_id", "version"});
   if (root.at("format").text() != kFormat) {
     root.at("format").refuse("must be \"touchtrial-pack\"");
   }
-  if (root.at("version").integer(Integers::min(), Integers::max()) != kPackVersion) {
-    root.at("version").refuse("is not " + std::to_string(kPackVersion) +
+  if (root.at("version").integer(Integers::min(), Integers::max()) != kListVersion) {
+    root.at("version").refuse("is not " + std::to_string(kListVersion) +
                               ", the only version that this program reads");
   }
   PackManifest manifest;
@@ -208,7 +209,17 @@ PackManifest read_manifest_json(const JsonValue& place) {
       field.refuse_below("/code", "is in the manifest twice");
     }
   }
-  std::ranges::sort(manifest.entries, {}, &PackEntry::code);
+  manifest.seal = read_digest(root.at("seal"));
+  manifest.investigator_box = read_digest(root.at("investigator_box"));
+  for (const JsonValue& picture :
+       root.at("pictures").items(0, std::numeric_limits<std::size_t>::max())) {
+    manifest.pictures.push_back(read_digest(picture));
+  }
+  const auto signature = from_hex(root.at("signature").text());
+  if (!signature || signature->size() != manifest.signature.size()) {
+    root.at("signature").refuse("must be 128 hexadecimal digits");
+  }
+  std::ranges::copy(*signature, manifest.signature.begin());
   return manifest;
 }
 
@@ -243,16 +254,24 @@ std::string manifest_to_json(PackManifest manifest) {
   check_manifest(manifest);
   nlohmann::json fields = nlohmann::json::array();
   for (const PackEntry& entry : manifest.entries) fields.push_back(json_of(entry));
+  nlohmann::json pictures = nlohmann::json::array();
+  for (const Digest& picture : manifest.pictures) pictures.push_back(to_hex(picture));
   const nlohmann::json root = {{"fields", std::move(fields)},
                                {"format", kFormat},
+                               {"investigator_box", to_hex(manifest.investigator_box)},
+                               {"pictures", std::move(pictures)},
+                               {"seal", to_hex(manifest.seal)},
+                               {"signature", to_hex(ByteView(manifest.signature))},
                                {"study_id", manifest.study_id},
-                               {"version", kPackVersion}};
+                               {"version", kListVersion}};
   return root.dump(2) + "\n";
 }
 
 PackManifest manifest_from_json(std::string_view text, const std::filesystem::path& path) {
   try {
-    return read_manifest_json(parse_strict_json(text, path.string()));
+    PackManifest manifest = read_manifest_json(parse_strict_json(text, path.string()));
+    if (manifest_to_json(manifest) != text) refuse(path, "is altered since it was written");
+    return manifest;
   } catch (const StudyError& error) {
     // The reader's own remedies are for files that people write; nobody writes this one.
     const std::string message = error.what();

@@ -39,7 +39,8 @@ namespace touchtrial::engine {
 /// \throws std::invalid_argument as write_manifest
 [[nodiscard]] std::string manifest_to_json(PackManifest manifest);
 
-/// Every key must be there once, known, and with a value of its type and range.
+/// Every key must be there once, known, and with a value of its type and range, and every byte as
+/// manifest_to_json writes it.
 /// \param path  of the file, for the message
 /// \throws FileError with the file and the place of the first fault
 [[nodiscard]] PackManifest manifest_from_json(std::string_view text,

@@ -1,15 +1,11 @@
 #include "protocols/design/pack_upkeep.hpp"
 
 #include "core/errors.hpp"
+#include "protocols/design/signed_pack.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <system_error>
 #include <vector>
-
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 namespace touchtrial::design {
 namespace {
@@ -45,67 +41,87 @@ bool names_code(const engine::PackManifest& manifest, const std::string& code) {
          manifest.entries.end();
 }
 
-}  // namespace
+/// \return null if the manifest has no such field made from this input
+const engine::PackEntry* entry_of(const engine::PackManifest& manifest, const std::string& code,
+                                  const Digest& tag) {
+  const auto found = std::ranges::find(manifest.entries, code, &engine::PackEntry::code);
+  return found == manifest.entries.end() || found->input_tag != tag ? nullptr : &*found;
+}
 
-PackLock::PackLock(const std::filesystem::path& folder, bool wait)
-    : descriptor_(::open((folder / "prepare.lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
-  if (descriptor_ >= 0 && ::flock(descriptor_, wait ? LOCK_EX : LOCK_EX | LOCK_NB) == 0) return;
-  const int reason = errno;
-  if (descriptor_ >= 0) ::close(descriptor_);
-  const std::string place = one_line(folder.string());
-  if (reason == EWOULDBLOCK) {
-    throw FileError(place + ": the pack is being prepared by another process; wait for it to end");
+bool has_bytes_of(const engine::PackEntry& entry, const std::filesystem::path& folder) {
+  const std::filesystem::path file = field_path(folder, entry.code);
+  try {
+    return is_there(file) && sha256_of_file(file) == entry.checksum;
+  } catch (const FileError&) {
+    return false;  // unreadable, so it is written again
   }
-  throw FileError(place + ": the pack cannot be locked (" +
-                  std::generic_category().message(reason) +
-                  "); check the folder's permissions and the free space");
 }
 
-PackLock::~PackLock() {
-  ::close(descriptor_);
+/// Another study's codes are other random numbers: a list that has one of the key's is this
+/// study's, whatever identity it states.
+bool is_of_other(const engine::PackManifest& manifest, const StudyKey& key) {
+  return manifest.study_id != key.study_id &&
+         std::ranges::none_of(key.stimuli, [&](const KeyedStimulus& keyed) {
+           return names_code(manifest, keyed.code);
+         });
 }
+
+}  // namespace
 
 std::filesystem::path field_path(const std::filesystem::path& folder, const std::string& code) {
   return folder / (code + std::string(kFieldEnding));
 }
 
-std::string unfinished_id(const StudyKey& key) {
-  return to_hex(ByteView(derive_key(key.master, "identity of an unfinished pack")).first(16));
+std::filesystem::path draft_folder(const std::filesystem::path& folder) {
+  return folder / "prepare.drafts";
 }
 
-std::optional<engine::PackEntry> EarlierPack::reusable(const std::string& code,
-                                                       const Digest& tag) const {
-  if (!pack || !names_code(pack->manifest(), code)) return std::nullopt;
-  const engine::PackEntry& entry = pack->entry(code);
+EarlierFields::EarlierFields(const std::filesystem::path& folder, const StudyKey& key)
+    : folder_(folder) {
+  if (std::filesystem::exists(folder / kManifestName)) {
+    try {
+      pack_ = engine::Pack(folder).manifest();
+    } catch (const FileError& error) {
+      damage_ = error.what();
+      damage_.erase(damage_.rfind("; "));  // the remedy is what prepare does
+    }
+    if (damage_.empty() && is_of_other(pack_, key)) {
+      if (!key.simulated) {
+        throw FileError(one_line(folder.string()) +
+                        ": holds the pack of another key; prepare into another folder with --pack, "
+                        "or remove this one if its key is lost");
+      }
+      pack_ = {};
+    } else if (damage_.empty() && !is_signed(pack_, key.investigator_signature)) {
+      damage_ = one_line((folder / kManifestName).string()) + ": was altered since it was signed";
+      pack_ = {};
+    }
+  }
   try {
-    if (entry.input_tag == tag && pack->is_intact(code)) return entry;
+    drafts_ = engine::Pack(draft_folder(folder)).manifest();
+    if (!is_signed(drafts_, key.investigator_signature)) drafts_ = {};
   } catch (const FileError&) {
-    // Missing or unreadable, so it is written again.
+    // Nothing was broken off, or so early that nothing is lost.
+  }
+}
+
+std::optional<FoundField> EarlierFields::find(const std::string& code, const Digest& tag) const {
+  for (const engine::PackManifest* list : {&pack_, &drafts_}) {
+    const engine::PackEntry* const entry = entry_of(*list, code, tag);
+    if (entry == nullptr) continue;
+    if (has_bytes_of(*entry, folder_)) return FoundField{*entry, false};
+    if (has_bytes_of(*entry, draft_folder(folder_))) return FoundField{*entry, true};
   }
   return std::nullopt;
 }
 
-EarlierPack earlier_pack(const std::filesystem::path& folder, const StudyKey& key) {
-  EarlierPack earlier;
-  if (!std::filesystem::exists(folder / kManifestName)) return earlier;
-  try {
-    earlier.pack.emplace(folder);
-  } catch (const FileError& error) {
-    earlier.damage = error.what();
-    return earlier;
-  }
-  const std::string& id = earlier.pack->manifest().study_id;
-  if (id == key.study_id || id == unfinished_id(key)) return earlier;
-  if (!key.simulated) {
-    throw FileError(one_line(folder.string()) +
-                    ": holds the pack of another key; prepare into another folder with --pack, or "
-                    "remove this one if its key is lost");
-  }
-  earlier.pack.reset();
-  return earlier;
+bool EarlierFields::names(const std::string& code, const Digest& tag) const {
+  return entry_of(pack_, code, tag) != nullptr;
 }
 
 void remove_leftovers(const std::filesystem::path& folder, const engine::PackManifest& manifest) {
+  std::error_code ignored;  // a leftover that stays does no harm
+  std::filesystem::remove_all(draft_folder(folder), ignored);
   std::vector<std::filesystem::path> leftovers;
   for (const auto& file : std::filesystem::directory_iterator(folder)) {
     const std::string name = file.path().filename().string();
@@ -113,10 +129,7 @@ void remove_leftovers(const std::filesystem::path& folder, const engine::PackMan
     const bool stale = code && !names_code(manifest, *code);
     if (stale || is_draft(name)) leftovers.push_back(file.path());
   }
-  for (const auto& path : leftovers) {
-    std::error_code ignored;  // a leftover that stays does no harm
-    std::filesystem::remove(path, ignored);
-  }
+  for (const auto& path : leftovers) std::filesystem::remove(path, ignored);
 }
 
 }  // namespace touchtrial::design

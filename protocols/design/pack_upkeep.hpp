@@ -1,5 +1,5 @@
-/// \file Upkeep of a pack's folder: the lock for one writer at a time, reuse of an earlier pack's
-/// fields, and removal of leftovers. Private to protocols/design.
+/// \file Upkeep of a pack's folder: reuse of what earlier runs left, drafts, and removal of
+/// leftovers. Private to protocols/design. Call all of it only while the pack is locked.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -8,48 +8,54 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace touchtrial::design {
-
-/// Holds `prepare.lock` in the pack's folder. The system releases it however the process ends.
-class PackLock {
- public:
-  /// \param wait  whether to wait while another process or thread prepares this pack
-  /// \throws FileError if another one prepares it and `wait` is false, or the file cannot be made
-  explicit PackLock(const std::filesystem::path& folder, bool wait = false);
-  ~PackLock();
-  PackLock(const PackLock&) = delete;
-  PackLock& operator=(const PackLock&) = delete;
-
- private:
-  int descriptor_;
-};
 
 /// The file of a code's field.
 [[nodiscard]] std::filesystem::path field_path(const std::filesystem::path& folder,
                                                const std::string& code);
 
-/// The identity of a pack while it is being built. Because it differs from the study's identity,
-/// nothing is presented from such a pack; the next `prepare` recognises it and completes the pack.
-[[nodiscard]] std::string unfinished_id(const StudyKey& key);
+/// Where fields and a list of them lie until all is complete: in the pack's folder, so that they
+/// can be renamed into their places. The list has no seal while it is not complete, so that nothing
+/// is presented from there.
+[[nodiscard]] std::filesystem::path draft_folder(const std::filesystem::path& folder);
 
-/// What the folder contained before this run.
-struct EarlierPack {
-  std::optional<engine::Pack> pack;  ///< of this study, finished or not
-  std::string damage;  ///< why the table of contents was unusable; empty if it was usable
-
-  /// \return the entry of the intact field made from this input, if there is one
-  [[nodiscard]] std::optional<engine::PackEntry> reusable(const std::string& code,
-                                                          const Digest& tag) const;
+/// A field that need not be built.
+struct FoundField {
+  engine::PackEntry entry;
+  bool is_draft = false;  ///< whether it lies among the drafts
 };
 
-/// Opens the pack that is already in the folder. A simulated study ignores and replaces another
-/// study's pack, because simulated packs can be made again from the study file.
-/// \throws FileError if the study is not simulated and the folder holds another study's pack
-[[nodiscard]] EarlierPack earlier_pack(const std::filesystem::path& folder, const StudyKey& key);
+/// What earlier runs left of a study's pack: the pack, and drafts of a run that was broken off, at
+/// whatever point. Only lists that the key signed are believed.
+class EarlierFields {
+ public:
+  /// A simulated study ignores and replaces another study's pack, because simulated packs can be
+  /// made again from the study file.
+  /// \throws FileError if the study is not simulated and the folder holds another study's pack
+  EarlierFields(const std::filesystem::path& folder, const StudyKey& key);
 
-/// Removes fields that the manifest does not name, and drafts that interrupted writers left.
-/// Keeps all other files. Call only while the pack is locked.
+  /// \return an intact field made from this input, if there is one
+  [[nodiscard]] std::optional<FoundField> find(const std::string& code, const Digest& tag) const;
+  /// Whether the pack names a field made from this input; its file is damaged if `find` finds none.
+  [[nodiscard]] bool names(const std::string& code, const Digest& tag) const;
+  [[nodiscard]] bool has(const engine::PackManifest& manifest) const { return pack_ == manifest; }
+  [[nodiscard]] const std::vector<engine::PackEntry>& drafts() const noexcept {
+    return drafts_.entries;
+  }
+  /// Why nothing of the pack was believed; empty if it was, or there was none.
+  [[nodiscard]] const std::string& damage() const noexcept { return damage_; }
+
+ private:
+  std::filesystem::path folder_;
+  engine::PackManifest pack_;
+  engine::PackManifest drafts_;
+  std::string damage_;
+};
+
+/// Removes the drafts, fields that the manifest does not name, and what interrupted writers left.
+/// Keeps all other files.
 void remove_leftovers(const std::filesystem::path& folder, const engine::PackManifest& manifest);
 
 }  // namespace touchtrial::design

@@ -9,6 +9,7 @@
 #include "protocols/design/languages.hpp"
 #include "protocols/design/pack_upkeep.hpp"
 #include "protocols/design/prepare_advice.hpp"
+#include "protocols/design/signed_pack.hpp"
 #include "protocols/design/stimulus_field.hpp"
 
 #include <algorithm>
@@ -87,23 +88,23 @@ class Preparation {
         folder_(std::move(folder)),
         progress_(progress),
         options_(options),
-        earlier_(earlier_pack(folder_, key)),
+        earlier_(folder_, key),
         images_(images_of(key.study)),
         entries_(key.stimuli.size()),
+        is_draft_(key.stimuli.size()),
+        is_damaged_(key.stimuli.size()),
         solver_warnings_(key.stimuli.size()) {
     report_.stimuli.resize(key.stimuli.size());
-    if (earlier_.pack) {
-      for (const engine::PackEntry& entry : earlier_.pack->manifest().entries)
-        on_disk_[entry.code] = entry;
-    }
+    for (const engine::PackEntry& entry : earlier_.drafts()) drafts_[entry.code] = entry;
   }
 
   PrepareReport run() {
     check_images_exist(key_.study);
+    // Before the fields: of a picture that changes meanwhile, sessions are refused.
+    pictures_ = picture_digests(key_.study);
     provide_fields();
-    const engine::Pack fields(folder_);
-    measure(fields);
-    finish(fields.manifest());
+    measure();
+    finish();
     advise();
     return std::move(report_);
   }
@@ -122,7 +123,7 @@ class Preparation {
     for (ImageOfStudy* image : order) {
       if (!image->is_done && !image->failure) provide(*image, true);
     }
-    if (building_) write_unfinished();
+    if (building_) write_drafts();
     for (const ImageOfStudy& image : images_) {
       if (image.failure) std::rethrow_exception(image.failure);
     }
@@ -176,13 +177,16 @@ class Preparation {
     const Clock::time_point start = Clock::now();
     const engine::ExtractionOptions method = method_of(key_.study, key_.stimuli[i].stimulus);
     const Digest tag = input_tag(key_.master, image, method, key_.study.rendering);
-    const auto earlier = earlier_.reusable(key_.stimuli[i].code, tag);
+    const std::string& code = key_.stimuli[i].code;
+    const auto earlier = earlier_.find(code, tag);
     if (earlier) {
-      entries_[i] = *earlier;
+      entries_[i] = earlier->entry;
     } else {
+      is_damaged_[i] = earlier_.names(code, tag) ? 1 : 0;
       announce_building();
       build(i, image, method, tag, taken);
     }
+    is_draft_[i] = !earlier || earlier->is_draft ? 1 : 0;
     note_provided(i, earlier.has_value(), start);
   }
 
@@ -191,7 +195,8 @@ class Preparation {
     const auto& [code, stimulus] = key_.stimuli[i];
     const BuiltField built =
         build_field(image, method, key_.study.rendering, taken, is_needed_again(i));
-    entries_[i] = {code, engine::write_field(folder_, code, built.field.view()), tag, {}};
+    entries_[i] = {
+        code, engine::write_field(draft_folder(folder_), code, built.field.view()), tag, {}};
     solver_warnings_[i] = solver_warning(key_.study, stimulus, built);
   }
 
@@ -203,39 +208,45 @@ class Preparation {
     prepared.method = key_.study.methods[static_cast<std::size_t>(stimulus.method)].label;
     prepared.reused = reused;
     prepared.seconds = seconds_since(start);
-    note_done(entries_[i]);
+    note_done(i);
   }
 
-  /// Marks the pack as unfinished before the first field is replaced, so that it cannot be
-  /// presented.
   void announce_building() {
     const std::lock_guard lock(mutex_);
-    if (!building_) write_unfinished();
+    if (building_) return;
+    make_folder(draft_folder(folder_));
+    write_drafts();
     building_ = true;
   }
 
   /// Records finished fields once a second, so that an interrupted run keeps its work.
-  void note_done(const engine::PackEntry& entry) {
+  void note_done(std::size_t i) {
     const std::lock_guard lock(mutex_);
-    on_disk_[entry.code] = entry;
-    if (building_ && seconds_since(recorded_) > 1.0) write_unfinished();
+    if (is_draft_[i] != 0) drafts_[entries_[i].code] = entries_[i];
+    if (building_ && seconds_since(recorded_) > 1.0) write_drafts();
     ++done_;
     if (progress_) progress_(done_, static_cast<int>(key_.stimuli.size()));
   }
 
-  void write_unfinished() {
-    engine::PackManifest manifest{unfinished_id(key_), {}};
-    for (const auto& [code, entry] : on_disk_) manifest.entries.push_back(entry);
-    engine::write_manifest(folder_, manifest);
+  void write_drafts() {
+    engine::PackManifest manifest{key_.study_id, {}};
+    for (const auto& [code, entry] : drafts_) manifest.entries.push_back(entry);
+    manifest.signature = key_.signer().sign(engine::digest_of(manifest));
+    engine::write_manifest(draft_folder(folder_), manifest);
     recorded_ = Clock::now();
   }
 
+  /// Where a stimulus's field lies until all are in their places.
+  [[nodiscard]] std::filesystem::path field_of(std::size_t i) const {
+    return field_path(is_draft_[i] != 0 ? draft_folder(folder_) : folder_, entries_[i].code);
+  }
+
   /// Gains, flatness and statistics of all fields.
-  void measure(const engine::Pack& fields) {
+  void measure() {
     std::vector<engine::MappedField> mapped;
     std::vector<engine::FieldView> views;
-    for (const KeyedStimulus& stimulus : key_.stimuli) {
-      mapped.push_back(fields.map(stimulus.code));
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      mapped.push_back(engine::map_field(field_of(i)));
       views.push_back(mapped.back().view());
     }
     choose_gains(views);
@@ -249,7 +260,7 @@ class Preparation {
     for (std::size_t i = 0; i < entries_.size(); ++i) {
       PreparedStimulus& prepared = report_.stimuli[i];
       prepared.gains = entries_[i].gains = measured_.gains.of_field[i];
-      prepared.bytes = size_of_field(key_.stimuli[i].code);
+      prepared.bytes = size_of_field(i);
     }
   }
 
@@ -274,19 +285,44 @@ class Preparation {
         engine::field_statistics(field, measured_.gains.of_field[i], key_.study.rendering);
   }
 
-  [[nodiscard]] std::uintmax_t size_of_field(const std::string& code) const {
+  [[nodiscard]] std::uintmax_t size_of_field(std::size_t i) const {
     std::error_code error;
-    const auto bytes = std::filesystem::file_size(field_path(folder_, code), error);
+    const auto bytes = std::filesystem::file_size(field_of(i), error);
     return error ? 0 : bytes;
   }
 
-  void finish(const engine::PackManifest& before) {
+  /// Puts everything into its place. The list comes last: until then it does not agree with the
+  /// fields that were replaced, or was signed for another seal, so that nothing is presented from a
+  /// mixture, and what is still among the drafts is found by the next run.
+  void finish() {
     engine::PackManifest manifest{key_.study_id, entries_};
-    std::ranges::sort(manifest.entries, {}, &engine::PackEntry::code);
-    const bool unchanged =
-        before.study_id == manifest.study_id && before.entries == manifest.entries;
-    if (!unchanged) engine::write_manifest(folder_, manifest);
+    sign(manifest, key_, pictures_);
+    const bool is_changed = !earlier_.has(manifest) || std::ranges::count(is_draft_, 1) > 0;
+    if (is_changed) {
+      make_folder(draft_folder(folder_));
+      engine::write_manifest(draft_folder(folder_), manifest);
+    }
+    if (options_.publish_secrets) options_.publish_secrets();
+    if (is_changed) publish(manifest);
     remove_leftovers(folder_, manifest);
+  }
+
+  void publish(const engine::PackManifest& manifest) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      if (is_draft_[i] != 0) order.push_back(i);
+    }
+    std::ranges::sort(order, {}, [this](std::size_t i) { return entries_[i].code; });
+    for (const std::size_t i : order) {
+      rename_file(field_of(i), field_path(folder_, entries_[i].code));
+    }
+    rename_file(draft_folder(folder_) / "pack.json", folder_ / "pack.json");
+    // Otherwise a field's time would tell which picture's it is.
+    const auto now = std::filesystem::file_time_type::clock::now();
+    for (const engine::PackEntry& entry : manifest.entries) {
+      std::error_code ignored;
+      std::filesystem::last_write_time(field_path(folder_, entry.code), now, ignored);
+    }
   }
 
   void advise() {
@@ -301,8 +337,8 @@ class Preparation {
       report_.warnings.push_back(
           draft + ": have its speakers check every screen, and say so where you report the study");
     }
-    if (!earlier_.damage.empty()) {
-      report_.warnings.push_back(earlier_.damage + ": all fields were built anew");
+    if (!earlier_.damage().empty()) {
+      report_.warnings.push_back(earlier_.damage() + ": all fields were built anew");
     }
     for (auto& warning : validity_warnings(key_.study)) {
       report_.warnings.push_back(std::move(warning));
@@ -314,6 +350,10 @@ class Preparation {
     }
     for (std::size_t i = 0; i < key_.stimuli.size(); ++i) {
       if (!solver_warnings_[i].empty()) report_.warnings.push_back(solver_warnings_[i]);
+      if (is_damaged_[i] != 0) {
+        report_.warnings.push_back(described(key_.study, key_.stimuli[i].stimulus) +
+                                   ": its field was damaged or gone, and was built anew");
+      }
       if (measured_.flat[i] == 0) continue;
       report_.warnings.push_back(described(key_.study, key_.stimuli[i].stimulus) +
                                  ": is flat, nothing of it can be felt");
@@ -324,15 +364,18 @@ class Preparation {
   std::filesystem::path folder_;
   const Progress& progress_;
   PrepareOptions options_;
-  EarlierPack earlier_;
+  EarlierFields earlier_;
   std::vector<ImageOfStudy> images_;
+  std::vector<Digest> pictures_;
   std::vector<engine::PackEntry> entries_;
+  std::vector<std::uint8_t> is_draft_;  ///< whether a field is to be put into its place
+  std::vector<std::uint8_t> is_damaged_;
   std::vector<std::string> solver_warnings_;
   MeasuredFields measured_;
   PrepareReport report_;
 
   std::mutex mutex_;  ///< guards the members below
-  std::map<std::string, engine::PackEntry> on_disk_;
+  std::map<std::string, engine::PackEntry> drafts_;
   bool building_ = false;
   Clock::time_point recorded_;
   int done_ = 0;
@@ -462,11 +505,20 @@ PlaneGeometry plane_of(const Study& study) {
   return plane;
 }
 
+PrepareReport prepare_pack(const PackLock& lock, const StudyKey& key, const Progress& progress,
+                           const PrepareOptions& options) {
+  try {
+    return Preparation(key, lock.folder(), progress, options).run();
+  } catch (...) {
+    std::error_code ignored;
+    if (options.is_new_key) std::filesystem::remove_all(draft_folder(lock.folder()), ignored);
+    throw;
+  }
+}
+
 PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pack_folder,
                            const Progress& progress, const PrepareOptions& options) {
-  make_folder(pack_folder);
-  const PackLock lock(pack_folder, options.wait);
-  return Preparation(key, pack_folder, progress, options).run();
+  return prepare_pack(PackLock(pack_folder), key, progress, options);
 }
 
 }  // namespace touchtrial::design

@@ -5,6 +5,7 @@
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/field_statistics.hpp"
 #include "engine/rendering/gains.hpp"
+#include "protocols/design/pack_lock.hpp"
 #include "protocols/design/study_key.hpp"
 
 #include <cstdint>
@@ -78,9 +79,13 @@ using LevelGains = std::function<std::pair<engine::StudyGains, std::vector<std::
 /// What prepare_pack does besides building the pack.
 struct PrepareOptions {
   bool statistics = true;  ///< fill in PreparedStimulus::statistics; two Fourier transforms each
-  bool wait = false;       ///< wait while another process prepares the pack, instead of throwing
   std::int64_t large_image_px = kLargeImagePixels;  ///< larger images are processed one at a time
   LevelGains level_gains{};                         ///< needed if the study has a level
+  /// Puts key and stations' files into their places. Called when everything is built, before the
+  /// pack's files change; may throw.
+  std::function<void()> publish_secrets{};
+  /// Whether no file has the key yet: if the preparation fails, its drafts are of no use.
+  bool is_new_key = false;
 };
 
 /// Checks that every image of the study exists, every picture of its instructions, and every
@@ -97,17 +102,25 @@ void check_images_exist(const Study& study);
 using Progress = std::function<void(int done, int of)>;
 
 /// Extracts, renders and writes every presented stimulus whose field is missing, damaged or made
-/// from different input. Then chooses the gains, writes the table of contents, and removes fields
-/// that no stimulus uses any more. An interrupted run leaves a pack that cannot be presented and
-/// that the next run completes. A run with nothing to do leaves the pack's files untouched.
+/// from different input. Then chooses the gains, signs the table of contents with the digests of
+/// the pictures that participants see, puts everything into its place, and removes fields that no
+/// stimulus uses any more. What the key did not sign is built anew, with a warning.
+/// A run that fails leaves the pack as it was, and its drafts to the next one. A run that is killed
+/// while it puts drafts into their places leaves a pack that cannot be presented and that the next
+/// one completes. A run with nothing to do leaves the pack's files untouched.
 /// Whether a picture or a field has changed, its content tells.
 /// The pack's bytes depend only on key, study and images, not on the number of threads.
 /// Images of more than PrepareOptions::large_image_px pixels are processed one after another, so
 /// that the memory for a large image (docs/benchmarks/memory.md) is needed only once, whatever the
 /// number of threads.
+/// \param lock  of the pack's folder, to prepare
 /// \throws StudyError if an image cannot be read, with its place in the study
-/// \throws FileError if the pack cannot be written, is being prepared by another process, or
-///   belongs to another key
+/// \throws FileError if the pack cannot be written, or belongs to another key
+PrepareReport prepare_pack(const PackLock& lock, const StudyKey& key, const Progress& progress = {},
+                           const PrepareOptions& options = {});
+
+/// The same, with a lock of its own.
+/// \throws FileError also if another process prepares or reads the pack
 PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pack_folder,
                            const Progress& progress = {}, const PrepareOptions& options = {});
 

@@ -6,6 +6,7 @@
 #include "core/version.hpp"
 #include "protocols/design/languages.hpp"
 #include "protocols/design/protocol.hpp"
+#include "protocols/design/signed_pack.hpp"
 
 #include <algorithm>
 
@@ -182,10 +183,7 @@ void require_prepared(const design::Study& study, const design::StudyCodes& key,
            pack.folder().string() + " of study " + manifest.study_id +
            "; name the pack's own key with --key, or the key's own pack with --pack");
   }
-  for (const design::KeyedStimulus& keyed : key.stimuli) {
-    if (std::ranges::count(manifest.entries, keyed.code, &engine::PackEntry::code) == 1) continue;
-    refuse("the pack is not complete; run `touchtrial prepare` again");
-  }
+  design::require_signed(pack, key.study_id, key.seal, key.investigator_signature);
 }
 
 std::string registration_page(const design::StudyCodes& key, const engine::Pack& pack) {

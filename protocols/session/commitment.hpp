@@ -24,6 +24,7 @@ namespace touchtrial::session {
 /// \param study  newly read from its file
 /// \param key_file  that of `key`
 /// \throws UsageError with the difference and the remedy
+/// \throws FileError as design::require_signed
 void require_prepared(const design::Study& study, const design::StudyCodes& key,
                       const std::filesystem::path& key_file, const engine::Pack& pack);
 

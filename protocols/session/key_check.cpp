@@ -3,6 +3,7 @@
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
 #include "core/public_keys.hpp"
+#include "protocols/design/signed_pack.hpp"
 #include "protocols/session/session.hpp"
 #include "protocols/store/sealing.hpp"
 
@@ -68,21 +69,6 @@ void require_same_secrets(const design::StudyKey& key, const design::StationKey&
                 "was not signed with this key; give the station the file that was made with it");
 }
 
-void require_pack(const design::StationKey& station, const engine::Pack& pack) {
-  const engine::PackManifest& manifest = pack.manifest();
-  require_holds(manifest.study_id == station.study_id,
-                "has another study's pack beside it, or one that is not complete; copy the pack "
-                "anew, or run `touchtrial prepare`");
-  for (const design::KeyedStimulus& keyed : station.stimuli) {
-    const bool is_whole =
-        std::ranges::count(manifest.entries, keyed.code, &engine::PackEntry::code) == 1 &&
-        pack.is_intact(keyed.code);
-    require_holds(is_whole,
-                  "has a pack whose fields are not those that were prepared; copy the pack "
-                  "anew, or run `touchtrial prepare`");
-  }
-}
-
 /// What a station stores when it opens a session.
 struct TestRecord {
   int enrolment = 0;
@@ -128,7 +114,7 @@ void require_opens(const design::StudyKey& key, const design::StationKey& statio
                    const engine::Pack& pack) {
   require_same_study(key, station);
   require_same_secrets(key, station);
-  require_pack(station, pack);
+  design::require_whole(pack, station);
   require_holds(!station.station.ranges.empty(),
                 "has no enrolment numbers; hand some out with `touchtrial plan --extend`");
   const TestRecord record = test_record(station);

@@ -12,7 +12,7 @@ namespace touchtrial::session {
 /// of the station's first participant. Nothing is stored. Takes as long as reading the pack.
 /// \throws VerificationError with the first thing that does not hold and the remedy; it names no
 ///   file
-/// \throws FileError if a field of the pack cannot be read
+/// \throws FileError as design::require_whole
 void require_opens(const design::StudyKey& key, const design::StationKey& station,
                    const engine::Pack& pack);
 

@@ -1,6 +1,7 @@
 #include "analysis/fake_study.hpp"
 
 #include "engine/pack/pack.hpp"
+#include "protocols/design/signed_pack.hpp"
 
 #include <algorithm>
 
@@ -63,7 +64,7 @@ std::filesystem::path fake_pack(const design::StudyKey& key, const std::filesyst
     const Digest checksum = engine::write_field(folder, stimulus.code, field.view());
     manifest.entries.push_back({stimulus.code, checksum, {}, {0.01, 0.02}});
   }
-  std::ranges::sort(manifest.entries, {}, &engine::PackEntry::code);
+  design::sign(manifest, key, {});
   engine::write_manifest(folder, manifest);
   return folder;
 }

@@ -68,6 +68,102 @@ TEST_CASE("prepare touches nothing when a picture of the study is missing") {
   CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
 }
 
+namespace {
+
+/// The files of a folder and below, by their paths in it.
+std::map<std::string, std::string> contents(const fs::path& folder) {
+  std::map<std::string, std::string> found;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = fs::relative(entry.path(), folder).string();
+    if (entry.is_regular_file() && !name.starts_with("std")) found[name] = content(entry.path());
+  }
+  return found;
+}
+
+/// A quickly prepared study, of the levels on one device.
+json quick_study() {
+  json quick = study_of("classification");
+  quick["rendering"] = {{"device", "ideal"}};
+  return quick;
+}
+
+/// Cuts a picture, so that its size can still be read.
+void cut(const fs::path& picture) {
+  fs::resize_file(picture, fs::file_size(picture) / 2);
+}
+
+}  // namespace
+
+TEST_CASE("a prepare that fails leaves the study as it was, and no key of a new one") {
+  const StudyFolder study;
+  replace_file(study.path() / "cloths.json", quick_study().dump());
+  const Bytes picture = read_file(study.path() / "linen-photo.png");
+  cut(study.path() / "linen-photo.png");
+  const auto before = contents(study.path());
+  check_refused(study.type("prepare @cloths.json"), 2, {"/classes/1/images/0", "linen-photo.png"});
+  CHECK(contents(study.path()) == before);
+  CHECK_FALSE(fs::exists(study.path() / "cloths.pack"));
+
+  replace_file(study.path() / "linen-photo.png", ByteView(picture));
+  study.done("prepare @cloths.json");
+  json changed = quick_study();
+  changed["trials"]["repeats"] = 3;
+  replace_file(study.path() / "cloths.json", changed.dump());
+  cut(study.path() / "linen-photo.png");
+  const auto prepared = contents(study.path());
+  check_refused(study.type("prepare @cloths.json --passphrase --passphrase-file @pass.txt"), 1,
+                {"pass.txt"});
+  CHECK(contents(study.path()) == prepared);
+  CHECK(study.type("prepare @cloths.json").exit_code == 2);
+  CHECK(contents(study.path()) == prepared);
+}
+
+TEST_CASE("what a killed prepare left is used or removed by the next one") {
+  const StudyFolder study;
+  replace_file(study.path() / "cloths.json", quick_study().dump());
+  study.done("prepare @cloths.json");
+  const auto whole = contents(study.path());
+  for (const char* left :
+       {"cloths.key.unfinished", "cloths.key.unfinished.tmp12", "cloths.key.lock",
+        "cloths.key.0123abcd.unfinished", "cloths.station.unfinished"}) {
+    replace_file(study.path() / left, std::string("left"), FileMode::owner_only);
+  }
+  fs::create_directory(study.path() / "cloths.pack/prepare.drafts");
+  replace_file(study.path() / "cloths.pack/prepare.drafts/pack.json", std::string("left"));
+  study.done("prepare @cloths.json");
+  CHECK(contents(study.path()) == whole);
+}
+
+TEST_CASE("of two prepares at once none is mixed with the other") {
+  const StudyFolder study;
+  replace_file(study.path() / "cloths.json", quick_study().dump());
+  json other = quick_study();
+  other["trials"]["repeats"] = 5;
+  replace_file(study.path() / "other.json", other.dump());
+  constexpr int kPairs = 20;
+  for (int pair = 0; pair < kPairs; ++pair) {
+    const std::string pack = "p" + std::to_string(pair) + ".pack";
+    // Another name of a pack has the same key.
+    const std::string second = pair % 2 == 0 ? pack : "p" + std::to_string(pair);
+    const std::string file = pair % 4 < 2 ? "other.json" : "cloths.json";
+    const ProgramResult both =
+        run_program("/bin/sh", study.path(),
+                    {"-c",
+                     "(\"$0\" prepare cloths.json --pack $1; echo $? >first.rc) 2>first.txt & "
+                     "(\"$0\" prepare $3 --pack $2; echo $? >second.rc) 2>second.txt; wait",
+                     TOUCHTRIAL_PROGRAM, study.in(pack), study.in(second), study.in(file)});
+    INFO(pair << both.errors << content(study.path() / "first.txt")
+              << content(study.path() / "second.txt"));
+    const std::string codes =
+        content(study.path() / "first.rc") + content(study.path() / "second.rc");
+    CHECK(codes.find('0') != std::string::npos);
+    CHECK(codes.find_first_not_of("01\n") == std::string::npos);
+    const ProgramResult held = study.type("key check @p" + std::to_string(pair) + ".key");
+    INFO(held.output << held.errors);
+    CHECK(held.exit_code == 0);
+  }
+}
+
 TEST_CASE("prepare refuses pictures of unequal size, with the remedy, and writes nothing") {
   const StudyFolder study;
   write_png(study.path() / "corduroy-photo.png", GreyImage(60, 120, 90));

@@ -1,6 +1,7 @@
 // One byte altered in each kind of evidence: `verify` names it and ends with 3.
 #include "app/study_folder.hpp"
 #include "core/bytes.hpp"
+#include "core/hash.hpp"
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
 
@@ -118,7 +119,7 @@ const std::vector<Tampering> kTamperings = {
        // One digit changes, so that the value still has the form of an identity.
        flip(list, content(list).find(id) + id.find_first_of("0123456789"));
      },
-     {"pack", "failed", "the pack is of study"}},
+     {"pack", "failed", "another study's pack"}},
     {"a field",
      [](const StudyFolder& study) {
        const fs::path field = first_field(study);
@@ -175,6 +176,70 @@ TEST_CASE("verify names one altered byte anywhere, with exit 3") {
     }
   }
   succeeded(study.verify());
+}
+
+TEST_CASE("what was altered before the first session is refused, and built anew by prepare") {
+  const StudyFolder study;
+  study.done("prepare @cloths.json");
+  const fs::path list = study.path() / "cloths.pack/pack.json";
+  const json whole = json::parse(content(list));
+  const auto refused = [&](const std::string& part) {
+    check_refused(study.type("run @cloths.json --participant P01 --db @study.db --subject "
+                             "@quick.json --headless"),
+                  1, {part});
+    const ProgramResult checked = study.type("key check @cloths.json");
+    CHECK(checked.exit_code == 3);
+    CHECK_THAT(checked.output, holds_text(part));
+    CHECK_FALSE(fs::exists(study.path() / "study.db"));
+  };
+  const auto prepared = [&] {
+    const ProgramResult again = study.done("prepare @cloths.json");
+    study.done("key check @cloths.json");
+    return again.output + again.errors;
+  };
+  SECTION("gains") {
+    json altered = whole;
+    for (json& field : altered["fields"]) field["gains"]["tangential_n"] = 0.0;
+    replace_file(list, altered.dump(2) + "\n");
+    refused("is not signed by the study's investigator");
+    CHECK_THAT(prepared(), holds_text("built 3, reused 0") && holds_text("built anew"));
+    CHECK(json::parse(content(list)) == whole);
+  }
+  SECTION("pictures") {
+    fs::rename(study.path() / "linen-photo.png", study.path() / "kept.png");
+    fs::copy(study.path() / "granite-photo.png", study.path() / "linen-photo.png");
+    refused("linen-photo.png: participants would see another picture");
+    fs::rename(study.path() / "kept.png", study.path() / "linen-photo.png");
+    CHECK_THAT(prepared(), holds_text("built 0, reused 3"));
+  }
+  SECTION("the station's file of another investigator") {
+    fs::create_directory(study.path() / "forger");
+    study.done("prepare @cloths.json --pack @forger/cloths.pack");
+    json forged = json::parse(content(study.path() / "cloths.station"));
+    const json theirs = json::parse(content(study.path() / "forger/cloths.station"));
+    forged["investigator_box"] = theirs["investigator_box"];
+    forged.erase("check");
+    forged["check"] = to_hex(sha256(bytes_of(forged.dump())));
+    replace_file(study.path() / "cloths.station", forged.dump(2) + "\n", FileMode::owner_only);
+    check_refused(study.type("run @cloths.json --participant P01 --db @study.db --subject "
+                             "@quick.json --headless"),
+                  1, {"seals for another investigator"});
+    CHECK(study.type("key check @cloths.json").exit_code == 3);
+    CHECK_THAT(prepared(), holds_text("built 0, reused 3"));
+  }
+}
+
+TEST_CASE("a shown picture that was altered since is named by verify") {
+  const PreparedStudy study;
+  CHECK_THAT(succeeded(study.verify()).output, holds_text("3 of 3 shown pictures compared"));
+  Bytes picture = read_file(study.path() / "linen-photo.png");
+  picture.push_back(0);
+  replace_file(study.path() / "linen-photo.png", ByteView(picture));
+  const ProgramResult found = study.verify();
+  CHECK(found.exit_code == 3);
+  CHECK_THAT(failed_lines(found.output), holds_text("linen-photo.png"));
+  fs::remove(study.path() / "linen-photo.png");
+  CHECK_THAT(succeeded(study.verify()).output, holds_text("2 of 3 shown pictures compared"));
 }
 
 TEST_CASE("verify prints UTF-8 even for a damaged list of the pack, as lines and as JSON") {

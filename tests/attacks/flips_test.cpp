@@ -1,9 +1,8 @@
 // One bit flipped in a file of a study: every byte of the small files in turn, and places of the
-// database and the fields that a seed decides.
+// database that a seed decides. pack_test.cpp has the pack.
 #include "attacks/forger.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "engine/pack/pack.hpp"
 #include "protocols/store/head_file.hpp"
 #include "support/catch.hpp"
 
@@ -80,30 +79,6 @@ TEST_CASE("a flipped bit in any byte of a head file is told") {
     const auto reading = head.reading(signers);
     return reading && !reading->damage.empty() ? Outcome::named : Outcome::possible;
   });
-}
-
-TEST_CASE("a flipped bit in any byte of the pack's list or of a field is found") {
-  AttackedStudy study(0);
-  study.close();
-  const engine::Pack whole(study.pack_folder());
-  const std::string& code = study.key().stimuli.front().code;
-  // The first event has the pack's digest. A hexadecimal digit may become a capital, which says the
-  // same.
-  flip_each("the pack's list", study.pack_folder() / "pack.json", 1, [&] {
-    try {
-      const engine::Pack pack(study.pack_folder());
-      if (pack.digest() != whole.digest()) return Outcome::named;
-      return pack.manifest().entries == whole.manifest().entries ? Outcome::unchanged
-                                                                 : Outcome::possible;
-    } catch (const Error&) {
-      return Outcome::refused;
-    }
-  });
-  REQUIRE(whole.is_intact(code));
-  flip_each("a field", study.pack_folder() / (code + ".field"), 1,
-            [&] { return whole.is_intact(code) ? Outcome::possible : Outcome::named; });
-  flip(study.pack_folder() / (code + ".field"), 60, 0);
-  CHECK(study.found().starts_with("pack: field " + code));
 }
 
 TEST_CASE("a flipped bit anywhere in the database is named, refused, or changes no row") {

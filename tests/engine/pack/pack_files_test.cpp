@@ -181,9 +181,13 @@ engine::PackEntry entry(const std::string& code, std::uint8_t byte, engine::Gain
 }
 
 engine::PackManifest two_entries() {
-  return {"00ff",
-          {entry("aaaaaaaaaaaaaaaa", 1, {0.1, 1.0 / 3.0}),
-           entry("bbbbbbbbbbbbbbb2", 3, {1e-300, 0.0})}};
+  return {
+      "00ff",
+      {entry("aaaaaaaaaaaaaaaa", 1, {0.1, 1.0 / 3.0}), entry("bbbbbbbbbbbbbbb2", 3, {1e-300, 0.0})},
+      {0xab},
+      {0xcd},
+      {{1}, {2}},
+      {0xef}};
 }
 
 /// A manifest's text with the first occurrence of one part replaced.
@@ -213,8 +217,10 @@ bool is_refused(const std::string& text, const std::string& words) {
 TEST_CASE("a manifest's text has sorted keys and every key once") {
   const engine::PackManifest manifest{"00ff", {entry("aaaaaaaaaaaaaaaa", 1, {0.1, 0.5})}};
   CHECK(engine::manifest_to_json({"00ff", {}}) ==
-        "{\n  \"fields\": [],\n  \"format\": \"touchtrial-pack\",\n  \"study_id\": \"00ff\",\n"
-        "  \"version\": 3\n}\n");
+        "{\n  \"fields\": [],\n  \"format\": \"touchtrial-pack\",\n  \"investigator_box\": \"" +
+            std::string(64, '0') + "\",\n  \"pictures\": [],\n  \"seal\": \"" +
+            std::string(64, '0') + "\",\n  \"signature\": \"" + std::string(128, '0') +
+            "\",\n  \"study_id\": \"00ff\",\n  \"version\": 4\n}\n");
   CHECK(engine::manifest_to_json(manifest).find(
             "\"normal_n\": 0.5,\n        \"tangential_n\": 0.1\n") != std::string::npos);
 }
@@ -260,11 +266,11 @@ TEST_CASE("manifest_from_json names the place of what it refuses") {
   };
   const auto tried = GENERATE(values<Case>({
       {"touchtrial-pack", "zip", "/format: must be"},
-      {"\"version\": 3", "\"version\": 2", "/version: is not 3"},
-      {"\"version\": 3", "\"version\": \"3\"", "/version: must be a whole number"},
-      {"\"version\": 3", "\"version\": 3, \"note\": 0", "/note: is not a known key"},
-      {"\"version\": 3", "\"version\": 3, \"a/b~c\": 0", "/a~1b~0c: is not a known key"},
-      {",\n  \"version\": 3", "", "/version: is missing"},
+      {"\"version\": 4", "\"version\": 2", "/version: is not 4"},
+      {"\"version\": 4", "\"version\": \"3\"", "/version: must be a whole number"},
+      {"\"version\": 4", "\"version\": 4, \"note\": 0", "/note: is not a known key"},
+      {"\"version\": 4", "\"version\": 4, \"a/b~c\": 0", "/a~1b~0c: is not a known key"},
+      {",\n  \"version\": 4", "", "/version: is missing"},
       {"\"00ff\"", "\"bark\"", "/study_id: must be hexadecimal"},
       {"\"00ff\"", "17", "/study_id: must be text"},
       {"aaaaaaaaaaaaaaaa", "../aaaaaaaaaaaaa", "/fields/0/code: must be 16"},
@@ -284,6 +290,16 @@ TEST_CASE("manifest_from_json names the place of what it refuses") {
        "/fields/0/gains/height_mm: is -1, must be from 0"},
       {"\"height_mm\": 0.0,", "", "/fields/0/gains/height_mm: is missing"},
       {"0.1", "0.1, \"spring_n\": 1", "/fields/0/gains/spring_n: is not a known key"},
+      {"\"ab00", "\"ab", "/seal: must be 64"},
+      {"\"cd00", "\"cd", "/investigator_box: must be 64"},
+      {"\"ef00", "\"ef", "/signature: must be 128"},
+      {"\"pictures\": [", "\"pictures\": [\"00\", ", "/pictures/0: must be 64"},
+      {"\"ab00", "\"AB00", "is altered since"},
+      {"\"ef00", "\"eF00", "is altered since"},
+      {"0.1", "1e-1", "is altered since"},
+      {"0.1", "0.10000000000000000001", "is altered since"},
+      {"\"fields\": [", "\"fields\":  [", "is altered since"},
+      {"\"00ff\"", "\"00\\u0066f\"", "is altered since"},
   }));
   const std::string message = refusal_of(with(tried.part, tried.other));
   CAPTURE(message, tried.expected);
@@ -303,7 +319,7 @@ TEST_CASE("manifest_from_json refuses texts that are not manifests") {
 }
 
 TEST_CASE("manifest_from_json refuses a key that is twice in one object") {
-  CHECK(is_refused(with("\"version\": 3", "\"version\": 3, \"version\": 3"),
+  CHECK(is_refused(with("\"version\": 4", "\"version\": 4, \"version\": 4"),
                    "/version: is there twice"));
   CHECK(is_refused(with("\"normal_n\"", "\"tangential_n\": 9, \"normal_n\""),
                    "/fields/0/gains/tangential_n: is there twice"));

@@ -4,6 +4,7 @@
 #include "protocols/design/laboratory.hpp"
 #include "protocols/design/pack_upkeep.hpp"
 #include "protocols/design/refusal.hpp"
+#include "protocols/design/signed_pack.hpp"
 #include "protocols/design/stimulus_field.hpp"
 #include "support/catch.hpp"
 
@@ -158,7 +159,100 @@ TEST_CASE("a damaged or missing field is built again") {
   const design::PrepareReport report = laboratory.prepare();
   CHECK(reused(report) == 1);
   CHECK(report.stimuli[1].reused);
+  CHECK(report.warnings.size() == 2);
+  CHECK(warns(report, "class \"c0\", image c0_0.png, method adaptive: its field was damaged"));
   CHECK(laboratory.files() == whole);
+}
+
+TEST_CASE("a pack whose gains, fields or list the key did not sign is built anew, with a warning") {
+  const Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  const auto whole = laboratory.files();
+  engine::PackManifest manifest = engine::Pack(laboratory.pack()).manifest();
+  SECTION("other gains") {
+    manifest.entries[1].gains.tangential_n *= 20.0;
+  }
+  SECTION("two fields exchanged, with their checksums") {
+    const auto file = [&](std::size_t i) {
+      return design::field_path(laboratory.pack(), manifest.entries[i].code);
+    };
+    const Bytes first = read_file(file(0));
+    replace_file(file(0), read_file(file(1)));
+    replace_file(file(1), first);
+    std::swap(manifest.entries[0].checksum, manifest.entries[1].checksum);
+  }
+  SECTION("another identity") {
+    manifest.study_id = "00";
+  }
+  engine::write_manifest(laboratory.pack(), manifest);
+  const design::PrepareReport report = laboratory.prepare();
+  CHECK(reused(report) == 0);
+  CHECK(warns(report, "pack.json: was altered since it was signed: all fields were built anew"));
+  CHECK(laboratory.files() == whole);
+}
+
+TEST_CASE("a picture that participants see is signed by its name and bytes, in no order of codes") {
+  const Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  const design::StudyKey key = laboratory.key();
+  CHECK_NOTHROW(design::require_whole(engine::Pack(laboratory.pack()), key));
+  const auto before = engine::Pack(laboratory.pack()).manifest().pictures;
+  CHECK(before == design::picture_digests(key.study));
+  CHECK(std::ranges::is_sorted(before));
+
+  const Bytes first = read_file(laboratory.image(0));
+  const Bytes second = read_file(laboratory.image(1));
+  const auto refused = [&](const std::string& part) {
+    return refuses<FileError>(
+        [&] {
+          design::require_whole(engine::Pack(laboratory.pack()), key);
+          return 0;
+        },
+        part);
+  };
+  replace_file(laboratory.image(0), second);
+  replace_file(laboratory.image(1), first);
+  CHECK(refused(laboratory.image(0).string() + ": participants would see another picture"));
+  replace_file(laboratory.image(1), second);
+  std::filesystem::remove(laboratory.image(0));
+  CHECK(refused(laboratory.image(0).string() + ": does not exist"));
+  replace_file(laboratory.image(0), first);
+  CHECK_NOTHROW(design::require_whole(engine::Pack(laboratory.pack()), key));
+
+  // Other bytes of the same pixels: the fields stay, and the list is signed anew.
+  Bytes longer = first;
+  longer.push_back(0);
+  replace_file(laboratory.image(0), longer);
+  CHECK(refused("participants would see another picture"));
+  CHECK(reused(laboratory.prepare()) == 3);
+  CHECK_NOTHROW(design::require_whole(engine::Pack(laboratory.pack()), key));
+}
+
+TEST_CASE("a pack is whole for its own investigator, and for the study as it was sealed") {
+  Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  const engine::Pack pack(laboratory.pack());
+  const design::StudyKey key = laboratory.key();
+  const auto refused = [&](auto change, const std::string& part) {
+    design::StudyCodes codes = key;
+    change(codes);
+    return refuses<FileError>(
+        [&] {
+          design::require_whole(pack, codes);
+          return 0;
+        },
+        part);
+  };
+  using Codes = design::StudyCodes;
+  CHECK(refused([](Codes& codes) { codes.study_id = "00"; }, "is another study's pack"));
+  CHECK(refused([](Codes& codes) { codes.investigator_signature[0] ^= 1U; }, "is not signed by"));
+  CHECK(refused([](Codes& codes) { codes.investigator_box[0] ^= 1U; }, "another investigator"));
+  CHECK(refused([](Codes& codes) { codes.seal[0] ^= 1U; }, "before or after a change"));
+  laboratory.document["trials"]["repeats"] = 9;
+  const design::StudyKey changed = design::rekeyed(key, laboratory.key().study);
+  CHECK_THROWS_AS(design::require_whole(pack, changed), FileError);
+  CHECK(reused(laboratory.prepare()) == 3);
+  CHECK_NOTHROW(design::require_whole(engine::Pack(laboratory.pack()), changed));
 }
 
 TEST_CASE("a damaged table of contents is replaced, with a warning") {
@@ -172,7 +266,7 @@ TEST_CASE("a damaged table of contents is replaced, with a warning") {
   CHECK(laboratory.files() == whole);
 }
 
-TEST_CASE("an interrupted prepare leaves a pack that is nobody's, and keeps what is finished") {
+TEST_CASE("a prepare that fails leaves the pack as it was, and its work to the next one") {
   const Laboratory laboratory;
   static_cast<void>(laboratory.prepare());
   const auto whole = laboratory.files();
@@ -180,17 +274,67 @@ TEST_CASE("an interrupted prepare leaves a pack that is nobody's, and keeps what
   write_noise(laboratory.image(1), 92);
   replace_file(laboratory.image(2), std::string("not an image"));
   CHECK_THROWS_AS(laboratory.prepare(), StudyError);
-  const design::StudyKey key = laboratory.key();
-  CHECK(engine::Pack(laboratory.pack()).manifest().study_id == design::unfinished_id(key));
-  CHECK(design::unfinished_id(key) != key.study_id);
+  const auto drafts = design::draft_folder(laboratory.pack());
+  CHECK(std::filesystem::is_directory(drafts));
+  for (const auto& [name, content] : whole) CHECK(read_file(laboratory.pack() / name) == content);
+  CHECK_THROWS_AS(design::require_whole(engine::Pack(drafts), laboratory.key()), FileError);
 
   write_noise(laboratory.image(2), 2);
-  const design::PrepareReport completed = laboratory.prepare();
-  CHECK(reused(completed) == 3);
-  CHECK(engine::Pack(laboratory.pack()).manifest().study_id == key.study_id);
+  CHECK(reused(laboratory.prepare()) == 3);
   for (std::uint64_t c = 0; c < 2; ++c) write_noise(laboratory.image(c), c);
   static_cast<void>(laboratory.prepare());
   CHECK(laboratory.files() == whole);
+}
+
+TEST_CASE("a prepare that fails with a new key leaves nothing") {
+  const Laboratory laboratory;
+  replace_file(laboratory.image(2), std::string("not an image"));
+  const auto prepare = [&] {
+    return design::prepare_pack(design::PackLock(laboratory.pack()), laboratory.key(), {},
+                                {.is_new_key = true});
+  };
+  CHECK_THROWS_AS(prepare(), StudyError);
+  CHECK_FALSE(std::filesystem::exists(laboratory.pack()));
+}
+
+TEST_CASE("a prepare that is killed between two renames is completed by the next one") {
+  const Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  for (std::uint64_t c = 0; c < 3; ++c) write_noise(laboratory.image(c), 90 + c);
+  const auto broken_off = [&] { throw FileError("broken off"); };
+  CHECK_THROWS_AS(design::prepare_pack(laboratory.key(), laboratory.pack(), {},
+                                       {.publish_secrets = broken_off}),
+                  FileError);
+  // Fields are renamed in the order of their codes, the list last.
+  const int renamed = GENERATE(0, 1, 2, 3);
+  const auto drafts = design::draft_folder(laboratory.pack());
+  const auto entries = engine::Pack(drafts).manifest().entries;
+  REQUIRE(entries.size() == 3);
+  for (int i = 0; i < renamed; ++i) {
+    const std::string& code = entries[static_cast<std::size_t>(i)].code;
+    std::filesystem::rename(design::field_path(drafts, code),
+                            design::field_path(laboratory.pack(), code));
+  }
+  CHECK_THROWS_AS(design::require_whole(engine::Pack(laboratory.pack()), laboratory.key()),
+                  FileError);
+  const design::PrepareReport completed = laboratory.prepare();
+  CHECK(reused(completed) == 3);
+  CHECK(completed.warnings.empty());
+  CHECK_NOTHROW(design::require_whole(engine::Pack(laboratory.pack()), laboratory.key()));
+  CHECK_FALSE(std::filesystem::exists(drafts));
+}
+
+TEST_CASE("a field that is built anew has the time of all others") {
+  const Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  write_noise(laboratory.image(1), 77);
+  static_cast<void>(laboratory.prepare());
+  const auto time_of = [&](std::size_t i) {
+    return std::filesystem::last_write_time(
+        design::field_path(laboratory.pack(), laboratory.key().stimuli[i].code));
+  };
+  CHECK(time_of(0) == time_of(1));
+  CHECK(time_of(1) == time_of(2));
 }
 
 TEST_CASE("fields of stimuli that are gone, and drafts, are removed, and other files stay") {
@@ -266,24 +410,32 @@ TEST_CASE("two prepares of one pack do not run at once") {
   static_cast<void>(laboratory.prepare());
   {
     const design::PackLock lock(laboratory.pack());
-    CHECK(refuses<FileError>([&] { return laboratory.prepare(); }, "is being prepared by another"));
+    CHECK(refuses<FileError>([&] { return laboratory.prepare(); }, "is being prepared, or read"));
   }
   CHECK(reused(laboratory.prepare()) == 3);
 }
 
-TEST_CASE("a preparation may wait until another one of the same pack ends") {
+TEST_CASE("a lock may be waited for, readers share it, and a folder that stays empty goes") {
+  using Lock = design::PackLock;
   const Laboratory laboratory;
+  {
+    const Lock other(laboratory.pack());
+    CHECK_THROWS_AS(Lock(laboratory.pack(), Lock::Use::read), FileError);
+  }
+  CHECK_FALSE(std::filesystem::exists(laboratory.pack()));
+  CHECK_NOTHROW(Lock(laboratory.pack(), Lock::Use::read));
   static_cast<void>(laboratory.prepare());
+  std::optional<Lock> reading(std::in_place, laboratory.pack(), Lock::Use::read);
+  CHECK_NOTHROW(Lock(laboratory.pack(), Lock::Use::read));
+  CHECK_THROWS_AS(Lock(laboratory.pack()), FileError);
   std::atomic<bool> is_free{false};
-  std::optional<design::PackLock> other(std::in_place, laboratory.pack());
   auto waiting = std::async(std::launch::async, [&] {
-    const design::PrepareReport report =
-        design::prepare_pack(laboratory.key(), laboratory.pack(), {}, {.wait = true});
-    return is_free.load() ? reused(report) : -1;
+    const Lock lock(laboratory.pack(), Lock::Use::prepare, Lock::Wait::yes);
+    return is_free.load();
   });
   is_free = true;
-  other.reset();
-  CHECK(waiting.get() == 3);
+  reading.reset();
+  CHECK(waiting.get());
 }
 
 TEST_CASE("a file in the place of the pack is refused") {

@@ -17,6 +17,12 @@ design::StationKey station_of(const design::StudyKey& key) {
   return design::station_key(key, key.stations.front().name);
 }
 
+TinyStudyOptions with_pictures() {
+  TinyStudyOptions options;
+  options.pictures = true;
+  return options;
+}
+
 /// What a station's file that was changed in one way is refused with.
 std::string fault_of(const TinyStudy& study,
                      const std::function<void(design::StationKey&)>& change) {
@@ -34,7 +40,7 @@ std::string fault_of(const TinyStudy& study,
 
 TEST_CASE("what a station seals opens with its study's key") {
   for (const bool comparison : {false, true}) {
-    TinyStudyOptions options;
+    TinyStudyOptions options = with_pictures();
     options.comparison = comparison;
     const TinyStudy study(options);
     CHECK_NOTHROW(session::require_opens(study.key(), station_of(study.key()), study.pack()));
@@ -42,7 +48,7 @@ TEST_CASE("what a station seals opens with its study's key") {
 }
 
 TEST_CASE("every station of a divided study is proved, and an older file of one is not") {
-  const TinyStudy study;
+  const TinyStudy study(with_pictures());
   design::StudyKey key = study.key();
   const std::vector<std::string> names = {"attic", "cellar"};
   std::vector<design::Station> stations = design::stations_named(names);
@@ -69,7 +75,7 @@ TEST_CASE("every station of a divided study is proved, and an older file of one 
 }
 
 TEST_CASE("a station's file that differs from the key in anything is refused") {
-  const TinyStudy study;
+  const TinyStudy study(with_pictures());
   using Key = design::StationKey;
   CHECK(fault_of(study, [](Key&) {}) == "nothing");
   const std::vector<std::pair<void (*)(Key&), const char*>> changes = {
@@ -89,9 +95,9 @@ TEST_CASE("a station's file that differs from the key in anything is refused") {
   }
 }
 
-TEST_CASE("another study's pack, and a pack with an altered field, are refused") {
-  const TinyStudy study;
-  TinyStudyOptions options;
+TEST_CASE("another study's pack, an altered field and an altered picture are refused") {
+  const TinyStudy study(with_pictures());
+  TinyStudyOptions options = with_pictures();
   options.secret = 2;
   const TinyStudy other(options);
   const design::StationKey station = station_of(study.key());
@@ -103,7 +109,14 @@ TEST_CASE("another study's pack, and a pack with an altered field, are refused")
   bytes.back() ^= 1U;
   replace_file(field, bytes);
   CHECK_THROWS_WITH(session::require_opens(study.key(), station, study.pack()),
-                    holds_text("fields are not those that were prepared"));
+                    holds_text("is not what was prepared"));
+  bytes.back() ^= 1U;
+  replace_file(field, bytes);
+  CHECK_NOTHROW(session::require_opens(study.key(), station, study.pack()));
+  const auto picture = study.key().study.folder / "even0.png";
+  replace_file(picture, std::string("another"));
+  CHECK_THROWS_WITH(session::require_opens(study.key(), station, study.pack()),
+                    holds_text(picture.string() + ": participants would see another picture"));
 }
 
 }  // namespace touchtrial

@@ -2,6 +2,7 @@
 
 #include "core/random.hpp"
 #include "engine/image_file.hpp"
+#include "protocols/design/signed_pack.hpp"
 
 #include <algorithm>
 #include <array>
@@ -82,7 +83,8 @@ engine::Pack write_pack(const std::filesystem::path& folder, const design::Study
     const double factor = options.smooth ? 0.0 : (is_first ? options.first_gain : 1.0);
     manifest.entries.push_back({code, checksum, {}, times(factor, gains.of_field[i])});
   }
-  std::ranges::sort(manifest.entries, {}, &engine::PackEntry::code);
+  design::sign(manifest, key,
+               options.pictures ? design::picture_digests(key.study) : std::vector<Digest>());
   engine::write_manifest(folder, manifest);
   return engine::Pack(folder);
 }
@@ -93,6 +95,17 @@ void write_picture(const Plane<double>& texture, const std::filesystem::path& pa
     return static_cast<std::uint8_t>(std::clamp(std::lround(128.0 + sample), 0L, 255L));
   });
   engine::write_png(path, picture);
+}
+
+design::StudyKey key_in(const std::filesystem::path& folder, const TinyStudyOptions& options) {
+  design::StudyKey key = key_with(options);
+  if (!options.pictures) return key;
+  key.study.folder = folder;
+  for (int i = 0; i < static_cast<int>(key.study.classes.size()); ++i) {
+    write_picture(tiny_texture({.class_index = i}, options.side_px),
+                  folder / key.study.classes[static_cast<std::size_t>(i)].images.front());
+  }
+  return key;
 }
 
 }  // namespace
@@ -121,14 +134,8 @@ Plane<double> tiny_texture(const design::StimulusIndex& stimulus, int side_px) {
 }
 
 TinyStudy::TinyStudy(const TinyStudyOptions& options)
-    : key_(key_with(options)), pack_(write_pack(folder_.path() / "tiny.sim.pack", key_, options)) {
-  if (!options.pictures) return;
-  key_.study.folder = folder_.path();
-  for (int i = 0; i < static_cast<int>(key_.study.classes.size()); ++i) {
-    write_picture(tiny_texture({.class_index = i}, options.side_px),
-                  folder_.path() / key_.study.classes[static_cast<std::size_t>(i)].images.front());
-  }
-}
+    : key_(key_in(folder_.path(), options)),
+      pack_(write_pack(folder_.path() / "tiny.sim.pack", key_, options)) {}
 
 std::filesystem::path TinyStudy::next_database() {
   return folder_.path() / (std::to_string(++databases_) + ".db");
