@@ -177,8 +177,14 @@ void check_pieces(ByteView file, const Layout& layout, const Pieces& pieces) {
 
 /// A fourth channel that the file does not describe is alpha by common usage.
 Alpha alpha_rule(const TiffDirectory& directory) {
-  const std::uint32_t meaning = directory.value(TiffTag::extra_samples, EXTRASAMPLE_UNASSALPHA);
-  return meaning == EXTRASAMPLE_UNASSALPHA ? Alpha::straight : Alpha::ignored;
+  switch (directory.value(TiffTag::extra_samples, EXTRASAMPLE_UNASSALPHA)) {
+    case EXTRASAMPLE_UNASSALPHA:
+      return Alpha::straight;
+    case EXTRASAMPLE_ASSOCALPHA:
+      return Alpha::multiplied;
+    default:
+      return Alpha::none;
+  }
 }
 
 /// libtiff ignores entries that it finds wrong, and assumes their usual values. That must not
@@ -278,7 +284,8 @@ constexpr int kHandled = 1;
 
 using TiffFile = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 
-TiffFile opened(Source& source) {
+/// \param directory  where it starts in the file
+TiffFile opened(Source& source, std::size_t directory) {
   // A picture takes at most eight bytes per pixel.
   constexpr tmsize_t kLargestBlock = 8 * kMaxImagePixels + (1 << 20U);
   const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
@@ -287,10 +294,12 @@ TiffFile opened(Source& source) {
   TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), kLargestBlock);
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, &source);
   TIFFOpenOptionsSetWarningHandlerExtR(options.get(), weigh_warning, &source);
-  TiffFile tiff(TIFFClientOpenExt("picture", "rc", &source, take_bytes, give_nothing, move_to,
+  TiffFile tiff(TIFFClientOpenExt("picture", "rch", &source, take_bytes, give_nothing, move_to,
                                   leave_open, size_of_file, map_file, leave_mapped, options.get()),
                 TIFFClose);
-  if (!tiff) throw_damaged_image(source.complaint.data());
+  if (!tiff || TIFFSetSubDirectory(tiff.get(), directory) == 0) {
+    throw_damaged_image(source.complaint.data());
+  }
   source.complaint.fill(0);
   source.decoding = true;
   return tiff;
@@ -315,7 +324,7 @@ struct Rgba : TIFFRGBAImage {
 /// RGBA. If the file declares straight alpha, libtiff multiplies the colours by it and rounds as we
 /// do.
 GreyImage read_as_rgba(TIFF* tiff, const Source& source, const Layout& layout,
-                       std::uint64_t piece_height, Alpha alpha) {
+                       std::uint64_t piece_height, Alpha alpha, GreyScale& scale) {
   Rgba rgba(tiff);
   source.require(rgba.width == layout.width && rgba.height == layout.height);
   GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
@@ -332,7 +341,7 @@ GreyImage read_as_rgba(TIFF* tiff, const Source& source, const Layout& layout,
       for (std::size_t k = 0; k < 4; ++k) {
         samples[k] = static_cast<std::uint8_t>(raster[i] >> (8 * k));
       }
-      image.samples()[first + i] = grey_of(samples.data(), 4, alpha);
+      image.samples()[first + i] = scale.grey_of(samples.data(), 4, alpha);
     }
   }
   return image;
@@ -342,7 +351,7 @@ GreyImage read_as_rgba(TIFF* tiff, const Source& source, const Layout& layout,
 /// libtiff's conversion would lose their precision, or their alpha.
 template <typename Sample>
 GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
-                       Alpha alpha) {
+                       Alpha alpha, GreyScale& scale) {
   GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
   const std::size_t row_size = pieces.width * layout.channels;
   std::vector<Sample> piece(row_size * pieces.height);
@@ -362,8 +371,8 @@ GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, c
     const std::uint64_t rows = std::min(pieces.height, layout.height - top);
     const std::uint64_t width = std::min(pieces.width, layout.width - left);
     for (std::uint64_t y = 0; y < rows; ++y) {
-      make_grey(piece.data() + y * row_size, static_cast<int>(layout.channels), alpha,
-                image.row(static_cast<int>(top + y)).subspan(left, width));
+      scale.make_grey(piece.data() + y * row_size, static_cast<int>(layout.channels), alpha,
+                      image.row(static_cast<int>(top + y)).subspan(left, width));
     }
   }
   return image;
@@ -371,25 +380,28 @@ GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, c
 
 }  // namespace
 
-GreyImage read_tiff(ByteView file) {
-  const TiffDirectory directory(file);
+GreyImage read_tiff(ByteView file, GreyScale& scale, ImageNotes& notes) {
+  const TiffPictures pictures = pictures_of_tiff(file);
+  notes.pictures = pictures.count;
+  const TiffDirectory directory(file, pictures.first);
   const Layout layout = read_layout(directory);
   check_samples(directory, layout);
   const Pieces pieces = read_pieces(directory, layout);
   check_pieces(file, layout, pieces);
   Source source{.file = file};
-  const TiffFile tiff = opened(source);
+  const TiffFile tiff = opened(source, pictures.first);
   require_same_view(tiff.get(), directory, layout);
   const Alpha alpha = alpha_rule(directory);
   if (layout.bits == 16) {
-    return read_samples<std::uint16_t>(tiff.get(), source, layout, pieces, alpha);
+    return read_samples<std::uint16_t>(tiff.get(), source, layout, pieces, alpha, scale);
   }
   if (layout.channels == 2) {
-    return read_samples<std::uint8_t>(tiff.get(), source, layout, pieces, alpha);
+    return read_samples<std::uint8_t>(tiff.get(), source, layout, pieces, alpha, scale);
   }
-  const bool is_composited = directory.has(TiffTag::extra_samples);
+  // libtiff has composited an alpha channel that the file describes.
+  const bool is_composited = directory.has(TiffTag::extra_samples) && alpha == Alpha::straight;
   return read_as_rgba(tiff.get(), source, layout, pieces.height,
-                      is_composited ? Alpha::ignored : Alpha::straight);
+                      is_composited ? Alpha::multiplied : alpha, scale);
 }
 
 }  // namespace touchtrial::engine

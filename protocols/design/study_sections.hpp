@@ -98,8 +98,7 @@ inline constexpr int kMaxScoredTrials = 10'000;
 /// \throws StudyError if the text is not such a name
 [[nodiscard]] std::string read_plain_name(const JsonValue& place);
 
-/// Refuses a label that another one equals, or from which it differs only by what nobody can say
-/// aloud and some file systems do not tell apart: ASCII capitals, blanks and hyphens.
+/// Refuses a label that another one equals or looks like (skeleton_of).
 /// \param of  what has labels: "class"
 /// \throws StudyError with the place
 void refuse_same_label(const JsonValue& place, const std::string& label, const std::string& other,

@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
+#include "core/text.hpp"
 #include "engine/image_file.hpp"
 #include "engine/image_notes.hpp"
 #include "engine/pictures/colour_image.hpp"
@@ -25,10 +26,10 @@ constexpr std::size_t kLongestLabel = 64;  // bytes, as in study files
 
 /// Endings of photographs, including those that this program cannot read: such files are refused by
 /// name rather than ignored.
-constexpr std::array<std::string_view, 26> kPictureEndings = {
-    ".png", ".jpg", ".jpeg", ".jpe",  ".tif",  ".tiff", ".bmp", ".pgm", ".ppm",
-    ".pnm", ".gif", ".webp", ".heic", ".heif", ".avif", ".jp2", ".jxl", ".dng",
-    ".cr2", ".cr3", ".nef",  ".arw",  ".raw",  ".psd",  ".exr", ".pbm"};
+constexpr std::array<std::string_view, 27> kPictureEndings = {
+    ".png", ".jpg", ".jpeg", ".jpe",  ".tif",  ".tiff", ".bmp",  ".pgm", ".ppm",
+    ".pnm", ".gif", ".jfif", ".webp", ".heic", ".heif", ".avif", ".jp2", ".jxl",
+    ".dng", ".cr2", ".cr3",  ".nef",  ".arw",  ".raw",  ".psd",  ".exr", ".pbm"};
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
@@ -42,7 +43,8 @@ std::string lower_case(std::string text) {
 }
 
 bool is_picture(const fs::path& file) {
-  return std::ranges::count(kPictureEndings, lower_case(file.extension().string())) != 0;
+  return std::ranges::count(kPictureEndings, lower_case(file.extension().string())) != 0 ||
+         engine::begins_like_image(file);
 }
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& what) {
@@ -104,14 +106,14 @@ void check_label(const std::string& label, const fs::path& origin) {
   }
 }
 
-/// Collects classes and refuses labels that differ in capitals only.
+/// Collects classes and refuses labels that look alike.
 class Classes {
  public:
   void add(const std::string& label, const fs::path& origin, std::vector<fs::path> files) {
     check_label(label, origin);
-    const auto [other, is_new] = origins_.emplace(lower_case(label), origin);
+    const auto [other, is_new] = origins_.emplace(skeleton_of(label), origin);
     if (!is_new) {
-      refuse(origin, "would be the class \"" + label + "\" like " +
+      refuse(origin, "would be the class \"" + label + "\", which looks like that of " +
                          other->second.filename().string() + "; rename one, or put both into a " +
                          "folder of the class's name");
     }
@@ -157,12 +159,15 @@ constexpr double kMostShrunk = 1.0 / 64;
 double scale_for(const Photograph& photo, const ImportOptions& options) {
   const std::string name = one_line(photo.path.string());
   const auto pixels_per_mm =
-      options.pixels_per_mm_of_files ? photo.said_pixels_per_mm : options.pixels_per_mm;
+      options.pixels_per_mm_of_files ? photo.notes.pixels_per_mm : options.pixels_per_mm;
   if (!pixels_per_mm && !options.pixels_per_mm_of_files) return 1.0;
   if (!pixels_per_mm) {
-    throw FileError(name +
-                    ": does not say how many pixels a millimetre has (programs that do not know "
-                    "write 72 or 96 dpi); give --pixels-per-mm a number");
+    throw FileError(name + ": does not say how many pixels a millimetre has" +
+                    (photo.notes.camera_dpi
+                         ? " (" + number_text(std::round(*photo.notes.camera_dpi)) +
+                               " dpi are its camera's, which does not know)"
+                         : " (programs that do not know write 72 or 96 dpi)") +
+                    "; give --pixels-per-mm a number");
   }
   const double scale = 1.0 / (*pixels_per_mm * options.pitch_mm);
   if (scale > kMostEnlarged || scale < kMostShrunk) {
@@ -239,21 +244,21 @@ PhotoFolder list_photographs(const fs::path& folder) {
 }
 
 Photograph read_photograph(const fs::path& path, const ImportOptions& options) {
+  if (!is_utf8(path.filename().string())) refuse(path, "its name is not UTF-8; rename it");
   const Bytes file = read_file(path);
-  const engine::ImageNotes notes = engine::notes_of_image(file);
+  engine::Picture picture = engine::decode_picture(file, path.string(), options.bits);
   Photograph photo;
   photo.path = path;
-  photo.image = engine::upright(engine::decode_grey_image(file, path.string()), notes.orientation);
+  photo.notes = std::move(picture.notes);
+  photo.image = engine::upright(picture.grey, photo.notes.orientation);
   photo.sha256 = sha256(file);
   photo.pixels_sha256 = FieldHasher()
                             .add(std::int64_t{photo.image.height()})
                             .add(std::int64_t{photo.image.width()})
                             .add(ByteView(photo.image.samples()))
                             .finish();
-  photo.orientation = notes.orientation;
   photo.height_px = photo.image.height();
   photo.width_px = photo.image.width();
-  photo.said_pixels_per_mm = notes.pixels_per_mm;
   photo.scale = scale_for(photo, options);
   if (photo.scale != 1.0) {
     photo.image = engine::resized(photo.image, scaled(photo.height_px, photo.scale),
