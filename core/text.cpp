@@ -1,7 +1,10 @@
 #include "core/text.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <memory>
+#include <string_view>
 
 #include <utf8proc.h>
 
@@ -19,6 +22,17 @@ std::string skeleton_of(const std::string& name) {
   std::string folded(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
   std::erase_if(folded, [](char c) { return c == ' ' || c == '-'; });
   return folded;
+}
+
+bool is_read_as_missing(const std::string& text) {
+  static constexpr std::array<std::string_view, 13> kWords = {
+      "na",   "n/a",  "<na>", "#n/a",  "#na",    "nan",    "-nan",
+      "null", "none", "true", "false", "#null!", "#value!"};
+  std::string lower = text;
+  std::ranges::transform(lower, lower.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return std::ranges::find(kWords, lower) != kWords.end();
 }
 
 }  // namespace touchtrial

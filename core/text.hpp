@@ -30,6 +30,10 @@ template <typename Number>
 /// Source: Unicode Standard Annex 15 and its case folding.
 [[nodiscard]] std::string skeleton_of(const std::string& name);
 
+/// Whether spreadsheets, pandas or R read a text as a missing value or a truth value, unless they
+/// are told otherwise: NA, NaN, NULL, None, TRUE and the like, in any capitals.
+[[nodiscard]] bool is_read_as_missing(const std::string& text);
+
 /// "1 session", "3 sessions"
 [[nodiscard]] inline std::string counted(std::int64_t n, const std::string& noun) {
   return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");

@@ -23,6 +23,10 @@ std::string read_label(const JsonValue& place) {
   if (label.front() == ' ' || label.back() == ' ') {
     place.refuse("begins or ends with a blank; remove it");
   }
+  if (is_read_as_missing(label)) {
+    place.refuse(in_quotes(label) +
+                 " is what other programs take for a missing value; give another " + "name");
+  }
   return label;
 }
 

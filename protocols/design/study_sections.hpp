@@ -94,7 +94,8 @@ inline constexpr std::size_t kMaxMethods = 8;
 inline constexpr int kMaxStimuli = 10'000;
 inline constexpr int kMaxScoredTrials = 10'000;
 
-/// Reads a name that is safe in file names, tables and BIDS labels: 1 to 64 of 0-9 A-Z a-z _ -
+/// Reads a name that is safe in file names, tables and BIDS labels: 1 to 64 of 0-9 A-Z a-z _ -, and
+/// no word that other programs take for a missing value.
 /// \throws StudyError if the text is not such a name
 [[nodiscard]] std::string read_plain_name(const JsonValue& place);
 

@@ -4,6 +4,17 @@
 
 using namespace touchtrial;
 
+TEST_CASE(
+    "words for missing and truth values are known in any capitals, ids are not taken for them") {
+  for (const char* word :
+       {"NA", "na", "N/A", "NaN", "nan", "NULL", "null", "None", "TRUE", "False"}) {
+    CHECK(is_read_as_missing(word));
+  }
+  for (const char* word : {"", "P01", "001", "NA1", "nano", "T", "0"}) {
+    CHECK_FALSE(is_read_as_missing(word));
+  }
+}
+
 TEST_CASE("names that look alike have one skeleton, others do not") {
   const std::string no_el = "No\xc3\xabl";    // one letter with a diaeresis
   const std::string no_e_l = "Noe\xcc\x88l";  // a letter and a diaeresis
