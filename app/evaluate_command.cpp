@@ -19,15 +19,15 @@ namespace fs = std::filesystem;
 
 struct EvaluateArguments {
   std::vector<fs::path> images;
-  int bits = 0;
+  engine::SampleScale scale;
   bool sweep = false;
   bool json = false;
   fs::path picture;
 };
 
-analysis::EvaluatedImage evaluated(const fs::path& path, int bits, bool sweep,
-                                   const std::function<void()>& order_done) {
-  const GreyImage image = read_given_picture(path, bits);
+analysis::EvaluatedImage evaluated(const fs::path& path, const engine::SampleScale& scale,
+                                   bool sweep, const std::function<void()>& order_done) {
+  const GreyImage image = read_given_picture(path, scale);
   try {
     return {path.string(), engine::evaluate_image(image, sweep, order_done)};
   } catch (const std::invalid_argument& error) {
@@ -43,7 +43,8 @@ std::vector<analysis::EvaluatedImage> evaluated(const EvaluateArguments& argumen
   int done = 0;
   std::vector<analysis::EvaluatedImage> images;
   for (const fs::path& path : arguments.images) {
-    images.push_back(evaluated(path, arguments.bits, arguments.sweep, [&] { bar(++done, steps); }));
+    images.push_back(
+        evaluated(path, arguments.scale, arguments.sweep, [&] { bar(++done, steps); }));
     if (!arguments.sweep) bar(++done, steps);
   }
   return images;
@@ -66,7 +67,7 @@ void add_evaluate_command(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand(
       "evaluate", "Co-occurrence statistics of images and their textures; the order sweep");
   command->add_option("IMAGE", arguments->images, "PNG, JPEG, TIFF, BMP, GIF or PGM")->required();
-  add_bits_option(*command, arguments->bits);
+  add_sample_options(*command, arguments->scale);
   CLI::Option* sweep = command->add_flag("--sweep", arguments->sweep,
                                          "Compare the adaptive texture with fixed orders, 0.05 "
                                          "to 0.95, by MS-SSIM");

@@ -31,7 +31,7 @@ constexpr int kForceNeighbourhood = 3;
 
 struct ExtractArguments {
   fs::path image;
-  int bits = 0;
+  engine::SampleScale scale;
   MethodArguments method;
   std::string mapping = "offset";
   int neighbourhood = 3;
@@ -145,7 +145,7 @@ void complete(const ExtractArguments& arguments, engine::Extraction<Real>& extra
 
 template <typename Real>
 int extract_with(const ExtractArguments& arguments, const engine::ExtractionOptions& options) {
-  GreyImage image = read_given_picture(arguments.image, arguments.bits);
+  GreyImage image = read_given_picture(arguments.image, arguments.scale);
   engine::Extraction<Real> extraction =
       extracted<Real>(arguments.image, image, options, wanted_planes(arguments));
   if (!extraction.converged) {
@@ -192,7 +192,7 @@ void add_extract_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ExtractArguments>();
   CLI::App* command = program.add_subcommand("extract", "Extract the texture of one image");
   command->add_option("IMAGE", arguments->image, "PNG, JPEG, TIFF, BMP, GIF or PGM")->required();
-  add_bits_option(*command, arguments->bits);
+  add_sample_options(*command, arguments->scale);
   add_method_options(*command, arguments->method);
   command->add_option("--mapping", arguments->mapping, "Mapping of the texture to a picture")
       ->check(CLI::IsMember(words_of(engine::kMappingNames)))

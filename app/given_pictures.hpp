@@ -1,7 +1,7 @@
 /// \file Pictures that the command line names.
 #pragma once
 
-#include "core/plane.hpp"
+#include "engine/image_file.hpp"
 
 #include <filesystem>
 
@@ -9,12 +9,12 @@
 
 namespace touchtrial::app {
 
-/// `--bits`, which engine::read_picture takes.
-/// \param bits  0 without the option
-void add_bits_option(CLI::App& command, int& bits);
+/// `--bits` and `--heights`.
+void add_sample_options(CLI::App& command, engine::SampleScale& scale);
 
 /// Reads a picture, and warns of what was lost.
 /// \throws FileError as engine::read_picture
-[[nodiscard]] GreyImage read_given_picture(const std::filesystem::path& path, int bits = 0);
+[[nodiscard]] GreyImage read_given_picture(const std::filesystem::path& path,
+                                           const engine::SampleScale& scale = {});
 
 }  // namespace touchtrial::app

@@ -153,7 +153,7 @@ void add_picture_options(CLI::App& command, stimuli::ImportOptions& options) {
       ->capture_default_str();
   command.add_option("--pitch-mm", options.pitch_mm, "Size of a crop's pixel on the plane, mm")
       ->capture_default_str();
-  add_bits_option(command, options.bits);
+  add_sample_options(command, options.scale);
   add_seed_option(command, options.seed, "Seed of the crops and the study's schedules");
   command.add_option("--licence", options.licence, "Licence of the photographs, for the manifest");
   command.add_option("--source", options.source, "Source of the photographs, for the manifest");

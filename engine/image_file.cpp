@@ -57,15 +57,16 @@ void check_range(const GreyScale& scale) {
       "--bits 12`, or --bits 16 if it is just dark"};
 }
 
-Picture decode_file(ByteView file, int bits) {
+Picture decode_file(ByteView file, const SampleScale& samples) {
   if (file.empty()) throw ImageFault{"is empty", "copy or export it again"};
   Picture picture;
-  GreyScale scale(bits);
+  GreyScale scale(samples);
   ImageNotes found;
   picture.grey = read_kind(file, scale, found);
   check_range(scale);
   picture.notes = notes_of_image(file);
   picture.notes.pictures = found.pictures;
+  picture.notes.heights = found.heights;
   picture.notes.lacks_end = found.lacks_end;
   picture.notes.transparent_share =
       static_cast<double>(scale.transparent_pixels()) / static_cast<double>(picture.grey.size());
@@ -78,18 +79,18 @@ FileError error_about(const std::string& name, const std::string& what, const st
 
 }  // namespace
 
-Picture read_picture(const std::filesystem::path& path, int bits) {
+Picture read_picture(const std::filesystem::path& path, const SampleScale& scale) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error && size > kLargestReadWhole) {
     const MappedFile file(path);
-    return decode_picture(file.bytes(), path.string(), bits);
+    return decode_picture(file.bytes(), path.string(), scale);
   }
-  return decode_picture(read_file(path), path.string(), bits);
+  return decode_picture(read_file(path), path.string(), scale);
 }
 
-GreyImage read_grey_image(const std::filesystem::path& path, int bits) {
-  return read_picture(path, bits).grey;
+GreyImage read_grey_image(const std::filesystem::path& path) {
+  return read_picture(path).grey;
 }
 
 bool begins_like_image(const std::filesystem::path& path) {
@@ -116,9 +117,9 @@ std::pair<int, int> size_of_image(const std::filesystem::path& path) {
   return {image.width(), image.height()};
 }
 
-Picture decode_picture(ByteView file, const std::string& name, int bits) {
+Picture decode_picture(ByteView file, const std::string& name, const SampleScale& scale) {
   try {
-    return decode_file(file, bits);
+    return decode_file(file, scale);
   } catch (const ImageFault& fault) {
     throw error_about(name, fault.what, fault.remedy);
   } catch (const std::bad_alloc&) {

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -26,22 +27,34 @@ struct Picture {
 /// levels would be left of them.
 inline constexpr std::uint32_t kMinMaxWideSample = 1U << 14U;
 
+/// How the samples of a picture of more than 8 bits become grey levels. All pictures of a set take
+/// the same.
+struct SampleScale {
+  /// 9 to 16: 16-bit samples lie in that many of their lowest bits; 0: in all of them.
+  int bits = 0;
+  /// The heights that become 0 and 255, the first below the second; nothing: the lowest and the
+  /// highest of each picture.
+  std::optional<std::pair<double, double>> heights;
+};
+
 /// Reads a picture as 8-bit grey: 16-bit samples become floor(v / 257 + 0.5), alpha is composited
 /// on black, colour becomes floor((299 R + 587 G + 114 B + 500) / 1000). PGM and PPM samples of any
-/// other maximum become floor(v * 255 / maximum + 0.5). If a file has several pictures, the first
+/// other maximum become floor(v * 255 / maximum + 0.5), and so do 16-bit samples in fewer bits. The
+/// floating-point samples of a TIFF are heights h of the range [a, b], and become
+/// floor(255 (h - a) / (b - a) + 0.5), from 0 to 255. If a file has several pictures, the first
 /// is read that is no reduced copy. Orientation tags (Exif, TIFF), colour profiles and gamma are
 /// ignored: the samples count as they are stored.
-/// \param bits  9 to 16: 16-bit samples lie in that many of their lowest bits, and become
-///   floor(v * 255 / (2^bits - 1) + 0.5); 0: in all of them
 /// \throws FileError if the file is missing, truncated, not an image of a known kind, zero-sized or
 ///   of an unsupported sample type, if it has more than kMaxImagePixels pixels or a side of more
-///   than a million, if the decoder finds its data damaged, or if all of its 16-bit samples are
-///   below kMinMaxWideSample but not 0 and `bits` is 0, or one does not fit into `bits`
+///   than a million, if the decoder finds its data damaged, if all of its 16-bit samples are below
+///   kMinMaxWideSample but not 0 and `scale.bits` is 0, if one does not fit into `scale.bits`, or
+///   if a height is not finite
 /// Prints nothing, even if the decoder complains. Thread-safe. A file over 64 MiB is mapped, and
 /// must not become shorter meanwhile; its cost depends on the picture, not on the size of the file.
-[[nodiscard]] Picture read_picture(const std::filesystem::path& path, int bits = 0);
+[[nodiscard]] Picture read_picture(const std::filesystem::path& path,
+                                   const SampleScale& scale = {});
 /// Its grey levels.
-[[nodiscard]] GreyImage read_grey_image(const std::filesystem::path& path, int bits = 0);
+[[nodiscard]] GreyImage read_grey_image(const std::filesystem::path& path);
 
 /// Whether a file begins like a PNG, JPEG, TIFF or GIF; two bytes, as of the other kinds, prove
 /// nothing. A file that cannot be read begins like none.
@@ -54,7 +67,8 @@ inline constexpr std::uint32_t kMinMaxWideSample = 1U << 14U;
 
 /// The same as read_picture from a file's bytes.
 /// \param name  stands for the path in messages
-[[nodiscard]] Picture decode_picture(ByteView file, const std::string& name, int bits = 0);
+[[nodiscard]] Picture decode_picture(ByteView file, const std::string& name,
+                                     const SampleScale& scale = {});
 
 /// Writes an 8-bit grey PNG. The same image gives the same bytes on one machine.
 /// \param image  at least 1 x 1

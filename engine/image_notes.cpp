@@ -1,5 +1,6 @@
 #include "engine/image_notes.hpp"
 
+#include "core/strict_json.hpp"
 #include "engine/image_formats/image_format.hpp"
 #include "engine/image_formats/tiff_directory.hpp"
 
@@ -180,6 +181,11 @@ std::vector<std::string> remarks_on(const ImageNotes& notes) {
     remarks.push_back(std::string(percent.data()) +
                       " % of its pixels are transparent and become black, whose edge can be felt; "
                       "crop it to where it is opaque");
+  }
+  if (notes.heights) {
+    remarks.push_back("holds heights from " + number_text(notes.heights->first) + " to " +
+                      number_text(notes.heights->second) +
+                      "; import all pictures of a set with the same --heights");
   }
   if (notes.lacks_end) {
     remarks.emplace_back(

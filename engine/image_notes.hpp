@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::engine {
@@ -26,6 +27,8 @@ struct ImageNotes {
   int pictures = 1;                ///< in the file, without reduced copies; the first one is read
   double transparent_share = 0.0;  ///< of the pixels; they are composited on black
   bool lacks_end = false;          ///< no end marker follows the last pixel
+  /// The lowest and the highest of a picture of heights, in its own unit.
+  std::optional<std::pair<double, double>> heights;
 };
 
 /// Reads the metadata. Damaged metadata counts as absent, so that the picture stays readable.

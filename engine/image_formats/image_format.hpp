@@ -4,6 +4,7 @@
 
 #include "core/bytes.hpp"
 #include "core/plane.hpp"
+#include "engine/image_file.hpp"
 #include "engine/image_notes.hpp"
 
 #include <algorithm>
@@ -124,8 +125,8 @@ enum class Alpha {
 /// Makes 8-bit grey of the samples of one picture, and notes what that loses.
 class GreyScale {
  public:
-  /// \param bits  of 16 in which the samples of a 16-bit picture lie, from the lowest; 0: all
-  explicit GreyScale(int bits = 0) noexcept : bits_(bits) {}
+  explicit GreyScale(const SampleScale& samples) noexcept
+      : bits_(samples.bits), heights_(samples.heights) {}
 
   /// One pixel of 8- or 16-bit samples: grey, grey alpha, RGB or RGBA.
   template <typename Sample>
@@ -153,6 +154,9 @@ class GreyScale {
   void note_wide(std::uint32_t sample) noexcept { max_wide_ = std::max(max_wide_, sample); }
 
   [[nodiscard]] int bits() const noexcept { return bits_; }
+  [[nodiscard]] const std::optional<std::pair<double, double>>& heights() const noexcept {
+    return heights_;
+  }
   /// Of 16-bit samples; 0 if there are none.
   [[nodiscard]] std::uint32_t max_wide() const noexcept { return max_wide_; }
   [[nodiscard]] std::uint64_t transparent_pixels() const noexcept { return transparent_; }
@@ -167,6 +171,7 @@ class GreyScale {
   }
 
   int bits_;
+  std::optional<std::pair<double, double>> heights_;
   std::uint32_t max_wide_ = 0;
   std::uint64_t transparent_ = 0;
 };

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <new>
+#include <span>
 #include <string_view>
 
 #include <tiffio.h>
@@ -25,6 +27,7 @@ struct Layout {
   std::uint32_t compression;
   std::uint32_t photometric;
   bool separate;
+  bool heights;  ///< floating-point samples
 };
 
 /// Whether every channel has the value of the first one, or the entry is absent.
@@ -45,7 +48,8 @@ Layout read_layout(const TiffDirectory& directory) {
       get(TiffTag::samples_per_pixel, 1),
       get(TiffTag::compression, COMPRESSION_NONE),
       get(TiffTag::photometric, PHOTOMETRIC_MINISBLACK),
-      get(TiffTag::planar, 1) == PLANARCONFIG_SEPARATE && get(TiffTag::samples_per_pixel, 1) > 1};
+      get(TiffTag::planar, 1) == PLANARCONFIG_SEPARATE && get(TiffTag::samples_per_pixel, 1) > 1,
+      get(TiffTag::sample_format, SAMPLEFORMAT_UINT) == SAMPLEFORMAT_IEEEFP};
   check_image_size(layout.width, layout.height);
   return layout;
 }
@@ -88,11 +92,17 @@ bool compression_fits(const Layout& layout) {
 
 void check_samples(const TiffDirectory& directory, const Layout& layout) {
   const std::uint32_t format = directory.value(TiffTag::sample_format, SAMPLEFORMAT_UINT);
-  if (format != SAMPLEFORMAT_UINT || !is_uniform(directory, TiffTag::sample_format, format) ||
-      (layout.bits != 1 && layout.bits != 8 && layout.bits != 16) ||
+  const bool is_known = layout.heights
+                            ? (layout.bits == 32 || layout.bits == 64) && layout.channels == 1
+                            : format == SAMPLEFORMAT_UINT &&
+                                  (layout.bits == 1 || layout.bits == 8 || layout.bits == 16);
+  if (!is_known || !is_uniform(directory, TiffTag::sample_format, format) ||
       !is_uniform(directory, TiffTag::bits_per_sample, 1)) {
-    throw_unsupported_image("is a TIFF of " + std::to_string(layout.bits) + "-bit " +
-                            (format == SAMPLEFORMAT_UINT ? "" : "signed or floating-point ") +
+    throw_unsupported_image("is a TIFF of " + std::to_string(layout.channels) + " x " +
+                            std::to_string(layout.bits) + "-bit " +
+                            (layout.heights                ? "floating-point "
+                             : format == SAMPLEFORMAT_UINT ? ""
+                                                           : "signed ") +
                             "samples, which is not supported");
   }
   if (!directory.has(TiffTag::photometric)) {
@@ -196,7 +206,7 @@ void require_same_view(TIFF* tiff, const TiffDirectory& directory, const Layout&
                             layout.compression == COMPRESSION_ADOBE_DEFLATE;
   for (const TiffTag tag :
        {TiffTag::bits_per_sample, TiffTag::compression, TiffTag::photometric, TiffTag::fill_order,
-        TiffTag::samples_per_pixel, TiffTag::planar, TiffTag::predictor}) {
+        TiffTag::samples_per_pixel, TiffTag::planar, TiffTag::predictor, TiffTag::sample_format}) {
     if (!directory.has(tag) || (tag == TiffTag::predictor && !is_predicted)) continue;
     std::uint16_t value = 0;
     const bool is_known = TIFFGetField(tiff, static_cast<std::uint32_t>(tag), &value) == 1;
@@ -347,12 +357,11 @@ GreyImage read_as_rgba(TIFF* tiff, const Source& source, const Layout& layout,
   return image;
 }
 
-/// Reads 16-bit samples, and 8-bit grey with alpha, in strips or tiles with interleaved channels.
-/// libtiff's conversion would lose their precision, or their alpha.
-template <typename Sample>
-GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
-                       Alpha alpha, GreyScale& scale) {
-  GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
+/// Reads the rows of strips or tiles with interleaved channels.
+/// \param take  called with the samples of each row of a piece, and the place of the first: y, x
+template <typename Sample, typename Take>
+void read_rows(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
+               const Take& take) {
   const std::size_t row_size = pieces.width * layout.channels;
   std::vector<Sample> piece(row_size * pieces.height);
   const std::uint64_t columns = ceil_divide(layout.width, pieces.width);
@@ -362,18 +371,57 @@ GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, c
     const auto size = static_cast<tmsize_t>(unpacked_size(layout, pieces, i / columns));
     source.require(size == (pieces.tiled ? TIFFReadEncodedTile(tiff, i, piece.data(), size)
                                          : TIFFReadEncodedStrip(tiff, i, piece.data(), size)));
-    if (layout.photometric == PHOTOMETRIC_MINISWHITE) {
-      // Before alpha is composited: the inversion concerns the colour only.
-      for (std::size_t at = 0; at < piece.size(); at += layout.channels) {
-        piece[at] = static_cast<Sample>(~piece[at]);
-      }
-    }
     const std::uint64_t rows = std::min(pieces.height, layout.height - top);
     const std::uint64_t width = std::min(pieces.width, layout.width - left);
     for (std::uint64_t y = 0; y < rows; ++y) {
-      scale.make_grey(piece.data() + y * row_size, static_cast<int>(layout.channels), alpha,
-                      image.row(static_cast<int>(top + y)).subspan(left, width));
+      take(std::span(piece).subspan(y * row_size, width * layout.channels),
+           static_cast<int>(top + y), static_cast<int>(left));
     }
+  }
+}
+
+/// Reads 16-bit samples, and 8-bit grey with alpha. libtiff's conversion would lose their
+/// precision, or their alpha.
+template <typename Sample>
+GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
+                       Alpha alpha, GreyScale& scale) {
+  GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
+  read_rows<Sample>(tiff, source, layout, pieces, [&](std::span<Sample> row, int y, int x) {
+    if (layout.photometric == PHOTOMETRIC_MINISWHITE) {
+      // Before alpha is composited: the inversion concerns the colour only.
+      for (std::size_t at = 0; at < row.size(); at += layout.channels) {
+        row[at] = static_cast<Sample>(~row[at]);
+      }
+    }
+    scale.make_grey(
+        row.data(), static_cast<int>(layout.channels), alpha,
+        image.row(y).subspan(static_cast<std::size_t>(x), row.size() / layout.channels));
+  });
+  return image;
+}
+
+/// Reads heights, and makes grey levels of the range that is given, or of their own.
+template <typename Real>
+GreyImage read_heights(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
+                       const GreyScale& scale, ImageNotes& notes) {
+  Plane<Real> heights(static_cast<int>(layout.height), static_cast<int>(layout.width));
+  read_rows<Real>(tiff, source, layout, pieces, [&](std::span<Real> row, int y, int x) {
+    std::ranges::copy(row, heights.row(y).begin() + x);
+  });
+  if (!std::ranges::all_of(heights.samples(), [](Real h) { return std::isfinite(h); })) {
+    throw ImageFault{"has a height that is not a finite number",
+                     "fill the gaps of the scan, and export it again"};
+  }
+  const auto [lowest, highest] =
+      std::minmax_element(heights.samples().begin(), heights.samples().end());
+  notes.heights = {*lowest, *highest};
+  const auto [low, high] = scale.heights().value_or(*notes.heights);
+  GreyImage image(heights.height(), heights.width());
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    // A flat picture has no range.
+    const double share = high > low ? (heights.samples()[i] - low) / (high - low) : 0.0;
+    image.samples()[i] =
+        static_cast<std::uint8_t>(std::floor(255.0 * std::clamp(share, 0.0, 1.0) + 0.5));
   }
   return image;
 }
@@ -392,6 +440,11 @@ GreyImage read_tiff(ByteView file, GreyScale& scale, ImageNotes& notes) {
   const TiffFile tiff = opened(source, pictures.first);
   require_same_view(tiff.get(), directory, layout);
   const Alpha alpha = alpha_rule(directory);
+  if (layout.heights) {
+    return layout.bits == 32
+               ? read_heights<float>(tiff.get(), source, layout, pieces, scale, notes)
+               : read_heights<double>(tiff.get(), source, layout, pieces, scale, notes);
+  }
   if (layout.bits == 16) {
     return read_samples<std::uint16_t>(tiff.get(), source, layout, pieces, alpha, scale);
   }

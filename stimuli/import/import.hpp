@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/errors.hpp"
+#include "engine/image_file.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -30,7 +31,7 @@ struct ImportOptions {
   /// photographs are resampled to feel life-size. Otherwise each pixel stays a pixel.
   std::optional<double> pixels_per_mm;
   bool pixels_per_mm_of_files = false;
-  int bits = 0;  ///< of 16 that 16-bit photographs use, 9 .. 16 (engine::read_picture); 0: all
+  engine::SampleScale scale;  ///< of photographs of more than 8 bits
   LevelEqualising equalise = LevelEqualising::none;
   std::string protocol;    ///< name of the protocol of the study
   int methods = 1;         ///< of the study: adaptive (1), or adaptive and tv-gabor (2)

@@ -41,8 +41,8 @@ void check_numbers(const ImportOptions& options) {
   if (!kPitchMm.contains(options.pitch_mm)) {
     refuse("--pitch-mm must be 0.001 to 10, not " + number_text(options.pitch_mm));
   }
-  if (options.bits != 0 && outside(options.bits, 9, 16)) {
-    refuse("--bits must be 9 to 16, not " + std::to_string(options.bits));
+  if (options.scale.bits != 0 && outside(options.scale.bits, 9, 16)) {
+    refuse("--bits must be 9 to 16, not " + std::to_string(options.scale.bits));
   }
   const bool positive = !options.pixels_per_mm ||
                         (*options.pixels_per_mm > 0.0 && std::isfinite(*options.pixels_per_mm));

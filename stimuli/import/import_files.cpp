@@ -45,6 +45,9 @@ Json to_json(const ImportedPhotograph& photograph) {
           {"pictures", photo.notes.pictures},
           {"transparent_share", photo.notes.transparent_share},
           {"lacks_end", photo.notes.lacks_end},
+          {"heights", photo.notes.heights
+                          ? Json::array({photo.notes.heights->first, photo.notes.heights->second})
+                          : Json()},
           {"scale", photo.scale}};
 }
 

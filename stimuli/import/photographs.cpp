@@ -246,7 +246,7 @@ PhotoFolder list_photographs(const fs::path& folder) {
 Photograph read_photograph(const fs::path& path, const ImportOptions& options) {
   if (!is_utf8(path.filename().string())) refuse(path, "its name is not UTF-8; rename it");
   const Bytes file = read_file(path);
-  engine::Picture picture = engine::decode_picture(file, path.string(), options.bits);
+  engine::Picture picture = engine::decode_picture(file, path.string(), options.scale);
   Photograph photo;
   photo.path = path;
   photo.notes = std::move(picture.notes);

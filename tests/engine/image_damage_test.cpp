@@ -168,7 +168,7 @@ TEST_CASE("a header of exactly 2^28 pixels is not too large, only truncated") {
 TEST_CASE("sample types other than unsigned 8 and 16 bits are refused") {
   const Bytes four = {0, 0, 0, 0};
   CHECK_THAT(error_of(Tiff(1, 1, four).with(258, {32}).bytes()), holds_text("32-bit"));
-  CHECK_THAT(error_of(Tiff(1, 1, four).with(258, {32}).with(339, {3}).bytes()),
+  CHECK_THAT(error_of(Tiff(2, 1, four).with(258, {16}).with(339, {3}).bytes()),
              holds_text("floating-point"));
   CHECK_THAT(error_of(Tiff(2, 1, four).with(258, {16}).with(339, {2}).bytes()),
              holds_text("signed"));

@@ -7,6 +7,7 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <thread>
 
@@ -311,7 +312,8 @@ TEST_CASE(
     "16-bit samples that use 14 bits or fewer are scaled by bits that are given, or refused") {
   using namespace std::string_view_literals;
   const auto level = [](const Bytes& file, int bits) {
-    return static_cast<int>(decode_picture(file, "picture", bits).grey.at(0, 1));
+    return static_cast<int>(
+        decode_picture(file, "picture", {.bits = bits, .heights = {}}).grey.at(0, 1));
   };
   const auto files = [](std::uint32_t max) {
     Bytes pgm = text("P5 2 1 65535\n");
@@ -331,6 +333,34 @@ TEST_CASE(
   for (const Bytes& file : files(kMinMaxWideSample)) CHECK(level(file, 0) == 64);
   for (const Bytes& file : files(0)) CHECK(level(file, 0) == 0);
   CHECK(level(text("P5 2 1 4095\n\x00\x00\x0f\xff"sv), 0) == 255);
+}
+
+/// The four bytes of a float, as a number.
+std::uint32_t bits_of(float value) {
+  return std::bit_cast<std::uint32_t>(value);
+}
+
+TEST_CASE(
+    "the heights of a floating-point TIFF become grey levels of their own range or a given one") {
+  const bool big = GENERATE(false, true);
+  const Bytes file =
+      Tiff(3, 1, numbers({bits_of(-1.5F), bits_of(0.0F), bits_of(1.5F)}, 4, big), big)
+          .with(258, {32})
+          .with(339, {3})
+          .bytes();
+  const auto row = [&](const SampleScale& scale) {
+    const Picture picture = decode_picture(file, "picture", scale);
+    CHECK(picture.notes.heights == std::pair(-1.5, 1.5));
+    return Row(picture.grey.samples().begin(), picture.grey.samples().end());
+  };
+  CHECK(row({}) == Row{0, 128, 255});
+  CHECK(row({.bits = 0, .heights = std::pair(-3.0, 3.0)}) == Row{64, 128, 191});
+  CHECK(row({.bits = 0, .heights = std::pair(0.0, 1.0)}) == Row{0, 0, 255});
+  const Bytes gap =
+      Tiff(2, 1, numbers({bits_of(NAN), 0}, 4)).with(258, {32}).with(339, {3}).bytes();
+  CHECK_THROWS_AS(decode_picture(gap, "picture"), FileError);
+  const Bytes flat = Tiff(2, 1, numbers({0, 0}, 4)).with(258, {32}).with(339, {3}).bytes();
+  CHECK(decode_picture(flat, "picture").grey.at(0, 1) == 0);
 }
 
 /// A TIFF of several directories with a picture each, of whose first pixel only `pixel` is known.
