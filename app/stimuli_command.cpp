@@ -153,6 +153,10 @@ void add_picture_options(CLI::App& command, stimuli::ImportOptions& options) {
       ->capture_default_str();
   command.add_option("--pitch-mm", options.pitch_mm, "Size of a crop's pixel on the plane, mm")
       ->capture_default_str();
+  command.add_option(
+      "--names", options.names,
+      "How the files of a folder are named: {class}_# for T01_01.jpg and T01_02.jpg, "
+      "where # is a number and * any text (default: each file is a class)");
   add_sample_options(command, options.scale);
   add_seed_option(command, options.seed, "Seed of the crops and the study's schedules");
   command.add_option("--licence", options.licence, "Licence of the photographs, for the manifest");

@@ -163,7 +163,7 @@ class Import {
 
  private:
   PhotoFolder surveyed() {
-    PhotoFolder folder = list_photographs(options_.photographs);
+    PhotoFolder folder = list_photographs(options_.photographs, options_.names);
     check_classes(folder, options_);
     total_ = 0;
     for (const PhotoClass& one : folder.classes) total_ += 2 * static_cast<int>(one.files.size());

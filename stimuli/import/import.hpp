@@ -22,6 +22,7 @@ enum class LevelEqualising { none, mean, rms, both };
 
 struct ImportOptions {
   std::filesystem::path photographs;  ///< the folder
+  std::string names;                  ///< of the files of an album: {class}_#; empty: their stems
   std::filesystem::path study;        ///< file to write
   std::filesystem::path pictures;     ///< folder to write; empty: default_pictures_folder
   int size_px = 500;                  ///< side of a crop, kMinCropSizePx .. kMaxCropSizePx

@@ -10,8 +10,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
+#include <regex>
 #include <string_view>
 #include <system_error>
 
@@ -106,6 +108,12 @@ void check_label(const std::string& label, const fs::path& origin) {
   }
 }
 
+struct NaturalOrder {
+  bool operator()(const std::string& a, const std::string& b) const {
+    return naturally_before(a, b);
+  }
+};
+
 /// Collects classes and refuses labels that look alike.
 class Classes {
  public:
@@ -150,6 +158,59 @@ std::vector<PhotoClass> classes_of_folders(const Listing& listing,
 std::vector<PhotoClass> classes_of_files(const Listing& listing) {
   Classes classes;
   for (const fs::path& file : listing.pictures) classes.add(file.stem().string(), file, {file});
+  return classes.take();
+}
+
+/// The regular expression of a pattern of names, whose only group is the class.
+std::regex expression_of(const std::string& names) {
+  constexpr std::string_view kClass = "{class}";
+  constexpr std::size_t kLongest = 100;
+  const std::size_t at = names.find(kClass);
+  if (at == std::string::npos || names.find(kClass, at + 1) != std::string::npos ||
+      names.size() > kLongest) {
+    throw UsageError(
+        "stimuli import: --names must have {class} once, for instance {class}_#, not be " +
+        in_quotes(names));
+  }
+  std::string expression;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i == at) {
+      expression += "(.+?)";
+      i += kClass.size() - 1;
+    } else if (names[i] == '#') {
+      expression += "[0-9]+";
+    } else if (names[i] == '*') {
+      expression += ".*";
+    } else {
+      if (std::ispunct(static_cast<unsigned char>(names[i])) != 0) expression += '\\';
+      expression += names[i];
+    }
+  }
+  return std::regex(expression);
+}
+
+/// The files of an album by the classes in their names.
+std::vector<PhotoClass> classes_by_names(const Listing& listing, const std::string& names,
+                                         const fs::path& folder) {
+  const std::regex expression = expression_of(names);
+  std::map<std::string, std::vector<fs::path>, NaturalOrder> files;
+  std::vector<std::string> faults;
+  for (const fs::path& file : listing.pictures) {
+    std::smatch parts;
+    const std::string stem = file.stem().string();
+    if (std::regex_match(stem, parts, expression)) {
+      files[parts[1]].push_back(file);
+    } else {
+      faults.push_back(one_line(file.string()) + ": its name is not of the form " + names +
+                       "; rename it, or give another --names");
+    }
+  }
+  if (!faults.empty()) throw UnusablePhotographs(folder, std::move(faults));
+  Classes classes;
+  for (auto& [label, of_class] : files) {
+    const fs::path first = of_class.front();
+    classes.add(label, first, std::move(of_class));
+  }
   return classes.take();
 }
 
@@ -220,7 +281,7 @@ bool naturally_before(const std::string& a, const std::string& b) {
   return left_over != right_over ? left_over < right_over : a < b;
 }
 
-PhotoFolder list_photographs(const fs::path& folder) {
+PhotoFolder list_photographs(const fs::path& folder, const std::string& names) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
     refuse(folder, fs::exists(folder, error) ? "is not a folder; give the folder of the photographs"
@@ -233,11 +294,15 @@ PhotoFolder list_photographs(const fs::path& folder) {
     refuse(listing.pictures.front(),
            "lies beside folders; give a folder of class folders, or one of photographs alone");
   }
-  result.classes = listing.folders.empty() ? classes_of_files(listing)
-                                           : classes_of_folders(listing, result.ignored);
+  if (!names.empty() && !listing.folders.empty()) {
+    refuse(folder, "has folders, whose names are the classes; leave out --names");
+  }
+  result.classes = !names.empty()            ? classes_by_names(listing, names, folder)
+                   : listing.folders.empty() ? classes_of_files(listing)
+                                             : classes_of_folders(listing, result.ignored);
   if (result.classes.empty()) {
     refuse(folder,
-           "holds no photograph; give a folder of PNG, JPEG, TIFF, BMP or PGM files, or "
+           "holds no photograph; give a folder of PNG, JPEG, TIFF, BMP, GIF or PGM files, or "
            "of folders of them");
   }
   return result;

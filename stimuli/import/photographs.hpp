@@ -28,9 +28,14 @@ struct PhotoFolder {
 /// In a folder of folders, each folder is a class of its name. In a folder of files, each file is a
 /// class of its stem, as in an album of D1.png, D2.png, ... Hidden files and folders do not count;
 /// files that neither begin as a picture nor have the ending of one are ignored.
+/// \param names  how the files of an album are named, without their endings: `{class}` is the label,
+///   `#` a number and `*` any text; empty: each file is a class of its stem
+/// \throws UsageError if `names` lacks {class} or has it twice
+/// \throws UnusablePhotographs if files of an album have other names
 /// \throws FileError if `folder` is not a folder or is empty, has pictures beside folders, or has a
 ///   name that cannot be a label or looks like another (skeleton_of)
-[[nodiscard]] PhotoFolder list_photographs(const std::filesystem::path& folder);
+[[nodiscard]] PhotoFolder list_photographs(const std::filesystem::path& folder,
+                                           const std::string& names = {});
 
 /// Whether `a` comes before `b` when numbers count as numbers: D2 before D10.
 [[nodiscard]] bool naturally_before(const std::string& a, const std::string& b);

@@ -294,6 +294,29 @@ TEST_CASE("all photographs that cannot be used are named at once") {
   CHECK(album.written().empty());
 }
 
+TEST_CASE("the files of an album are of the classes in their names") {
+  const Album album;
+  for (const char* name : {"T10_01", "T2_01", "T2_02", "T10_2"}) {
+    album.add(std::string(name) + ".png", noise(50, 50, std::hash<std::string>()(name)));
+  }
+  ImportOptions options = album.options();
+  options.names = "{class}_#";
+  const ImportReport report = import_photographs(options);
+  REQUIRE(report.classes.size() == 2);
+  CHECK(report.classes[0].label == "T2");
+  CHECK(report.classes[1].label == "T10");
+  CHECK(report.classes[1].photographs == 2);
+  options.replace = true;
+  options.names = "T#_{class}";
+  CHECK(import_photographs(options).classes.size() == 3);
+  for (const char* bad : {"no class", "{class}{class}"}) {
+    options.names = bad;
+    CHECK_THROWS_AS(import_photographs(options), UsageError);
+  }
+  options.names = "{class}-#";
+  CHECK_THROWS_AS(import_photographs(options), UnusablePhotographs);
+}
+
 TEST_CASE("a photograph is known by its first bytes, whatever its name ends in") {
   const TwoPhotographs album;
   album.add("E.png", noise(50, 50, 9));
