@@ -122,8 +122,8 @@ int record_consent(const ConsentArguments& arguments) {
         "what is recorded");
   }
   if (!store::is_participant_id(record.participant)) {
-    throw UsageError("consent: " + in_quotes(record.participant) +
-                     " is no participant id; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
+    throw UsageError("consent: " + in_quotes(record.participant) + " is no participant id; " +
+                     std::string(store::kParticipantIdRule));
   }
   if (record.consent_version.size() > kLongestVersion ||
       printable(record.consent_version) != record.consent_version) {

@@ -1,8 +1,8 @@
 #include "analysis/measures/evaluation_report.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/given_pictures.hpp"
 #include "core/errors.hpp"
-#include "engine/image_file.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -18,13 +18,14 @@ namespace fs = std::filesystem;
 
 struct EvaluateArguments {
   std::vector<fs::path> images;
+  engine::SampleScale scale;
   bool sweep = false;
   bool json = false;
 };
 
-analysis::EvaluatedImage evaluated(const fs::path& path, bool sweep,
-                                   const std::function<void()>& order_done) {
-  const GreyImage image = engine::read_grey_image(path);
+analysis::EvaluatedImage evaluated(const fs::path& path, const engine::SampleScale& scale,
+                                   bool sweep, const std::function<void()>& order_done) {
+  const GreyImage image = read_given_picture(path, scale);
   try {
     return {path.string(), engine::evaluate_image(image, sweep, order_done)};
   } catch (const std::invalid_argument& error) {
@@ -40,7 +41,8 @@ std::vector<analysis::EvaluatedImage> evaluated(const EvaluateArguments& argumen
   int done = 0;
   std::vector<analysis::EvaluatedImage> images;
   for (const fs::path& path : arguments.images) {
-    images.push_back(evaluated(path, arguments.sweep, [&] { bar(++done, steps); }));
+    images.push_back(
+        evaluated(path, arguments.scale, arguments.sweep, [&] { bar(++done, steps); }));
     if (!arguments.sweep) bar(++done, steps);
   }
   return images;
@@ -58,7 +60,8 @@ void add_evaluate_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* command = program.add_subcommand(
       "evaluate", "Co-occurrence statistics of images and their textures; the order sweep");
-  command->add_option("IMAGE", arguments->images, "PNG, JPEG, TIFF, BMP or PGM")->required();
+  command->add_option("IMAGE", arguments->images, "PNG, JPEG, TIFF, BMP, GIF or PGM")->required();
+  add_sample_options(*command, arguments->scale);
   command->add_flag("--sweep", arguments->sweep,
                     "Compare the adaptive texture with fixed orders, 0.05 to 0.95, by MS-SSIM");
   add_json_flag(*command, arguments->json);

@@ -1,6 +1,7 @@
 // extract: the texture of one image, with every stage on request.
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/given_pictures.hpp"
 #include "app/method_arguments.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -30,6 +31,7 @@ constexpr int kForceNeighbourhood = 3;
 
 struct ExtractArguments {
   fs::path image;
+  engine::SampleScale scale;
   MethodArguments method;
   std::string mapping = "offset";
   int neighbourhood = 3;
@@ -143,7 +145,7 @@ void complete(const ExtractArguments& arguments, engine::Extraction<Real>& extra
 
 template <typename Real>
 int extract_with(const ExtractArguments& arguments, const engine::ExtractionOptions& options) {
-  GreyImage image = engine::read_grey_image(arguments.image);
+  GreyImage image = read_given_picture(arguments.image, arguments.scale);
   engine::Extraction<Real> extraction =
       extracted<Real>(arguments.image, image, options, wanted_planes(arguments));
   if (!extraction.converged) {
@@ -189,7 +191,8 @@ int extract(const CLI::App& command, const ExtractArguments& arguments) {
 void add_extract_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ExtractArguments>();
   CLI::App* command = program.add_subcommand("extract", "Extract the texture of one image");
-  command->add_option("IMAGE", arguments->image, "PNG, JPEG, TIFF, BMP or PGM")->required();
+  command->add_option("IMAGE", arguments->image, "PNG, JPEG, TIFF, BMP, GIF or PGM")->required();
+  add_sample_options(*command, arguments->scale);
   add_method_options(*command, arguments->method);
   command->add_option("--mapping", arguments->mapping, "Mapping of the texture to a picture")
       ->check(CLI::IsMember(words_of(engine::kMappingNames)))

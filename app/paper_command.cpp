@@ -3,9 +3,9 @@
 #include "analysis/paper/paper_document.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/given_pictures.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "engine/image_file.hpp"
 #include "engine/metrics/ssim.hpp"
 #include "stimuli/generator.hpp"
 
@@ -35,7 +35,7 @@ struct PaperArguments {
 using PaperImages = std::vector<analysis::PaperPicture>;
 
 GreyImage readable_picture(const fs::path& path) {
-  GreyImage image = engine::read_grey_image(path);
+  GreyImage image = read_given_picture(path);
   if (std::min(image.height(), image.width()) >= engine::kMsSsimSmallestSide) return image;
   throw FileError(fmt::format(
       "{}: has {} x {} px; MS-SSIM needs at least {} px on each side; give "
@@ -154,9 +154,10 @@ void add_paper_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<PaperArguments>();
   CLI::App* command = program.add_subcommand(
       "paper", "The source paper's figures and tables beside those of pictures");
-  command->add_option("IMAGE", arguments->images,
-                      "PNG, JPEG, TIFF, BMP or PGM (default: the program's own textures, and its "
-                      "objects for the comparison with TV-Gabor)");
+  command->add_option(
+      "IMAGE", arguments->images,
+      "PNG, JPEG, TIFF, BMP, GIF or PGM (default: the program's own textures, and its "
+      "objects for the comparison with TV-Gabor)");
   command
       ->add_option("-o,--out", arguments->folder,
                    "Folder for paper.html, paper.md, the pictures and paper.json")

@@ -1,6 +1,7 @@
 // stimuli: pictures for studies, which the program generates or imports from photographs.
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/given_pictures.hpp"
 #include "core/errors.hpp"
 #include "core/text.hpp"
 #include "protocols/design/protocol.hpp"
@@ -109,13 +110,24 @@ std::string summary_text(const stimuli::ImportReport& report,
          fmt::format("pictures {}\nstudy    {}\n", report.pictures.string(), report.study.string());
 }
 
+/// Names every photograph that cannot be used.
+stimuli::ImportReport imported(const stimuli::ImportOptions& options) {
+  try {
+    return stimuli::import_photographs(options, progress_bar("importing"));
+  } catch (const stimuli::UnusablePhotographs& error) {
+    if (error.faults().size() > 1) {
+      for (const std::string& fault : error.faults()) spdlog::error("{}", fault);
+    }
+    throw;
+  }
+}
+
 int import_with(ImportArguments arguments) {
   take_resolution(arguments.pixels_per_mm, arguments.options);
   arguments.options.equalise = kEqualisings.at(arguments.equalise);
   arguments.options.protocol = arguments.protocol;
   arguments.options.methods = design::find_protocol(arguments.protocol)->least_methods();
-  const stimuli::ImportReport report =
-      stimuli::import_photographs(arguments.options, progress_bar("importing"));
+  const stimuli::ImportReport report = imported(arguments.options);
   if (!arguments.json) {
     for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
   }
@@ -138,6 +150,11 @@ void add_picture_options(CLI::App& command, stimuli::ImportOptions& options) {
                    stimuli::kMaxCropsOfClass);
   command.add_option("--pitch-mm", options.pitch_mm, "Size of a crop's pixel on the plane, mm")
       ->capture_default_str();
+  command.add_option(
+      "--names", options.names,
+      "How the files of a folder are named: {class}_# for T01_01.jpg and T01_02.jpg, "
+      "where # is a number and * any text (default: each file is a class)");
+  add_sample_options(command, options.scale);
   add_seed_option(command, options.seed, "Seed of the crops and the study's schedules");
   command.add_option("--licence", options.licence, "Licence of the photographs, for the manifest");
   command.add_option("--source", options.source, "Source of the photographs, for the manifest");

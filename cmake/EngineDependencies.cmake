@@ -12,6 +12,7 @@ pkg_check_modules(fftw3 ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL fftw3)
 pkg_check_modules(fftw3f ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL fftw3f)
 pkg_check_modules(libsodium ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL libsodium)
 pkg_check_modules(nettle ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL nettle)
+pkg_check_modules(utf8proc ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL libutf8proc)
 
 # Highway's library calibrates a clock when it is loaded: where the forwarders have all that its headers
 # call, it is loaded with the first kernel (decision 47).
@@ -76,7 +77,8 @@ endif()
 find_package(PNG ${TOUCHTRIAL_NEED})
 find_package(JPEG ${TOUCHTRIAL_NEED})
 find_package(TIFF 4.5 ${TOUCHTRIAL_NEED})
+pkg_check_modules(stb ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL stb)
 if(NOT TARGET touchtrial_pictures)
   add_library(touchtrial_pictures INTERFACE IMPORTED GLOBAL)
 endif()
-target_link_libraries(touchtrial_pictures INTERFACE PNG::PNG JPEG::JPEG TIFF::TIFF)
+target_link_libraries(touchtrial_pictures INTERFACE PNG::PNG JPEG::JPEG TIFF::TIFF PkgConfig::stb)

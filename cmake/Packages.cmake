@@ -67,7 +67,7 @@ touchtrial_package(development libtouchtrial-dev libdevel "engine of Touchtrial,
 static library behind Touchtrial, with headers and a CMake package
 (find_package(touchtrial), target touchtrial::engine).")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libopencv-core-dev, libopencv-imgproc-dev, libpng-dev, libjpeg-dev, libtiff-dev, libfftw3-dev, libhwy-dev, libsodium-dev, nettle-dev, libtbb-dev, zlib1g-dev, pkgconf, cmake")
+    "libopencv-core-dev, libopencv-imgproc-dev, libpng-dev, libjpeg-dev, libtiff-dev, libstb-dev, libfftw3-dev, libhwy-dev, libsodium-dev, nettle-dev, libutf8proc-dev, libtbb-dev, zlib1g-dev, pkgconf, cmake")
 
 if(TOUCHTRIAL_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)

@@ -23,6 +23,17 @@ template <typename Number>
   return number;
 }
 
+/// What is left of a name without what a reader does not see, or cannot say aloud: capitals, blanks
+/// and hyphens of any kind, the way in which accents are encoded, wide and other forms of a letter.
+/// Names of equal skeletons look alike, and some file systems take them for one.
+/// \return the text itself if it is not UTF-8
+/// Source: Unicode Standard Annex 15 and its case folding.
+[[nodiscard]] std::string skeleton_of(const std::string& name);
+
+/// Whether spreadsheets, pandas or R read a text as a missing value or a truth value, unless they
+/// are told otherwise: NA, NaN, NULL, None, TRUE and the like, in any capitals.
+[[nodiscard]] bool is_read_as_missing(const std::string& text);
+
 /// "1 session", "3 sessions"
 [[nodiscard]] inline std::string counted(std::int64_t n, const std::string& noun) {
   return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");

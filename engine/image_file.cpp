@@ -5,6 +5,7 @@
 #include "engine/image_formats/image_format.hpp"
 #include "engine/pictures/colour_image.hpp"
 
+#include <bit>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -18,21 +19,58 @@ namespace {
 /// checked are read.
 constexpr std::uintmax_t kLargestReadWhole = std::uintmax_t{1} << 26U;
 
-GreyImage decode_file(ByteView file) {
-  if (file.empty()) throw ImageFault{"is empty", "copy or export it again"};
+GreyImage read_kind(ByteView file, GreyScale& scale, ImageNotes& notes) {
   switch (kind_of_image(file)) {
     case ImageKind::png:
-      return read_png(file);
+      return read_png(file, scale);
     case ImageKind::jpeg:
-      return read_jpeg(file);
+      return read_jpeg(file, scale, notes);
     case ImageKind::tiff:
-      return read_tiff(file);
+      return read_tiff(file, scale, notes);
     case ImageKind::bmp:
-      return read_bmp(file);
+      return read_bmp(file, scale);
+    case ImageKind::gif:
+      return read_gif(file, scale, notes);
     case ImageKind::pnm:
-      return read_pnm(file);
+      return read_pnm(file, scale);
   }
   throw std::logic_error("an image kind without a reader");
+}
+
+/// Refuses 16-bit samples that leave most of their range empty: nobody notices how few grey levels
+/// are left. A picture alone does not tell how many bits its camera has.
+void check_range(const GreyScale& scale) {
+  const std::uint32_t max = scale.max_wide();
+  const int used = std::bit_width(max);
+  const std::string sample = "a sample of " + std::to_string(max);
+  if (scale.bits() != 0 && used > scale.bits()) {
+    throw ImageFault{"has " + sample + ", which takes " + std::to_string(used) + " bits",
+                     "give --bits " + std::to_string(used) + " or more"};
+  }
+  if (scale.bits() != 0 || max == 0 || max >= kMinMaxWideSample) return;
+  throw ImageFault{
+      "uses only " + std::to_string(used) + " of its 16 bits (its largest sample is " +
+          std::to_string(max) + "), of which " +
+          std::to_string(to_8_bit(static_cast<std::uint16_t>(max)) + 1) +
+          " grey levels would be left",
+      "say how many bits its camera or scanner has, for instance `touchtrial stimuli import "
+      "--bits 12`, or --bits 16 if it is just dark"};
+}
+
+Picture decode_file(ByteView file, const SampleScale& samples) {
+  if (file.empty()) throw ImageFault{"is empty", "copy or export it again"};
+  Picture picture;
+  GreyScale scale(samples);
+  ImageNotes found;
+  picture.grey = read_kind(file, scale, found);
+  check_range(scale);
+  picture.notes = notes_of_image(file);
+  picture.notes.pictures = found.pictures;
+  picture.notes.heights = found.heights;
+  picture.notes.lacks_end = found.lacks_end;
+  picture.notes.transparent_share =
+      static_cast<double>(scale.transparent_pixels()) / static_cast<double>(picture.grey.size());
+  return picture;
 }
 
 FileError error_about(const std::string& name, const std::string& what, const std::string& remedy) {
@@ -41,14 +79,31 @@ FileError error_about(const std::string& name, const std::string& what, const st
 
 }  // namespace
 
-GreyImage read_grey_image(const std::filesystem::path& path) {
+Picture read_picture(const std::filesystem::path& path, const SampleScale& scale) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error && size > kLargestReadWhole) {
     const MappedFile file(path);
-    return decode_grey_image(file.bytes(), path.string());
+    return decode_picture(file.bytes(), path.string(), scale);
   }
-  return decode_grey_image(read_file(path), path.string());
+  return decode_picture(read_file(path), path.string(), scale);
+}
+
+GreyImage read_grey_image(const std::filesystem::path& path) {
+  return read_picture(path).grey;
+}
+
+bool begins_like_image(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  try {
+    const ImageKind kind = kind_of_image(MappedFile(path).bytes());
+    return kind != ImageKind::bmp && kind != ImageKind::pnm;
+  } catch (const ImageFault&) {
+    return false;
+  } catch (const FileError&) {
+    return false;
+  }
 }
 
 std::pair<int, int> size_of_image(const std::filesystem::path& path) {
@@ -62,9 +117,9 @@ std::pair<int, int> size_of_image(const std::filesystem::path& path) {
   return {image.width(), image.height()};
 }
 
-GreyImage decode_grey_image(ByteView file, const std::string& name) {
+Picture decode_picture(ByteView file, const std::string& name, const SampleScale& scale) {
   try {
-    return decode_file(file);
+    return decode_file(file, scale);
   } catch (const ImageFault& fault) {
     throw error_about(name, fault.what, fault.remedy);
   } catch (const std::bad_alloc&) {

@@ -1,11 +1,13 @@
 #include "engine/image_notes.hpp"
 
+#include "core/strict_json.hpp"
 #include "engine/image_formats/image_format.hpp"
 #include "engine/image_formats/tiff_directory.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <string_view>
 
 namespace touchtrial::engine {
@@ -29,8 +31,47 @@ std::optional<double> resolution(double x, double y, double unit_mm) {
   return x / unit_mm;
 }
 
-ImageNotes notes_of_tiff(ByteView file) {
-  const TiffDirectory directory(file);
+/// Cameras write one of these whatever they photograph, and programs that develop their pictures
+/// another.
+bool is_usual_of_cameras(double pixels_per_mm) {
+  constexpr std::array kDotsPerInch = {180.0, 240.0, 300.0, 350.0};
+  return std::ranges::any_of(
+      kDotsPerInch, [&](double dots) { return std::abs(pixels_per_mm * kMmPerInch - dots) < 0.1; });
+}
+
+/// Whether Exif notes have what only a camera knows.
+bool has_exposure(ByteView file, const TiffDirectory& directory) {
+  const std::uint32_t at = directory.value(TiffTag::exif_directory, 0);
+  if (at == 0) return false;
+  const TiffDirectory exif(file, at);
+  return exif.has(TiffTag::exposure_time) || exif.has(TiffTag::f_number) ||
+         exif.has(TiffTag::focal_length);
+}
+
+/// Who made a picture file, as far as it decides what its resolution means.
+enum class Maker {
+  unknown,
+  named,  ///< a camera or a scanner
+  camera,
+};
+
+Maker maker_of(ByteView file, const TiffDirectory& directory) {
+  if (has_exposure(file, directory)) return Maker::camera;
+  const bool is_named = directory.has(TiffTag::make) || directory.has(TiffTag::model);
+  return is_named ? Maker::named : Maker::unknown;
+}
+
+/// A camera's resolution says nothing about the object.
+void weigh_resolution(Maker maker, ImageNotes& notes) {
+  if (maker == Maker::unknown || !notes.pixels_per_mm) return;
+  if (maker == Maker::named && !is_usual_of_cameras(*notes.pixels_per_mm)) return;
+  notes.camera_dpi = *notes.pixels_per_mm * kMmPerInch;
+  notes.pixels_per_mm.reset();
+}
+
+ImageNotes notes_of_tiff(ByteView file, Maker& maker) {
+  const TiffDirectory directory(file, pictures_of_tiff(file).first);
+  maker = maker_of(file, directory);
   ImageNotes notes;
   notes.orientation = static_cast<int>(directory.value(TiffTag::orientation, 1));
   const auto x = directory.fraction(TiffTag::x_resolution);
@@ -44,9 +85,9 @@ ImageNotes notes_of_tiff(ByteView file) {
 }
 
 /// Exif notes are a TIFF directory within another file.
-void take_exif(ByteView exif, ImageNotes& notes) {
+void take_exif(ByteView exif, ImageNotes& notes, Maker& maker) {
   try {
-    const ImageNotes said = notes_of_tiff(exif);
+    const ImageNotes said = notes_of_tiff(exif, maker);
     notes.orientation = said.orientation;
     if (said.pixels_per_mm) notes.pixels_per_mm = said.pixels_per_mm;
   } catch (const ImageFault&) {
@@ -66,27 +107,28 @@ void take_jfif(ByteView data, ImageNotes& notes) {
 }
 
 /// Reads the segments before the first scan.
-void take_jpeg(ByteView file, ImageNotes& notes) {
+void take_jpeg(ByteView file, ImageNotes& notes, Maker& maker) {
   using namespace std::string_view_literals;
   constexpr std::uint32_t kScan = 0xFFDA;
   for (std::size_t at = 2; big16(file, at) >= 0xFFC0 && big16(file, at) != kScan;) {
     const ByteView data = bytes_at(file, at + 4, std::max(big16(file, at + 2), 2U) - 2);
     if (big16(file, at) == 0xFFE0 && starts_with(data, "JFIF\0"sv)) take_jfif(data, notes);
     if (big16(file, at) == 0xFFE1 && starts_with(data, "Exif\0\0"sv)) {
-      take_exif(data.subspan(6), notes);
+      take_exif(data.subspan(6), notes, maker);
     }
     at += 4 + data.size();
   }
 }
 
-void take_png(ByteView file, ImageNotes& notes) {
+void take_png(ByteView file, ImageNotes& notes, Maker& maker) {
   for (std::size_t at = 8; at < file.size();) {
     const ByteView data = bytes_at(file, at + 8, big32(file, at));
     const std::string type = text_of(bytes_at(file, at + 4, 4));
+    if (type == "IEND") return;
     if (type == "pHYs" && data.size() == 9 && data[8] == 1) {
       notes.pixels_per_mm = resolution(big32(data, 0), big32(data, 4), kMmPerMetre);
     }
-    if (type == "eXIf") take_exif(data, notes);
+    if (type == "eXIf") take_exif(data, notes, maker);
     at += 12 + data.size();
   }
 }
@@ -95,18 +137,19 @@ void take_bmp(ByteView file, ImageNotes& notes) {
   notes.pixels_per_mm = resolution(little32(file, 38), little32(file, 42), kMmPerMetre);
 }
 
-void take_notes(ByteView file, ImageNotes& notes) {
+void take_notes(ByteView file, ImageNotes& notes, Maker& maker) {
   switch (kind_of_image(file)) {
     case ImageKind::png:
-      return take_png(file, notes);
+      return take_png(file, notes, maker);
     case ImageKind::jpeg:
-      return take_jpeg(file, notes);
+      return take_jpeg(file, notes, maker);
     case ImageKind::tiff:
-      return take_exif(file, notes);
+      return take_exif(file, notes, maker);
     case ImageKind::bmp:
       return take_bmp(file, notes);
+    case ImageKind::gif:
     case ImageKind::pnm:
-      return;  // a PNM file has no place for notes
+      return;  // these files have no place for notes
   }
 }
 
@@ -114,13 +157,41 @@ void take_notes(ByteView file, ImageNotes& notes) {
 
 ImageNotes notes_of_image(ByteView file) {
   ImageNotes notes;
+  Maker maker = Maker::unknown;
   try {
-    take_notes(file, notes);
+    take_notes(file, notes, maker);
   } catch (const ImageFault&) {
     // Notes before the damage stay valid.
   }
+  weigh_resolution(maker, notes);
   if (notes.orientation < 1 || notes.orientation > 8) notes.orientation = 1;
   return notes;
+}
+
+std::vector<std::string> remarks_on(const ImageNotes& notes) {
+  std::vector<std::string> remarks;
+  if (notes.pictures > 1) {
+    remarks.push_back(
+        "holds " + std::to_string(notes.pictures) +
+        " pictures, and the first is used; save the one you want in a file of its own");
+  }
+  if (notes.transparent_share > 0.0) {
+    std::array<char, 32> percent{};
+    std::snprintf(percent.data(), percent.size(), "%.2g", 100.0 * notes.transparent_share);
+    remarks.push_back(std::string(percent.data()) +
+                      " % of its pixels are transparent and become black, whose edge can be felt; "
+                      "crop it to where it is opaque");
+  }
+  if (notes.heights) {
+    remarks.push_back("holds heights from " + number_text(notes.heights->first) + " to " +
+                      number_text(notes.heights->second) +
+                      "; import all pictures of a set with the same --heights");
+  }
+  if (notes.lacks_end) {
+    remarks.emplace_back(
+        "lacks its end marker, but has all pixels; copy or export it again if you can");
+  }
+  return remarks;
 }
 
 GreyImage upright(const GreyImage& image, int orientation) {

@@ -1,4 +1,4 @@
-/// \file The metadata of a picture file: its orientation and its resolution.
+/// \file What a picture file says of itself, and what its readers find besides grey levels.
 /// Source: Exif 2.32, TIFF 6.0, PNG (pHYs, eXIf), JFIF 1.02.
 #pragma once
 
@@ -6,6 +6,9 @@
 #include "core/plane.hpp"
 
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace touchtrial::engine {
 
@@ -13,15 +16,29 @@ struct ImageNotes {
   /// 1 to 8 as in Exif and TIFF: 1 is upright, 3 upside down, 6 has to be turned clockwise, 8
   /// anticlockwise; 2, 4, 5 and 7 are mirrored as well.
   int orientation = 1;
-  /// Nothing if the file states no resolution, different ones for the two axes, or 72 or 96 dots
-  /// per inch, which cameras and programs write when they do not know it.
+  /// Of the photographed object. Nothing if the file states no resolution, different ones for the
+  /// two axes, or 72 or 96 dots per inch, which programs write when they do not know it; and
+  /// nothing if a camera took the picture, which cannot know it.
   std::optional<double> pixels_per_mm;
+  /// The dots per inch that a camera wrote; nothing if it is no camera's, or it wrote none.
+  std::optional<double> camera_dpi;
+
+  // What follows is known only once the picture is decoded.
+  int pictures = 1;                ///< in the file, without reduced copies; the first one is read
+  double transparent_share = 0.0;  ///< of the pixels; they are composited on black
+  bool lacks_end = false;          ///< no end marker follows the last pixel
+  /// The lowest and the highest of a picture of heights, in its own unit.
+  std::optional<std::pair<double, double>> heights;
 };
 
 /// Reads the metadata. Damaged metadata counts as absent, so that the picture stays readable.
 /// \param file  all bytes of the file
 /// Thread-safe.
 [[nodiscard]] ImageNotes notes_of_image(ByteView file);
+
+/// What a person should know before the picture is used, each the rest of a sentence that starts
+/// with the file's name, with the remedy. Nothing about its resolution.
+[[nodiscard]] std::vector<std::string> remarks_on(const ImageNotes& notes);
 
 /// Turns and mirrors a picture so that it is upright.
 /// \param orientation  see ImageNotes; any number but 2 to 8 returns the picture unchanged

@@ -122,7 +122,7 @@ void check_pose(const device::falcon::Reply& reply) {
 
 void read_as_image(ByteView bytes) {
   accept_or_refuse([&] {
-    const GreyImage image = engine::decode_grey_image(bytes, "picture");
+    const GreyImage image = engine::decode_picture(bytes, "picture").grey;
     require(!image.empty(), "a picture has pixels");
     require(static_cast<std::int64_t>(image.size()) <= engine::kMaxImagePixels,
             "a picture is not huge");

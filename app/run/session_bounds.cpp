@@ -96,8 +96,8 @@ std::string open_group(const RunOptions& options, const design::StationKey& key,
 EnteredSession new_session(const RunOptions& options, const RunStudy& study, RunDatabase& database,
                            int enrolment, const DescribeOpening& describe) {
   if (!store::is_participant_id(options.participant)) {
-    throw UsageError("run: " + in_quotes(options.participant) +
-                     " is no participant id; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
+    throw UsageError("run: " + in_quotes(options.participant) + " is no participant id; " +
+                     std::string(store::kParticipantIdRule));
   }
   EnteredSession entered;
   entered.enrolment = enrolment;

@@ -111,7 +111,7 @@ std::size_t packed_number(ByteView bytes, std::size_t index, std::size_t bits) {
 }
 
 void read_row(ByteView stored, std::size_t bits, Alpha alpha, const Palette& palette,
-              std::span<std::uint8_t> row) {
+              GreyScale& scale, std::span<std::uint8_t> row) {
   for (std::size_t x = 0; x < row.size(); ++x) {
     if (bits <= 8) {
       row[x] = palette[packed_number(stored, x, bits)];
@@ -119,7 +119,7 @@ void read_row(ByteView stored, std::size_t bits, Alpha alpha, const Palette& pal
       const std::uint8_t* bgr = &stored[x * bits / 8];
       const std::array<std::uint8_t, 4> rgba = {bgr[2], bgr[1], bgr[0],
                                                 bits == 32 ? bgr[3] : std::uint8_t{255}};
-      row[x] = grey_of(rgba.data(), 4, alpha);
+      row[x] = scale.grey_of(rgba.data(), 4, alpha);
     }
   }
 }
@@ -196,7 +196,7 @@ class RunLengths {
 
 }  // namespace
 
-GreyImage read_bmp(ByteView file) {
+GreyImage read_bmp(ByteView file, GreyScale& scale) {
   const BmpHeader header = read_bmp_header(file);
   check_image_size(header.width, header.height);
   if (!is_supported(file, header)) {
@@ -206,7 +206,7 @@ GreyImage read_bmp(ByteView file) {
   }
   const ByteView data = data_of(file, header);
   const Palette palette = read_palette(file, header);
-  const Alpha alpha = has_alpha(file, header) ? Alpha::straight : Alpha::ignored;
+  const Alpha alpha = has_alpha(file, header) ? Alpha::straight : Alpha::none;
   const bool is_packed = is_run_length(header);
   const Bytes unpacked = is_packed ? RunLengths(data, header, palette).read() : Bytes();
   GreyImage image(static_cast<int>(header.height), static_cast<int>(header.width));
@@ -217,7 +217,7 @@ GreyImage read_bmp(ByteView file) {
     if (is_packed) {
       std::copy_n(unpacked.begin() + static_cast<std::ptrdiff_t>(stored * size), size, row.begin());
     } else {
-      read_row(data.subspan(stored * size, size), header.bits, alpha, palette, row);
+      read_row(data.subspan(stored * size, size), header.bits, alpha, palette, scale, row);
     }
   }
   return image;

@@ -19,6 +19,7 @@ constexpr std::array kSupported = {Signature{"\x89PNG\r\n\x1a\n"sv, ImageKind::p
                                    Signature{"II*\0"sv, ImageKind::tiff},
                                    Signature{"MM\0*"sv, ImageKind::tiff},
                                    Signature{"BM"sv, ImageKind::bmp},
+                                   Signature{"GIF8"sv, ImageKind::gif},
                                    Signature{"P2"sv, ImageKind::pnm},
                                    Signature{"P3"sv, ImageKind::pnm},
                                    Signature{"P5"sv, ImageKind::pnm},
@@ -29,8 +30,7 @@ struct ForeignSignature {
   std::string_view text;
   std::string_view name;
 };
-constexpr std::array kForeign = {ForeignSignature{0, "GIF8"sv, "GIF"},
-                                 ForeignSignature{8, "WEBP"sv, "WebP"},
+constexpr std::array kForeign = {ForeignSignature{8, "WEBP"sv, "WebP"},
                                  ForeignSignature{4, "ftyp"sv, "HEIF, AVIF or video"},
                                  ForeignSignature{4, "jP  "sv, "JPEG 2000"},
                                  ForeignSignature{0, "\xff\x4f\xff\x51"sv, "JPEG 2000"},
@@ -58,9 +58,10 @@ ImageKind kind_of_image(ByteView file) {
   for (const ForeignSignature& signature : kForeign) {
     if (!holds(start, signature.at, signature.text)) continue;
     throw ImageFault{"is a " + std::string(signature.name) + " file, a kind that is not supported",
-                     "save it as PNG, JPEG, TIFF, BMP or PGM"};
+                     "save it as PNG, JPEG, TIFF, BMP, GIF or PGM"};
   }
-  throw ImageFault{"is not an image of a known kind", "give a PNG, JPEG, TIFF, BMP or PGM file"};
+  throw ImageFault{"is not an image of a known kind",
+                   "give a PNG, JPEG, TIFF, BMP, GIF or PGM file"};
 }
 
 void throw_truncated_image() {

@@ -4,7 +4,10 @@
 
 #include "core/bytes.hpp"
 #include "core/plane.hpp"
+#include "engine/image_file.hpp"
+#include "engine/image_notes.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -13,21 +16,25 @@
 
 namespace touchtrial::engine {
 
-enum class ImageKind { png, jpeg, tiff, bmp, pnm };
+enum class ImageKind { png, jpeg, tiff, bmp, gif, pnm };
 
 /// Recognises a picture by the first bytes of its file.
 /// \throws ImageFault if it is a picture of an unsupported kind, or no picture
 [[nodiscard]] ImageKind kind_of_image(ByteView file);
 
+class GreyScale;
+
 /// Each function reads a file of its kind. They ignore metadata, including orientation and colour
 /// profiles. They allocate memory only if the structure of the file shows that the samples exist.
 /// They print nothing, and are thread-safe.
+/// \param notes  gets the number of pictures, and whether the end marker is missing
 /// \throws ImageFault if the file is truncated, damaged, too large or of an unsupported type
-[[nodiscard]] GreyImage read_png(ByteView file);
-[[nodiscard]] GreyImage read_jpeg(ByteView file);
-[[nodiscard]] GreyImage read_tiff(ByteView file);
-[[nodiscard]] GreyImage read_bmp(ByteView file);
-[[nodiscard]] GreyImage read_pnm(ByteView file);
+[[nodiscard]] GreyImage read_png(ByteView file, GreyScale& scale);
+[[nodiscard]] GreyImage read_jpeg(ByteView file, GreyScale& scale, ImageNotes& notes);
+[[nodiscard]] GreyImage read_tiff(ByteView file, GreyScale& scale, ImageNotes& notes);
+[[nodiscard]] GreyImage read_bmp(ByteView file, GreyScale& scale);
+[[nodiscard]] GreyImage read_gif(ByteView file, GreyScale& scale, ImageNotes& notes);
+[[nodiscard]] GreyImage read_pnm(ByteView file, GreyScale& scale);
 
 /// Width and height of a PNG, pixels, by its header alone.
 /// \throws ImageFault
@@ -108,30 +115,65 @@ enum class ByteOrder { little, big };
   return static_cast<std::uint8_t>((299U * red + 587U * green + 114U * blue + 500U) / 1000U);
 }
 
-/// How the second channel of grey, or the fourth of colour, is used.
+/// What the second channel of grey, or the fourth of colour, is.
 enum class Alpha {
-  straight,  ///< composited on black
-  ignored,   ///< the colours are already multiplied by it, or the channel is not alpha
+  straight,    ///< opacity; the pixel is composited on black
+  multiplied,  ///< opacity by which the colours are multiplied already
+  none,        ///< something else
 };
 
-/// One pixel of 8- or 16-bit samples: grey, grey alpha, RGB or RGBA.
-template <typename Sample>
-[[nodiscard]] std::uint8_t grey_of(const Sample* pixel, int channels, Alpha alpha) noexcept {
-  const bool has_alpha = channels % 2 == 0 && alpha == Alpha::straight;
-  const std::uint32_t opacity = has_alpha ? to_8_bit(pixel[channels - 1]) : 255U;
-  const auto visible = [&](int channel) { return over_black(to_8_bit(pixel[channel]), opacity); };
-  if (channels <= 2) return static_cast<std::uint8_t>(visible(0));
-  return luma(visible(0), visible(1), visible(2));
-}
+/// Makes 8-bit grey of the samples of one picture, and notes what that loses.
+class GreyScale {
+ public:
+  explicit GreyScale(const SampleScale& samples) noexcept
+      : bits_(samples.bits), heights_(samples.heights) {}
 
-/// A row of such pixels.
-template <typename Sample>
-void make_grey(const Sample* pixel, int channels, Alpha alpha,
-               std::span<std::uint8_t> row) noexcept {
-  for (std::uint8_t& grey : row) {
-    grey = grey_of(pixel, channels, alpha);
-    pixel += channels;
+  /// One pixel of 8- or 16-bit samples: grey, grey alpha, RGB or RGBA.
+  template <typename Sample>
+  [[nodiscard]] std::uint8_t grey_of(const Sample* pixel, int channels, Alpha alpha) noexcept {
+    const bool has_alpha = channels % 2 == 0 && alpha != Alpha::none;
+    std::uint32_t opacity = has_alpha ? level_of(pixel[channels - 1]) : 255U;
+    if (opacity < 255U) ++transparent_;
+    if (alpha == Alpha::multiplied) opacity = 255U;
+    const auto visible = [&](int channel) { return over_black(level_of(pixel[channel]), opacity); };
+    if (channels <= 2) return static_cast<std::uint8_t>(visible(0));
+    return luma(visible(0), visible(1), visible(2));
   }
-}
+
+  /// A row of such pixels.
+  template <typename Sample>
+  void make_grey(const Sample* pixel, int channels, Alpha alpha,
+                 std::span<std::uint8_t> row) noexcept {
+    for (std::uint8_t& grey : row) {
+      grey = grey_of(pixel, channels, alpha);
+      pixel += channels;
+    }
+  }
+
+  /// Notes a sample of a scale of 0 to 65535.
+  void note_wide(std::uint32_t sample) noexcept { max_wide_ = std::max(max_wide_, sample); }
+
+  [[nodiscard]] int bits() const noexcept { return bits_; }
+  [[nodiscard]] const std::optional<std::pair<double, double>>& heights() const noexcept {
+    return heights_;
+  }
+  /// Of 16-bit samples; 0 if there are none.
+  [[nodiscard]] std::uint32_t max_wide() const noexcept { return max_wide_; }
+  [[nodiscard]] std::uint64_t transparent_pixels() const noexcept { return transparent_; }
+
+ private:
+  std::uint32_t level_of(std::uint8_t sample) noexcept { return sample; }
+  std::uint32_t level_of(std::uint16_t sample) noexcept {
+    note_wide(sample);
+    if (bits_ == 0) return to_8_bit(sample);
+    const std::uint32_t maximum = (1U << static_cast<unsigned>(bits_)) - 1U;
+    return to_8_bit(std::min<std::uint32_t>(sample, maximum), maximum);
+  }
+
+  int bits_;
+  std::optional<std::pair<double, double>> heights_;
+  std::uint32_t max_wide_ = 0;
+  std::uint64_t transparent_ = 0;
+};
 
 }  // namespace touchtrial::engine

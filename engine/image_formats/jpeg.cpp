@@ -18,6 +18,7 @@ namespace {
 enum Marker : std::uint32_t {
   kStuffed = 0x00,
   kTemporary = 0x01,
+  kProgressive = 0xC2,
   kHuffmanTables = 0xC4,
   kJpegExtension = 0xC8,
   kArithmeticTables = 0xCC,
@@ -40,7 +41,16 @@ constexpr long kMostMemory = 6L * kMaxImagePixels + (1L << 28U);
 struct Frame {
   std::uint32_t width = 0;  ///< 0: not seen yet
   std::uint32_t height = 0;
+  std::uint32_t channels = 0;
+  bool progressive = false;
+
+  [[nodiscard]] std::uint64_t samples() const {
+    return std::uint64_t{width + 7} * (height + 7) * channels;
+  }
 };
+
+/// A coefficient takes at most 16 bits of code and 11 of value, which stuffing can double.
+constexpr std::uint64_t kMaxBytesOfSample = 8;
 
 bool is_frame(std::uint32_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != kHuffmanTables && marker != kJpegExtension &&
@@ -58,9 +68,9 @@ bool is_note(std::uint32_t marker) {
 }
 
 Frame read_frame(std::uint32_t marker, ByteView segment) {
-  const Frame frame{big16(segment, 5), big16(segment, 3)};
   const std::uint32_t depth = number_at(segment, 2, 1, ByteOrder::big);
   const std::uint32_t channels = number_at(segment, 7, 1, ByteOrder::big);
+  const Frame frame{big16(segment, 5), big16(segment, 3), channels, marker == kProgressive};
   check_image_size(frame.width, frame.height);
   if (!is_baseline_or_progressive(marker)) {
     throw_unsupported_image(
@@ -74,12 +84,13 @@ Frame read_frame(std::uint32_t marker, ByteView segment) {
   return frame;
 }
 
-/// The position of the 0xFF of the next marker after entropy-coded data.
-/// \throws ImageFault if there is none
+/// The position of the 0xFF of the next marker after entropy-coded data, or the file's end.
+/// \throws ImageFault if the file ends within a marker
 std::size_t end_of_scan_data(ByteView file, std::size_t at) {
   while (true) {
     const auto found = std::find(file.begin() + static_cast<std::ptrdiff_t>(at), file.end(), 0xFF);
     at = static_cast<std::size_t>(found - file.begin());
+    if (at == file.size()) return at;
     const std::uint32_t next = number_at(file, at + 1, 1, ByteOrder::big);
     const bool inside = next == kStuffed || (next >= kRestart0 && next <= kRestart7);
     if (!inside && next != 0xFF) return at;
@@ -94,13 +105,14 @@ class Walk {
 
   /// \return false after the end marker
   bool step() {
+    if (at_ == file_.size() && is_whole_without_end()) {
+      lacks_end_ = true;
+      return false;
+    }
     while (number_at(file_, at_ + 1, 1, ByteOrder::big) == 0xFF) ++at_;  // fill bytes
     if (number_at(file_, at_, 1, ByteOrder::big) != 0xFF) throw_truncated_image();
     const std::uint32_t marker = number_at(file_, at_ + 1, 1, ByteOrder::big);
-    if (marker == kEnd) {
-      copy(at_, 2);
-      return false;
-    }
+    if (marker == kEnd) return false;
     if (marker == kTemporary || (marker >= kRestart0 && marker <= kRestart7)) {
       at_ += 2;
       return true;
@@ -117,10 +129,19 @@ class Walk {
     if (frame_.width == 0 || scan_bytes_ == 0) throw_truncated_image();
     const std::uint64_t blocks = std::uint64_t{(frame_.width + 7) / 8} * ((frame_.height + 7) / 8);
     if (blocks > scan_bytes_ * 8) throw_truncated_image();
+    kept_.insert(kept_.end(), {0xFF, kEnd});
     return std::move(kept_);
   }
 
+  [[nodiscard]] bool lacks_end() const noexcept { return lacks_end_; }
+
  private:
+  /// Some programs leave the end marker out. One scan of all channels then has every block, or
+  /// libjpeg complains about the first that is missing.
+  [[nodiscard]] bool is_whole_without_end() const {
+    return scans_ == 1 && !frame_.progressive && channels_of_scan_ == frame_.channels;
+  }
+
   void segment(std::uint32_t marker) {
     const std::size_t size = 2 + big16(file_, at_ + 2);
     const ByteView whole = bytes_at(file_, at_, size);
@@ -131,7 +152,9 @@ class Walk {
     }
     if (!is_note(marker)) copy(at_, size);
     at_ += size;
-    if (marker == kScan) scan_data();
+    if (marker != kScan) return;
+    channels_of_scan_ = number_at(whole, 4, 1, ByteOrder::big);
+    scan_data();
   }
 
   void scan_data() {
@@ -140,6 +163,10 @@ class Walk {
                        "export it again"};
     }
     const std::size_t end = end_of_scan_data(file_, at_);
+    // Refused before it is copied: a huge file may follow.
+    if (end == file_.size() && end - at_ > kMaxBytesOfSample * frame_.samples()) {
+      throw_truncated_image();
+    }
     copy(at_, end - at_);
     scan_bytes_ += end - at_;
     at_ = end;
@@ -154,7 +181,9 @@ class Walk {
   std::size_t at_ = 2;
   Frame frame_;
   std::uint64_t scan_bytes_ = 0;
+  std::uint32_t channels_of_scan_ = 0;  ///< of the last scan
   int scans_ = 0;
+  bool lacks_end_ = false;
   Bytes kept_;
 };
 
@@ -181,7 +210,7 @@ void weigh_message(j_common_ptr jpeg, int level) {
 /// libjpeg on a file in memory.
 class JpegDecoder {
  public:
-  JpegDecoder() {
+  explicit JpegDecoder(GreyScale& scale) : scale_(scale) {
     jpeg_.err = jpeg_std_error(&errors_);
     jpeg_.client_data = &escape_;
     errors_.error_exit = leave;
@@ -200,7 +229,7 @@ class JpegDecoder {
       for (int y = 0; y < image.height(); ++y) {
         JSAMPROW row = samples.data();
         jpeg_read_scanlines(&jpeg_, &row, 1);
-        make_grey(samples.data(), channels, Alpha::ignored, image.row(y));
+        scale_.make_grey(samples.data(), channels, Alpha::none, image.row(y));
       }
       jpeg_finish_decompress(&jpeg_);
     }));
@@ -223,6 +252,7 @@ class JpegDecoder {
     jpeg_start_decompress(&jpeg_);
   }
 
+  GreyScale& scale_;
   Escape escape_;
   jpeg_error_mgr errors_{};
   jpeg_decompress_struct jpeg_{};
@@ -230,12 +260,13 @@ class JpegDecoder {
 
 }  // namespace
 
-GreyImage read_jpeg(ByteView file) {
+GreyImage read_jpeg(ByteView file, GreyScale& scale, ImageNotes& notes) {
   Walk walk(file);
   while (walk.step()) {
   }
   const Bytes kept = walk.finish();
-  return JpegDecoder().read(kept);
+  notes.lacks_end = walk.lacks_end();
+  return JpegDecoder(scale).read(kept);
 }
 
 }  // namespace touchtrial::engine

@@ -122,7 +122,7 @@ void take_bytes(png_structp png, png_bytep to, std::size_t count) {
 /// libpng on a file in memory: rows of 8- or 16-bit grey, grey alpha, RGB or RGBA samples.
 class PngDecoder {
  public:
-  explicit PngDecoder(ByteView file) : left_(file) {}
+  PngDecoder(ByteView file, GreyScale& scale) : left_(file), scale_(scale) {}
   ~PngDecoder() { png_destroy_read_struct(&png_, &info_, nullptr); }
   PngDecoder(const PngDecoder&) = delete;
   PngDecoder& operator=(const PngDecoder&) = delete;
@@ -170,7 +170,9 @@ class PngDecoder {
       for (int pass = 1; pass <= passes_; ++pass) {
         for (int y = 0; y < height; ++y) {
           png_read_row(png_, reinterpret_cast<png_bytep>(row_of(y)), nullptr);
-          if (pass == passes_) make_grey(row_of(y), channels, Alpha::straight, image.row(y));
+          if (pass == passes_) {
+            scale_.make_grey(row_of(y), channels, Alpha::straight, image.row(y));
+          }
         }
       }
       png_read_end(png_, nullptr);
@@ -180,6 +182,7 @@ class PngDecoder {
 
   Escape escape_;
   ByteView left_;
+  GreyScale& scale_;
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;
   int passes_ = 1;
@@ -205,9 +208,9 @@ std::pair<int, int> size_of_png(ByteView file) {
   return {static_cast<int>(header.width), static_cast<int>(header.height)};
 }
 
-GreyImage read_png(ByteView file) {
+GreyImage read_png(ByteView file, GreyScale& scale) {
   const Bytes kept = what_decides_pixels(file);
-  return PngDecoder(kept).read();
+  return PngDecoder(kept, scale).read();
 }
 
 Bytes png_of_samples(int height, int width, int channels, std::span<const std::uint8_t> samples) {

@@ -77,44 +77,49 @@ struct Samples {
   }
 };
 
-std::uint32_t next_sample(Scanner& scanner, const Samples& samples) {
+std::uint32_t next_sample(Scanner& scanner, const Samples& samples, GreyScale& scale) {
   const std::uint32_t sample = samples.text ? scanner.decimal() : scanner.binary(samples.size());
   if (sample > samples.maximum) {
     throw ImageFault{"has a sample of " + std::to_string(sample) +
                          ", above its stated maximum of " + std::to_string(samples.maximum),
                      "export it again"};
   }
+  if (samples.maximum == kLargestMaximum) scale.note_wide(sample);
   return to_8_bit(sample, samples.maximum);
 }
 
-std::uint8_t next_pixel(Scanner& scanner, const Samples& samples) {
-  const std::uint32_t first = next_sample(scanner, samples);
+std::uint8_t next_pixel(Scanner& scanner, const Samples& samples, GreyScale& scale) {
+  const std::uint32_t first = next_sample(scanner, samples, scale);
   if (samples.channels == 1) return static_cast<std::uint8_t>(first);
-  const std::uint32_t green = next_sample(scanner, samples);
-  return luma(first, green, next_sample(scanner, samples));
+  const std::uint32_t green = next_sample(scanner, samples, scale);
+  return luma(first, green, next_sample(scanner, samples, scale));
 }
 
 }  // namespace
 
-GreyImage read_pnm(ByteView file) {
+GreyImage read_pnm(ByteView file, GreyScale& scale) {
   const std::uint8_t kind = bytes_at(file, 0, 2)[1];
   Scanner scanner(file, 2);
   const std::uint32_t width = scanner.decimal();
   const std::uint32_t height = scanner.decimal();
   check_image_size(width, height);
-  const Samples samples{kind == '2' || kind == '3', kind == '3' || kind == '6' ? 3U : 1U,
-                        scanner.decimal()};
+  Samples samples{kind == '2' || kind == '3', kind == '3' || kind == '6' ? 3U : 1U,
+                  scanner.decimal()};
   if (samples.maximum == 0 || samples.maximum > kLargestMaximum) {
     throw ImageFault{
         "states a largest sample of " + std::to_string(samples.maximum) + ", outside 1 .. 65535",
         "export it again"};
+  }
+  // A file of 12 bits may say so by its maximum, or leave it at 16 bits.
+  if (scale.bits() != 0 && samples.maximum == kLargestMaximum) {
+    samples.maximum = (1U << static_cast<unsigned>(scale.bits())) - 1U;
   }
   scanner.end_of_header();
   if (samples.bytes(std::uint64_t{width} * height * samples.channels) > scanner.left()) {
     throw_truncated_image();
   }
   GreyImage image(static_cast<int>(height), static_cast<int>(width));
-  for (std::uint8_t& pixel : image.samples()) pixel = next_pixel(scanner, samples);
+  for (std::uint8_t& pixel : image.samples()) pixel = next_pixel(scanner, samples, scale);
   return image;
 }
 

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <new>
+#include <span>
 #include <string_view>
 
 #include <tiffio.h>
@@ -25,6 +27,7 @@ struct Layout {
   std::uint32_t compression;
   std::uint32_t photometric;
   bool separate;
+  bool heights;  ///< floating-point samples
 };
 
 /// Whether every channel has the value of the first one, or the entry is absent.
@@ -45,7 +48,8 @@ Layout read_layout(const TiffDirectory& directory) {
       get(TiffTag::samples_per_pixel, 1),
       get(TiffTag::compression, COMPRESSION_NONE),
       get(TiffTag::photometric, PHOTOMETRIC_MINISBLACK),
-      get(TiffTag::planar, 1) == PLANARCONFIG_SEPARATE && get(TiffTag::samples_per_pixel, 1) > 1};
+      get(TiffTag::planar, 1) == PLANARCONFIG_SEPARATE && get(TiffTag::samples_per_pixel, 1) > 1,
+      get(TiffTag::sample_format, SAMPLEFORMAT_UINT) == SAMPLEFORMAT_IEEEFP};
   check_image_size(layout.width, layout.height);
   return layout;
 }
@@ -88,11 +92,17 @@ bool compression_fits(const Layout& layout) {
 
 void check_samples(const TiffDirectory& directory, const Layout& layout) {
   const std::uint32_t format = directory.value(TiffTag::sample_format, SAMPLEFORMAT_UINT);
-  if (format != SAMPLEFORMAT_UINT || !is_uniform(directory, TiffTag::sample_format, format) ||
-      (layout.bits != 1 && layout.bits != 8 && layout.bits != 16) ||
+  const bool is_known = layout.heights
+                            ? (layout.bits == 32 || layout.bits == 64) && layout.channels == 1
+                            : format == SAMPLEFORMAT_UINT &&
+                                  (layout.bits == 1 || layout.bits == 8 || layout.bits == 16);
+  if (!is_known || !is_uniform(directory, TiffTag::sample_format, format) ||
       !is_uniform(directory, TiffTag::bits_per_sample, 1)) {
-    throw_unsupported_image("is a TIFF of " + std::to_string(layout.bits) + "-bit " +
-                            (format == SAMPLEFORMAT_UINT ? "" : "signed or floating-point ") +
+    throw_unsupported_image("is a TIFF of " + std::to_string(layout.channels) + " x " +
+                            std::to_string(layout.bits) + "-bit " +
+                            (layout.heights                ? "floating-point "
+                             : format == SAMPLEFORMAT_UINT ? ""
+                                                           : "signed ") +
                             "samples, which is not supported");
   }
   if (!directory.has(TiffTag::photometric)) {
@@ -177,8 +187,14 @@ void check_pieces(ByteView file, const Layout& layout, const Pieces& pieces) {
 
 /// A fourth channel that the file does not describe is alpha by common usage.
 Alpha alpha_rule(const TiffDirectory& directory) {
-  const std::uint32_t meaning = directory.value(TiffTag::extra_samples, EXTRASAMPLE_UNASSALPHA);
-  return meaning == EXTRASAMPLE_UNASSALPHA ? Alpha::straight : Alpha::ignored;
+  switch (directory.value(TiffTag::extra_samples, EXTRASAMPLE_UNASSALPHA)) {
+    case EXTRASAMPLE_UNASSALPHA:
+      return Alpha::straight;
+    case EXTRASAMPLE_ASSOCALPHA:
+      return Alpha::multiplied;
+    default:
+      return Alpha::none;
+  }
 }
 
 /// libtiff ignores entries that it finds wrong, and assumes their usual values. That must not
@@ -190,7 +206,7 @@ void require_same_view(TIFF* tiff, const TiffDirectory& directory, const Layout&
                             layout.compression == COMPRESSION_ADOBE_DEFLATE;
   for (const TiffTag tag :
        {TiffTag::bits_per_sample, TiffTag::compression, TiffTag::photometric, TiffTag::fill_order,
-        TiffTag::samples_per_pixel, TiffTag::planar, TiffTag::predictor}) {
+        TiffTag::samples_per_pixel, TiffTag::planar, TiffTag::predictor, TiffTag::sample_format}) {
     if (!directory.has(tag) || (tag == TiffTag::predictor && !is_predicted)) continue;
     std::uint16_t value = 0;
     const bool is_known = TIFFGetField(tiff, static_cast<std::uint32_t>(tag), &value) == 1;
@@ -278,7 +294,8 @@ constexpr int kHandled = 1;
 
 using TiffFile = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 
-TiffFile opened(Source& source) {
+/// \param directory  where it starts in the file
+TiffFile opened(Source& source, std::size_t directory) {
   // A picture takes at most eight bytes per pixel.
   constexpr tmsize_t kLargestBlock = 8 * kMaxImagePixels + (1 << 20U);
   const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
@@ -287,10 +304,12 @@ TiffFile opened(Source& source) {
   TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), kLargestBlock);
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, &source);
   TIFFOpenOptionsSetWarningHandlerExtR(options.get(), weigh_warning, &source);
-  TiffFile tiff(TIFFClientOpenExt("picture", "rc", &source, take_bytes, give_nothing, move_to,
+  TiffFile tiff(TIFFClientOpenExt("picture", "rch", &source, take_bytes, give_nothing, move_to,
                                   leave_open, size_of_file, map_file, leave_mapped, options.get()),
                 TIFFClose);
-  if (!tiff) throw_damaged_image(source.complaint.data());
+  if (!tiff || TIFFSetSubDirectory(tiff.get(), directory) == 0) {
+    throw_damaged_image(source.complaint.data());
+  }
   source.complaint.fill(0);
   source.decoding = true;
   return tiff;
@@ -315,7 +334,7 @@ struct Rgba : TIFFRGBAImage {
 /// RGBA. If the file declares straight alpha, libtiff multiplies the colours by it and rounds as we
 /// do.
 GreyImage read_as_rgba(TIFF* tiff, const Source& source, const Layout& layout,
-                       std::uint64_t piece_height, Alpha alpha) {
+                       std::uint64_t piece_height, Alpha alpha, GreyScale& scale) {
   Rgba rgba(tiff);
   source.require(rgba.width == layout.width && rgba.height == layout.height);
   GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
@@ -332,18 +351,17 @@ GreyImage read_as_rgba(TIFF* tiff, const Source& source, const Layout& layout,
       for (std::size_t k = 0; k < 4; ++k) {
         samples[k] = static_cast<std::uint8_t>(raster[i] >> (8 * k));
       }
-      image.samples()[first + i] = grey_of(samples.data(), 4, alpha);
+      image.samples()[first + i] = scale.grey_of(samples.data(), 4, alpha);
     }
   }
   return image;
 }
 
-/// Reads 16-bit samples, and 8-bit grey with alpha, in strips or tiles with interleaved channels.
-/// libtiff's conversion would lose their precision, or their alpha.
-template <typename Sample>
-GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
-                       Alpha alpha) {
-  GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
+/// Reads the rows of strips or tiles with interleaved channels.
+/// \param take  called with the samples of each row of a piece, and the place of the first: y, x
+template <typename Sample, typename Take>
+void read_rows(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
+               const Take& take) {
   const std::size_t row_size = pieces.width * layout.channels;
   std::vector<Sample> piece(row_size * pieces.height);
   const std::uint64_t columns = ceil_divide(layout.width, pieces.width);
@@ -353,43 +371,90 @@ GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, c
     const auto size = static_cast<tmsize_t>(unpacked_size(layout, pieces, i / columns));
     source.require(size == (pieces.tiled ? TIFFReadEncodedTile(tiff, i, piece.data(), size)
                                          : TIFFReadEncodedStrip(tiff, i, piece.data(), size)));
-    if (layout.photometric == PHOTOMETRIC_MINISWHITE) {
-      // Before alpha is composited: the inversion concerns the colour only.
-      for (std::size_t at = 0; at < piece.size(); at += layout.channels) {
-        piece[at] = static_cast<Sample>(~piece[at]);
-      }
-    }
     const std::uint64_t rows = std::min(pieces.height, layout.height - top);
     const std::uint64_t width = std::min(pieces.width, layout.width - left);
     for (std::uint64_t y = 0; y < rows; ++y) {
-      make_grey(piece.data() + y * row_size, static_cast<int>(layout.channels), alpha,
-                image.row(static_cast<int>(top + y)).subspan(left, width));
+      take(std::span(piece).subspan(y * row_size, width * layout.channels),
+           static_cast<int>(top + y), static_cast<int>(left));
     }
+  }
+}
+
+/// Reads 16-bit samples, and 8-bit grey with alpha. libtiff's conversion would lose their
+/// precision, or their alpha.
+template <typename Sample>
+GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
+                       Alpha alpha, GreyScale& scale) {
+  GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
+  read_rows<Sample>(tiff, source, layout, pieces, [&](std::span<Sample> row, int y, int x) {
+    if (layout.photometric == PHOTOMETRIC_MINISWHITE) {
+      // Before alpha is composited: the inversion concerns the colour only.
+      for (std::size_t at = 0; at < row.size(); at += layout.channels) {
+        row[at] = static_cast<Sample>(~row[at]);
+      }
+    }
+    scale.make_grey(
+        row.data(), static_cast<int>(layout.channels), alpha,
+        image.row(y).subspan(static_cast<std::size_t>(x), row.size() / layout.channels));
+  });
+  return image;
+}
+
+/// Reads heights, and makes grey levels of the range that is given, or of their own.
+template <typename Real>
+GreyImage read_heights(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
+                       const GreyScale& scale, ImageNotes& notes) {
+  Plane<Real> heights(static_cast<int>(layout.height), static_cast<int>(layout.width));
+  read_rows<Real>(tiff, source, layout, pieces, [&](std::span<Real> row, int y, int x) {
+    std::ranges::copy(row, heights.row(y).begin() + x);
+  });
+  if (!std::ranges::all_of(heights.samples(), [](Real h) { return std::isfinite(h); })) {
+    throw ImageFault{"has a height that is not a finite number",
+                     "fill the gaps of the scan, and export it again"};
+  }
+  const auto [lowest, highest] =
+      std::minmax_element(heights.samples().begin(), heights.samples().end());
+  notes.heights = {*lowest, *highest};
+  const auto [low, high] = scale.heights().value_or(*notes.heights);
+  GreyImage image(heights.height(), heights.width());
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    // A flat picture has no range.
+    const double share = high > low ? (heights.samples()[i] - low) / (high - low) : 0.0;
+    image.samples()[i] =
+        static_cast<std::uint8_t>(std::floor(255.0 * std::clamp(share, 0.0, 1.0) + 0.5));
   }
   return image;
 }
 
 }  // namespace
 
-GreyImage read_tiff(ByteView file) {
-  const TiffDirectory directory(file);
+GreyImage read_tiff(ByteView file, GreyScale& scale, ImageNotes& notes) {
+  const TiffPictures pictures = pictures_of_tiff(file);
+  notes.pictures = pictures.count;
+  const TiffDirectory directory(file, pictures.first);
   const Layout layout = read_layout(directory);
   check_samples(directory, layout);
   const Pieces pieces = read_pieces(directory, layout);
   check_pieces(file, layout, pieces);
   Source source{.file = file};
-  const TiffFile tiff = opened(source);
+  const TiffFile tiff = opened(source, pictures.first);
   require_same_view(tiff.get(), directory, layout);
   const Alpha alpha = alpha_rule(directory);
+  if (layout.heights) {
+    return layout.bits == 32
+               ? read_heights<float>(tiff.get(), source, layout, pieces, scale, notes)
+               : read_heights<double>(tiff.get(), source, layout, pieces, scale, notes);
+  }
   if (layout.bits == 16) {
-    return read_samples<std::uint16_t>(tiff.get(), source, layout, pieces, alpha);
+    return read_samples<std::uint16_t>(tiff.get(), source, layout, pieces, alpha, scale);
   }
   if (layout.channels == 2) {
-    return read_samples<std::uint8_t>(tiff.get(), source, layout, pieces, alpha);
+    return read_samples<std::uint8_t>(tiff.get(), source, layout, pieces, alpha, scale);
   }
-  const bool is_composited = directory.has(TiffTag::extra_samples);
+  // libtiff has composited an alpha channel that the file describes.
+  const bool is_composited = directory.has(TiffTag::extra_samples) && alpha == Alpha::straight;
   return read_as_rgba(tiff.get(), source, layout, pieces.height,
-                      is_composited ? Alpha::ignored : Alpha::straight);
+                      is_composited ? Alpha::multiplied : alpha, scale);
 }
 
 }  // namespace touchtrial::engine

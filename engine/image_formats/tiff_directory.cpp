@@ -1,5 +1,7 @@
 #include "engine/image_formats/tiff_directory.hpp"
 
+#include <algorithm>
+
 namespace touchtrial::engine {
 namespace {
 
@@ -23,20 +25,27 @@ std::size_t size_of_type(std::uint32_t type) {
 
 }  // namespace
 
-TiffDirectory::TiffDirectory(ByteView file)
+TiffDirectory::TiffDirectory(ByteView file, std::size_t at)
     : file_(file),
-      order_(bytes_at(file, 0, 2)[0] == std::uint8_t{'M'} ? ByteOrder::big : ByteOrder::little) {
-  const std::size_t start = number_at(file, 4, 4, order_);
-  const std::size_t count = number_at(file, start, 2, order_);
+      order_(bytes_at(file, 0, 2)[0] == std::uint8_t{'M'} ? ByteOrder::big : ByteOrder::little),
+      start_(at == 0 ? number_at(file, 4, 4, order_) : at) {
+  const std::size_t count = number_at(file, start_, 2, order_);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t at = start + 2 + i * kEntrySize;
-    const auto tag = static_cast<TiffTag>(number_at(bytes_at(file, at, kEntrySize), 0, 2, order_));
-    const bool is_new = entries_.emplace(tag, at).second;
+    const std::size_t entry = start_ + 2 + i * kEntrySize;
+    const auto tag =
+        static_cast<TiffTag>(number_at(bytes_at(file, entry, kEntrySize), 0, 2, order_));
+    const bool is_new = entries_.emplace(tag, entry).second;
     // Readers differ in which of two entries they use, so such a file is ambiguous.
     if (!is_new) throw_truncated_image();
   }
-  // The offset of the next directory ends this one; its value does not matter.
-  static_cast<void>(bytes_at(file, start + 2 + count * kEntrySize, 4));
+  next_ = number_at(file, start_ + 2 + count * kEntrySize, 4, order_);
+}
+
+bool TiffDirectory::is_reduced() const {
+  constexpr std::uint32_t kReducedFlag = 1;
+  constexpr std::uint32_t kOldReduced = 2;
+  return (value(TiffTag::new_subfile_type, 0) & kReducedFlag) != 0 ||
+         value(TiffTag::subfile_type, 0) == kOldReduced;
 }
 
 std::vector<std::uint32_t> TiffDirectory::values(TiffTag tag) const {
@@ -70,6 +79,23 @@ std::optional<double> TiffDirectory::fraction(TiffTag tag) const {
   const std::uint32_t denominator = number_at(file_, place + 4, 4, order_);
   if (denominator == 0) return std::nullopt;
   return static_cast<double>(numerator) / denominator;
+}
+
+TiffPictures pictures_of_tiff(ByteView file) {
+  constexpr int kMaxDirectories = 10'000;  // ends a chain that bites its own tail
+  TiffDirectory directory(file);
+  TiffPictures pictures{directory.start(), 0};
+  try {
+    for (int i = 0; i < kMaxDirectories; ++i) {
+      if (!directory.is_reduced() && pictures.count++ == 0) pictures.first = directory.start();
+      if (directory.next() == 0) break;
+      directory = TiffDirectory(file, directory.next());
+    }
+  } catch (const ImageFault&) {
+    // The directories before it can be read.
+  }
+  pictures.count = std::max(pictures.count, 1);
+  return pictures;
 }
 
 }  // namespace touchtrial::engine

@@ -14,12 +14,16 @@
 namespace touchtrial::engine {
 
 enum class TiffTag : std::uint32_t {
+  new_subfile_type = 254,
+  subfile_type = 255,
   width = 256,
   height = 257,
   bits_per_sample = 258,
   compression = 259,
   photometric = 262,
   fill_order = 266,
+  make = 271,
+  model = 272,
   strip_offsets = 273,
   orientation = 274,
   samples_per_pixel = 277,
@@ -36,13 +40,18 @@ enum class TiffTag : std::uint32_t {
   tile_byte_counts = 325,
   extra_samples = 338,
   sample_format = 339,
+  exposure_time = 33434,
+  f_number = 33437,
+  exif_directory = 34665,
+  focal_length = 37386,
 };
 
-/// The entries of a TIFF file's first directory.
+/// The entries of one directory of a TIFF file.
 class TiffDirectory {
  public:
+  /// \param at  where it starts in the file; 0: the first
   /// \throws ImageFault if the header or the directory is truncated, or a tag appears twice
-  explicit TiffDirectory(ByteView file);
+  explicit TiffDirectory(ByteView file, std::size_t at = 0);
 
   [[nodiscard]] bool has(TiffTag tag) const { return entries_.count(tag) != 0; }
   /// All values of an entry (BYTE, SHORT or LONG); none if it is absent or of another type.
@@ -54,10 +63,29 @@ class TiffDirectory {
   /// denominator is 0.
   [[nodiscard]] std::optional<double> fraction(TiffTag tag) const;
 
+  [[nodiscard]] std::size_t start() const noexcept { return start_; }
+  /// Where the next directory starts; 0 after the last.
+  [[nodiscard]] std::size_t next() const noexcept { return next_; }
+  /// Whether its picture is a reduced copy of another one, such as a thumbnail.
+  [[nodiscard]] bool is_reduced() const;
+
  private:
   ByteView file_;
   ByteOrder order_;
+  std::size_t start_ = 0;
+  std::size_t next_ = 0;
   std::map<TiffTag, std::size_t> entries_;  ///< where the 12 bytes of each tag's entry start
 };
+
+/// The pictures of a TIFF file.
+struct TiffPictures {
+  std::size_t first = 0;  ///< where the directory of the first starts
+  int count = 1;
+};
+
+/// Reduced copies do not count, unless there is nothing else. A damaged directory after the first
+/// ends the search.
+/// \throws ImageFault if the header or the first directory is damaged
+[[nodiscard]] TiffPictures pictures_of_tiff(ByteView file);
 
 }  // namespace touchtrial::engine

@@ -44,6 +44,7 @@ struct ImageOfStudy {
   std::filesystem::path path;
   std::size_t first_stimulus = 0;
   Digest pixels{};
+  std::vector<std::string> remarks;  ///< engine::remarks_on
   std::int64_t size_px = 0;
   bool is_done = false;
   std::exception_ptr failure;
@@ -165,9 +166,11 @@ class Preparation {
     return false;
   }
 
-  [[nodiscard]] GreyImage read(const ImageOfStudy& image) const {
+  [[nodiscard]] GreyImage read(ImageOfStudy& image) const {
     try {
-      return engine::read_grey_image(image.path);
+      engine::Picture picture = engine::read_picture(image.path);
+      image.remarks = engine::remarks_on(picture.notes);
+      return std::move(picture.grey);
     } catch (const FileError& error) {
       refuse_image(key_.study, image, error.what());
     }
@@ -344,7 +347,12 @@ class Preparation {
       report_.warnings.push_back(std::move(warning));
     }
     std::vector<Digest> pixels;
-    for (const ImageOfStudy& image : images_) pixels.push_back(image.pixels);
+    for (const ImageOfStudy& image : images_) {
+      pixels.push_back(image.pixels);
+      for (const std::string& remark : image.remarks) {
+        report_.warnings.push_back(one_line(image.path.string() + ": " + remark));
+      }
+    }
     for (auto& warning : twin_warnings(key_.study, pixels)) {
       report_.warnings.push_back(std::move(warning));
     }

@@ -30,6 +30,10 @@ std::string read_plain_name(const JsonValue& place) {
   if (name.empty() || name.size() > kLongest || !plain) {
     place.refuse(in_quotes(name) + " must have 1 to 64 of the characters 0-9 A-Z a-z _ -");
   }
+  if (is_read_as_missing(name)) {
+    place.refuse(in_quotes(name) +
+                 " is what other programs take for a missing value; give another " + "name");
+  }
   return name;
 }
 

@@ -1,7 +1,7 @@
 /// \file The study file's "classes", "trials", "practice", "visits" and "groups".
 #include "protocols/design/study_sections.hpp"
 
-#include "core/nearest_name.hpp"
+#include "core/text.hpp"
 
 #include <algorithm>
 #include <set>
@@ -22,6 +22,10 @@ std::string read_label(const JsonValue& place) {
   if (has_control_character(label)) place.refuse("has a control character; remove it");
   if (label.front() == ' ' || label.back() == ' ') {
     place.refuse("begins or ends with a blank; remove it");
+  }
+  if (is_read_as_missing(label)) {
+    place.refuse(in_quotes(label) +
+                 " is what other programs take for a missing value; give another " + "name");
   }
   return label;
 }
@@ -106,9 +110,9 @@ void refuse_same_label(const JsonValue& place, const std::string& label, const s
   if (label == other) {
     place.refuse(in_quotes(label) + " is the label of another " + of + "; labels must be unique");
   }
-  if (edit_distance(label, other) == 0) {
+  if (skeleton_of(label) == skeleton_of(other)) {
     place.refuse(in_quotes(label) + " and " + in_quotes(other) +
-                 " differ by capitals, blanks or hyphens alone; give one of them another name");
+                 " look alike; give one of them another name");
   }
 }
 

@@ -94,12 +94,12 @@ inline constexpr std::size_t kMaxMethods = 8;
 inline constexpr int kMaxStimuli = 10'000;
 inline constexpr int kMaxScoredTrials = 10'000;
 
-/// Reads a name that is safe in file names, tables and BIDS labels: 1 to 64 of 0-9 A-Z a-z _ -
+/// Reads a name that is safe in file names, tables and BIDS labels: 1 to 64 of 0-9 A-Z a-z _ -, and
+/// no word that other programs take for a missing value.
 /// \throws StudyError if the text is not such a name
 [[nodiscard]] std::string read_plain_name(const JsonValue& place);
 
-/// Refuses a label that another one equals, or from which it differs only by what nobody can say
-/// aloud and some file systems do not tell apart: ASCII capitals, blanks and hyphens.
+/// Refuses a label that another one equals or looks like (skeleton_of).
 /// \param of  what has labels: "class"
 /// \throws StudyError with the place
 void refuse_same_label(const JsonValue& place, const std::string& label, const std::string& other,

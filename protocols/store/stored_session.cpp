@@ -1,5 +1,6 @@
 // Sessions and participants of a StoredStudy: who is let in, goes on, ends, withdraws or is
 // replaced.
+#include "core/text.hpp"
 #include "core/utc.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/rows.hpp"
@@ -73,7 +74,7 @@ bool is_participant_id(const std::string& id) {
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '+' ||
            c == '-' || c == '_';
   };
-  return !id.empty() && id.size() <= kLongestParticipant &&
+  return !id.empty() && id.size() <= kLongestParticipant && !is_read_as_missing(id) &&
          std::all_of(id.begin(), id.end(), allowed);
 }
 
@@ -88,7 +89,7 @@ void StoredStudy::refuse_if_over() const {
 
 void StoredStudy::require_participant_id(const std::string& id) const {
   if (is_participant_id(id)) return;
-  refuse("'" + id + "' is no participant id; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
+  refuse("'" + id + "' is no participant id; " + std::string(kParticipantIdRule));
 }
 
 void StoredStudy::admit(const Event& opened, const SessionKeys& keys, std::chrono::nanoseconds at) {

@@ -52,20 +52,21 @@ GreyImage cut(const GreyImage& photo, CropPlace place, int side_px) {
   return crop;
 }
 
-/// Refuses a photograph whose bytes or pixels equal those of an earlier one.
+/// Finds photographs whose bytes or pixels equal those of an earlier one.
 class Duplicates {
  public:
-  void check(const Photograph& photo) {
-    check(photo.sha256, photo.path, "is the same file as ");
-    check(photo.pixels_sha256, photo.path, "has the same pixels as ");
+  /// \return what is wrong; empty if nothing is
+  std::string fault_of(const Photograph& photo) {
+    std::string same = fault_of(photo.sha256, photo.path, "is the same file as ");
+    return same.empty() ? fault_of(photo.pixels_sha256, photo.path, "has the same pixels as ")
+                        : same;
   }
 
  private:
-  void check(const Digest& digest, const fs::path& path, const char* what) {
+  std::string fault_of(const Digest& digest, const fs::path& path, const char* what) {
     const auto [first, is_new] = seen_.emplace(digest, path);
-    if (is_new) return;
-    throw FileError(
-        one_line(path.string() + ": " + what + first->second.string() + "; remove one of them"));
+    if (is_new) return {};
+    return one_line(path.string() + ": " + what + first->second.string() + "; remove one of them");
   }
   std::map<Digest, fs::path> seen_;
 };
@@ -162,7 +163,7 @@ class Import {
 
  private:
   PhotoFolder surveyed() {
-    PhotoFolder folder = list_photographs(options_.photographs);
+    PhotoFolder folder = list_photographs(options_.photographs, options_.names);
     check_classes(folder, options_);
     total_ = 0;
     for (const PhotoClass& one : folder.classes) total_ += 2 * static_cast<int>(one.files.size());
@@ -178,18 +179,27 @@ class Import {
     }
     std::vector<Photograph> photographs(files.size());
     std::vector<PhotoSize> sizes(files.size());
+    std::vector<std::string> faults(files.size());
     all_in_parallel(files.size(), [&](std::size_t i) {
-      photographs[i] = read_photograph(files[i], options_);
+      try {
+        photographs[i] = read_photograph(files[i], options_);
+      } catch (const FileError& error) {
+        faults[i] = error.what();
+      }
       sizes[i] = {photographs[i].image.height(), photographs[i].image.width()};
       photographs[i].image = {};
       note_done();
     });
     Duplicates duplicates;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      if (faults[i].empty()) faults[i] = duplicates.fault_of(photographs[i]);
+    }
+    std::erase(faults, "");
+    if (!faults.empty()) throw UnusablePhotographs(options_.photographs, std::move(faults));
     std::size_t i = 0;
     for (const PhotoClass& one : folder.classes) {
       SizedClass sized{one.label, one.files, {}};
       for (const fs::path& file : one.files) {
-        duplicates.check(photographs[i]);
         sized.sizes.push_back(sizes[i]);
         record_.photographs.push_back({name_of(file), std::move(photographs[i]), sizes[i]});
         ++i;
@@ -329,6 +339,13 @@ class Import {
 };
 
 }  // namespace
+
+UnusablePhotographs::UnusablePhotographs(const fs::path& folder, std::vector<std::string> faults)
+    : FileError(faults.size() == 1
+                    ? faults.front()
+                    : one_line(folder.string()) + ": " + std::to_string(faults.size()) +
+                          " photographs cannot be used; mend or remove them"),
+      faults_(std::move(faults)) {}
 
 fs::path default_pictures_folder(const fs::path& study) {
   return study.parent_path() / (study.stem().string() + ".pictures");

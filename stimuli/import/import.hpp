@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/errors.hpp"
+#include "engine/image_file.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -21,6 +22,7 @@ enum class LevelEqualising { none, mean, rms, both };
 
 struct ImportOptions {
   std::filesystem::path photographs;  ///< the folder
+  std::string names;                  ///< of the files of an album: {class}_#; empty: their stems
   std::filesystem::path study;        ///< file to write
   std::filesystem::path pictures;     ///< folder to write; empty: default_pictures_folder
   int size_px = 500;                  ///< side of a crop, kMinCropSizePx .. kMaxCropSizePx
@@ -30,6 +32,7 @@ struct ImportOptions {
   /// photographs are resampled to feel life-size. Otherwise each pixel stays a pixel.
   std::optional<double> pixels_per_mm;
   bool pixels_per_mm_of_files = false;
+  engine::SampleScale scale;  ///< of photographs of more than 8 bits
   LevelEqualising equalise = LevelEqualising::none;
   std::string protocol;    ///< name of the protocol of the study
   int methods = 1;         ///< of the study: adaptive (1), or adaptive and tv-gabor (2)
@@ -65,6 +68,18 @@ struct ImportReport {
 /// Called after each photograph is read, for a progress bar; each is read twice.
 using ImportProgress = std::function<void(int done, int total)>;
 
+/// Photographs that cannot be used.
+class UnusablePhotographs : public FileError {
+ public:
+  /// \param faults  one line each, of which there is at least one
+  UnusablePhotographs(const std::filesystem::path& folder, std::vector<std::string> faults);
+
+  [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }
+
+ private:
+  std::vector<std::string> faults_;
+};
+
 /// The photographs are too small or too few for the crops. The message names numbers that would do.
 class CropsDoNotFit : public FileError {
  public:
@@ -84,7 +99,7 @@ class CropsDoNotFit : public FileError {
 /// Reads the photographs and cuts the crops as import_photographs does, and writes nothing.
 /// \param options  with numbers in range; those of outputs and texts are ignored
 /// \throws CropsDoNotFit if photographs are too small or too few
-/// \throws FileError as import_photographs, of the photographs
+/// \throws UnusablePhotographs, FileError as import_photographs, of the photographs
 void try_photographs(const ImportOptions& options, const ImportProgress& progress = {});
 
 /// Reads the photographs, cuts the crops, and writes pictures, manifest.json and the study file.
@@ -93,8 +108,9 @@ void try_photographs(const ImportOptions& options, const ImportProgress& progres
 /// \throws UsageError if options are out of range or contradict each other, or an output exists
 ///   already
 /// \throws CropsDoNotFit if photographs are too small or too few
-/// \throws FileError if the folder or a photograph cannot be used (equal, unreadable, with an
-///   impossible label), or an output cannot be written
+/// \throws UnusablePhotographs with all photographs that cannot be read, equal another or have an
+///   impossible name
+/// \throws FileError if the folder or a label cannot be used, or an output cannot be written
 ImportReport import_photographs(const ImportOptions& options, const ImportProgress& progress = {});
 
 }  // namespace touchtrial::stimuli

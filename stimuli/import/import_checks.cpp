@@ -41,6 +41,9 @@ void check_numbers(const ImportOptions& options) {
   if (!kPitchMm.contains(options.pitch_mm)) {
     refuse("--pitch-mm must be 0.001 to 10, not " + number_text(options.pitch_mm));
   }
+  if (options.scale.bits != 0 && outside(options.scale.bits, 9, 16)) {
+    refuse("--bits must be 9 to 16, not " + std::to_string(options.scale.bits));
+  }
   const bool positive = !options.pixels_per_mm ||
                         (*options.pixels_per_mm > 0.0 && std::isfinite(*options.pixels_per_mm));
   if (!positive) refuse("--pixels-per-mm must be a number above 0, or the word file");
@@ -181,8 +184,8 @@ void add_resolution_warnings(const ImportRecord& record, const ImportOptions& op
     const Photograph& photo = photograph.photo;
     if (photo.scale > 1.0) enlarged.add(photograph.file);
     const bool given = options.pixels_per_mm || options.pixels_per_mm_of_files;
-    if (given || !photo.said_pixels_per_mm) continue;
-    if (!unused.any()) magnified = *photo.said_pixels_per_mm * options.pitch_mm;
+    if (given || !photo.notes.pixels_per_mm) continue;
+    if (!unused.any()) magnified = *photo.notes.pixels_per_mm * options.pitch_mm;
     unused.add(photograph.file);
   }
   if (enlarged.any()) {
@@ -265,6 +268,11 @@ ImportedClass summary_of(const SizedClass& one, const std::vector<int>& shares,
 std::vector<std::string> import_warnings(const std::vector<ImportedClass>& classes,
                                          const ImportRecord& record, const ImportOptions& options) {
   std::vector<std::string> warnings;
+  for (const ImportedPhotograph& photograph : record.photographs) {
+    for (const std::string& remark : engine::remarks_on(photograph.photo.notes)) {
+      warnings.push_back(one_line(photograph.file + ": " + remark));
+    }
+  }
   add_resolution_warnings(record, options, warnings);
   for (const ImportedClass& one : classes) {
     if (one.overlapping) {

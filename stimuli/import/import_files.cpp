@@ -39,8 +39,15 @@ Json to_json(const ImportedPhotograph& photograph) {
           {"pixels_sha256", to_hex(photo.pixels_sha256)},
           {"width_px", photo.width_px},
           {"height_px", photo.height_px},
-          {"orientation", photo.orientation},
-          {"pixels_per_mm", or_null(photo.said_pixels_per_mm)},
+          {"orientation", photo.notes.orientation},
+          {"pixels_per_mm", or_null(photo.notes.pixels_per_mm)},
+          {"camera_dpi", or_null(photo.notes.camera_dpi)},
+          {"pictures", photo.notes.pictures},
+          {"transparent_share", photo.notes.transparent_share},
+          {"lacks_end", photo.notes.lacks_end},
+          {"heights", photo.notes.heights
+                          ? Json::array({photo.notes.heights->first, photo.notes.heights->second})
+                          : Json()},
           {"scale", photo.scale}};
 }
 

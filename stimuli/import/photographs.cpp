@@ -3,14 +3,17 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
+#include "core/text.hpp"
 #include "engine/image_file.hpp"
 #include "engine/image_notes.hpp"
 #include "engine/pictures/colour_image.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
+#include <regex>
 #include <string_view>
 #include <system_error>
 
@@ -25,10 +28,10 @@ constexpr std::size_t kLongestLabel = 64;  // bytes, as in study files
 
 /// Endings of photographs, including those that this program cannot read: such files are refused by
 /// name rather than ignored.
-constexpr std::array<std::string_view, 26> kPictureEndings = {
-    ".png", ".jpg", ".jpeg", ".jpe",  ".tif",  ".tiff", ".bmp", ".pgm", ".ppm",
-    ".pnm", ".gif", ".webp", ".heic", ".heif", ".avif", ".jp2", ".jxl", ".dng",
-    ".cr2", ".cr3", ".nef",  ".arw",  ".raw",  ".psd",  ".exr", ".pbm"};
+constexpr std::array<std::string_view, 27> kPictureEndings = {
+    ".png", ".jpg", ".jpeg", ".jpe",  ".tif",  ".tiff", ".bmp",  ".pgm", ".ppm",
+    ".pnm", ".gif", ".jfif", ".webp", ".heic", ".heif", ".avif", ".jp2", ".jxl",
+    ".dng", ".cr2", ".cr3",  ".nef",  ".arw",  ".raw",  ".psd",  ".exr", ".pbm"};
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
@@ -42,7 +45,8 @@ std::string lower_case(std::string text) {
 }
 
 bool is_picture(const fs::path& file) {
-  return std::ranges::count(kPictureEndings, lower_case(file.extension().string())) != 0;
+  return std::ranges::count(kPictureEndings, lower_case(file.extension().string())) != 0 ||
+         engine::begins_like_image(file);
 }
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& what) {
@@ -104,14 +108,20 @@ void check_label(const std::string& label, const fs::path& origin) {
   }
 }
 
-/// Collects classes and refuses labels that differ in capitals only.
+struct NaturalOrder {
+  bool operator()(const std::string& a, const std::string& b) const {
+    return naturally_before(a, b);
+  }
+};
+
+/// Collects classes and refuses labels that look alike.
 class Classes {
  public:
   void add(const std::string& label, const fs::path& origin, std::vector<fs::path> files) {
     check_label(label, origin);
-    const auto [other, is_new] = origins_.emplace(lower_case(label), origin);
+    const auto [other, is_new] = origins_.emplace(skeleton_of(label), origin);
     if (!is_new) {
-      refuse(origin, "would be the class \"" + label + "\" like " +
+      refuse(origin, "would be the class \"" + label + "\", which looks like that of " +
                          other->second.filename().string() + "; rename one, or put both into a " +
                          "folder of the class's name");
     }
@@ -151,18 +161,74 @@ std::vector<PhotoClass> classes_of_files(const Listing& listing) {
   return classes.take();
 }
 
+/// The regular expression of a pattern of names, whose only group is the class.
+std::regex expression_of(const std::string& names) {
+  constexpr std::string_view kClass = "{class}";
+  constexpr std::size_t kLongest = 100;
+  const std::size_t at = names.find(kClass);
+  if (at == std::string::npos || names.find(kClass, at + 1) != std::string::npos ||
+      names.size() > kLongest) {
+    throw UsageError(
+        "stimuli import: --names must have {class} once, for instance {class}_#, not be " +
+        in_quotes(names));
+  }
+  std::string expression;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i == at) {
+      expression += "(.+?)";
+      i += kClass.size() - 1;
+    } else if (names[i] == '#') {
+      expression += "[0-9]+";
+    } else if (names[i] == '*') {
+      expression += ".*";
+    } else {
+      if (std::ispunct(static_cast<unsigned char>(names[i])) != 0) expression += '\\';
+      expression += names[i];
+    }
+  }
+  return std::regex(expression);
+}
+
+/// The files of an album by the classes in their names.
+std::vector<PhotoClass> classes_by_names(const Listing& listing, const std::string& names,
+                                         const fs::path& folder) {
+  const std::regex expression = expression_of(names);
+  std::map<std::string, std::vector<fs::path>, NaturalOrder> files;
+  std::vector<std::string> faults;
+  for (const fs::path& file : listing.pictures) {
+    std::smatch parts;
+    const std::string stem = file.stem().string();
+    if (std::regex_match(stem, parts, expression)) {
+      files[parts[1]].push_back(file);
+    } else {
+      faults.push_back(one_line(file.string()) + ": its name is not of the form " + names +
+                       "; rename it, or give another --names");
+    }
+  }
+  if (!faults.empty()) throw UnusablePhotographs(folder, std::move(faults));
+  Classes classes;
+  for (auto& [label, of_class] : files) {
+    const fs::path first = of_class.front();
+    classes.add(label, first, std::move(of_class));
+  }
+  return classes.take();
+}
+
 constexpr double kMostEnlarged = 4.0;
 constexpr double kMostShrunk = 1.0 / 64;
 
 double scale_for(const Photograph& photo, const ImportOptions& options) {
   const std::string name = one_line(photo.path.string());
   const auto pixels_per_mm =
-      options.pixels_per_mm_of_files ? photo.said_pixels_per_mm : options.pixels_per_mm;
+      options.pixels_per_mm_of_files ? photo.notes.pixels_per_mm : options.pixels_per_mm;
   if (!pixels_per_mm && !options.pixels_per_mm_of_files) return 1.0;
   if (!pixels_per_mm) {
-    throw FileError(name +
-                    ": does not say how many pixels a millimetre has (programs that do not know "
-                    "write 72 or 96 dpi); give --pixels-per-mm a number");
+    throw FileError(name + ": does not say how many pixels a millimetre has" +
+                    (photo.notes.camera_dpi
+                         ? " (" + number_text(std::round(*photo.notes.camera_dpi)) +
+                               " dpi are its camera's, which does not know)"
+                         : " (programs that do not know write 72 or 96 dpi)") +
+                    "; give --pixels-per-mm a number");
   }
   const double scale = 1.0 / (*pixels_per_mm * options.pitch_mm);
   if (scale > kMostEnlarged || scale < kMostShrunk) {
@@ -215,7 +281,7 @@ bool naturally_before(const std::string& a, const std::string& b) {
   return left_over != right_over ? left_over < right_over : a < b;
 }
 
-PhotoFolder list_photographs(const fs::path& folder) {
+PhotoFolder list_photographs(const fs::path& folder, const std::string& names) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
     refuse(folder, fs::exists(folder, error) ? "is not a folder; give the folder of the photographs"
@@ -228,32 +294,36 @@ PhotoFolder list_photographs(const fs::path& folder) {
     refuse(listing.pictures.front(),
            "lies beside folders; give a folder of class folders, or one of photographs alone");
   }
-  result.classes = listing.folders.empty() ? classes_of_files(listing)
-                                           : classes_of_folders(listing, result.ignored);
+  if (!names.empty() && !listing.folders.empty()) {
+    refuse(folder, "has folders, whose names are the classes; leave out --names");
+  }
+  result.classes = !names.empty()            ? classes_by_names(listing, names, folder)
+                   : listing.folders.empty() ? classes_of_files(listing)
+                                             : classes_of_folders(listing, result.ignored);
   if (result.classes.empty()) {
     refuse(folder,
-           "holds no photograph; give a folder of PNG, JPEG, TIFF, BMP or PGM files, or "
+           "holds no photograph; give a folder of PNG, JPEG, TIFF, BMP, GIF or PGM files, or "
            "of folders of them");
   }
   return result;
 }
 
 Photograph read_photograph(const fs::path& path, const ImportOptions& options) {
+  if (!is_utf8(path.filename().string())) refuse(path, "its name is not UTF-8; rename it");
   const Bytes file = read_file(path);
-  const engine::ImageNotes notes = engine::notes_of_image(file);
+  engine::Picture picture = engine::decode_picture(file, path.string(), options.scale);
   Photograph photo;
   photo.path = path;
-  photo.image = engine::upright(engine::decode_grey_image(file, path.string()), notes.orientation);
+  photo.notes = std::move(picture.notes);
+  photo.image = engine::upright(picture.grey, photo.notes.orientation);
   photo.sha256 = sha256(file);
   photo.pixels_sha256 = FieldHasher()
                             .add(std::int64_t{photo.image.height()})
                             .add(std::int64_t{photo.image.width()})
                             .add(ByteView(photo.image.samples()))
                             .finish();
-  photo.orientation = notes.orientation;
   photo.height_px = photo.image.height();
   photo.width_px = photo.image.width();
-  photo.said_pixels_per_mm = notes.pixels_per_mm;
   photo.scale = scale_for(photo, options);
   if (photo.scale != 1.0) {
     photo.image = engine::resized(photo.image, scaled(photo.height_px, photo.scale),

@@ -4,6 +4,7 @@
 
 #include "core/hash.hpp"
 #include "core/plane.hpp"
+#include "engine/image_notes.hpp"
 #include "stimuli/import/import.hpp"
 
 #include <filesystem>
@@ -26,10 +27,15 @@ struct PhotoFolder {
 
 /// In a folder of folders, each folder is a class of its name. In a folder of files, each file is a
 /// class of its stem, as in an album of D1.png, D2.png, ... Hidden files and folders do not count;
-/// files without the ending of a picture are ignored.
+/// files that neither begin as a picture nor have the ending of one are ignored.
+/// \param names  how the files of an album are named, without their endings: `{class}` is the label,
+///   `#` a number and `*` any text; empty: each file is a class of its stem
+/// \throws UsageError if `names` lacks {class} or has it twice
+/// \throws UnusablePhotographs if files of an album have other names
 /// \throws FileError if `folder` is not a folder or is empty, has pictures beside folders, or has a
-///   name that cannot be a label or differs from another in capitals only
-[[nodiscard]] PhotoFolder list_photographs(const std::filesystem::path& folder);
+///   name that cannot be a label or looks like another (skeleton_of)
+[[nodiscard]] PhotoFolder list_photographs(const std::filesystem::path& folder,
+                                           const std::string& names = {});
 
 /// Whether `a` comes before `b` when numbers count as numbers: D2 before D10.
 [[nodiscard]] bool naturally_before(const std::string& a, const std::string& b);
@@ -40,17 +46,16 @@ struct PhotoFolder {
 /// A photograph, and the content of its manifest entry.
 struct Photograph {
   std::filesystem::path path;
-  Digest sha256{};         ///< of the file
-  Digest pixels_sha256{};  ///< of shape and grey levels, upright, before resampling
-  int orientation = 1;     ///< by Exif; the image is turned upright
-  int height_px = 0;       ///< upright, before resampling
+  Digest sha256{};           ///< of the file
+  Digest pixels_sha256{};    ///< of shape and grey levels, upright, before resampling
+  engine::ImageNotes notes;  ///< the image is turned upright by its orientation
+  int height_px = 0;         ///< upright, before resampling
   int width_px = 0;
-  std::optional<double> said_pixels_per_mm;  ///< according to the file
-  double scale = 1.0;                        ///< of the resampling, new pixels per old pixel
-  GreyImage image;                           ///< upright and resampled
+  double scale = 1.0;  ///< of the resampling, new pixels per old pixel
+  GreyImage image;     ///< upright and resampled
 };
 
-/// \throws FileError if the file cannot be read, does not state its resolution although the options
+/// \throws FileError if the file's name is not UTF-8, or it cannot be read, does not state its resolution although the options
 ///   ask for it, or needs scaling beyond 1/64 to 4
 [[nodiscard]] Photograph read_photograph(const std::filesystem::path& path,
                                          const ImportOptions& options);

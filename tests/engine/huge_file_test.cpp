@@ -51,7 +51,8 @@ void check_refused_cheaply(const Bytes& start, const std::string& reason) {
 
 TEST_CASE("1.5 GiB of zeros are refused at the cost of a few pages") {
   check_refused_cheaply({}, "not an image of a known kind");
-  check_refused_cheaply(text("GIF89a"), "GIF");
+  check_refused_cheaply(text("GIF89a"), "truncated or damaged");
+  check_refused_cheaply(text("RIFF1234WEBP"), "WebP");
 }
 
 TEST_CASE("1.5 GiB of junk after the start of a picture are refused at the cost of a few pages") {

@@ -101,7 +101,6 @@ TEST_CASE("a file that is missing, a folder or empty is refused by name") {
 TEST_CASE("a file that is not a picture of a known kind is refused, and foreign kinds are named") {
   CHECK_THAT(error_of(text("Dear reader")), holds_text("not an image of a known kind"));
   CHECK_THAT(error_of(Bytes(4096, 0)), holds_text("not an image of a known kind"));
-  CHECK_THAT(error_of(text("GIF89a\1\1\1\1")), holds_text("GIF"));
   CHECK_THAT(error_of(text("RIFF1234WEBPVP8 ")), holds_text("WebP"));
   CHECK_THAT(error_of(text("P4 1 1\n1")), holds_text("PBM"));
 }
@@ -119,7 +118,8 @@ TEST_CASE("every truncated picture is refused, and the complete one is read") {
     CHECK(error_of(file).empty());
     for (std::size_t cut = 1; cut <= file.size(); ++cut) {
       INFO(cut << " bytes missing");
-      REQUIRE_FALSE(error_of(without_end(file, cut)).empty());
+      // A JPEG of one scan is whole without its end marker.
+      REQUIRE(error_of(without_end(file, cut)).empty() == (kind == "jpeg" && cut == 2));
     }
   }
 }
@@ -168,7 +168,7 @@ TEST_CASE("a header of exactly 2^28 pixels is not too large, only truncated") {
 TEST_CASE("sample types other than unsigned 8 and 16 bits are refused") {
   const Bytes four = {0, 0, 0, 0};
   CHECK_THAT(error_of(Tiff(1, 1, four).with(258, {32}).bytes()), holds_text("32-bit"));
-  CHECK_THAT(error_of(Tiff(1, 1, four).with(258, {32}).with(339, {3}).bytes()),
+  CHECK_THAT(error_of(Tiff(2, 1, four).with(258, {16}).with(339, {3}).bytes()),
              holds_text("floating-point"));
   CHECK_THAT(error_of(Tiff(2, 1, four).with(258, {16}).with(339, {2}).bytes()),
              holds_text("signed"));
@@ -208,6 +208,7 @@ TEST_CASE("nothing is printed, even if the decoders complain") {
       Tiff(20, 20, Bytes(30, 0x5A)).with(258, {16}).with(259, {8}).bytes(),
       Tiff(2, 2, {1, 2, 3, 4}).with(65001, {1}).bytes(),
       Bmp{4, 4, 8, {0, 9, 0, 9, 0, 9}, Bytes(1024), 1, {}}.bytes(),
+      without_end(gif_file(), 4),
       text("P5 3 3 255\nab")};
   const std::string printed = printed_by([&] {
     for (const Bytes& file : files) static_cast<void>(error_of(file));

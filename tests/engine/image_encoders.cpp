@@ -169,6 +169,7 @@ std::map<std::string, Bytes> one_of_each_kind() {
           {"plain tiff", Tiff(5, 3, Bytes(15, 9)).bytes()},
           {"bmp", bmp_file(colour)},
           {"packed bmp", packed_bmp()},
+          {"gif", gif_file()},
           {"pgm", text("P5 2 2 255\nabcd")},
           {"ppm", text("P6 2 1 65535\nabcdefghijkl")}};
 }

@@ -7,6 +7,7 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <thread>
 
@@ -186,7 +187,7 @@ TEST_CASE("a fourth TIFF channel without a description is alpha") {
 TEST_CASE("a TIFF's orientation is ignored, in 8 and 16 bits") {
   const auto orientation = static_cast<std::uint32_t>(GENERATE(1, 2, 3, 4, 5, 6, 7, 8));
   CHECK(first_row(Tiff(3, 2, {1, 2, 3, 4, 5, 6}).with(274, {orientation}).bytes()) == Row{1, 2, 3});
-  CHECK(first_row(Tiff(3, 2, numbers({257, 514, 771, 0, 0, 0}, 2))
+  CHECK(first_row(Tiff(3, 2, numbers({257, 514, 771, 0, 0, 65535}, 2))
                       .with(258, {16})
                       .with(274, {orientation})
                       .bytes()) == Row{1, 2, 3});
@@ -221,7 +222,7 @@ Bytes tiled_tiff(std::uint32_t bits, const Bytes& tile) {
 }
 
 TEST_CASE("a TIFF in 16-bit tiles is read, and refused if a tile is short") {
-  CHECK(read_bytes(tiled_tiff(16, Bytes(512, 7))).at(3, 4) == 7);
+  CHECK(read_bytes(tiled_tiff(16, Bytes(512, 0x70))).at(3, 4) == 0x70);
   CHECK_THROWS_WITH(read_bytes(tiled_tiff(16, Bytes(511, 7))), holds_text("truncated"));
 }
 
@@ -292,6 +293,147 @@ TEST_CASE("PGM and PPM of any maximum are scaled to 0 to 255 and rounded") {
   CHECK(first_row(text("P3 2 1 255 1 2 3 100 110 120")) == Row{2, 108});
   CHECK(first_row(text("P6 1 1 1000\n\x00\x00\x01\xf4\x03\xe8"sv)) ==
         Row{(587 * 128 + 114 * 255 + 500) / 1000});
+}
+
+TEST_CASE("a GIF is read, its first picture of several, and transparent pixels are black") {
+  const Picture plain = decode_picture(gif_file(), "picture");
+  CHECK(Row(plain.grey.samples().begin(), plain.grey.samples().end()) == Row{10, 20, 30, 0});
+  CHECK(plain.notes.pictures == 1);
+  CHECK(plain.notes.transparent_share == 0.0);
+  CHECK(remarks_on(plain.notes).empty());
+  const Picture several = decode_picture(gif_file(3, 2), "picture");
+  CHECK(Row(several.grey.samples().begin(), several.grey.samples().end()) == Row{10, 0, 30, 0});
+  CHECK(several.notes.pictures == 3);
+  CHECK(several.notes.transparent_share == 0.25);
+  CHECK(remarks_on(several.notes).size() == 2);
+}
+
+TEST_CASE(
+    "16-bit samples that use 14 bits or fewer are scaled by bits that are given, or refused") {
+  using namespace std::string_view_literals;
+  const auto level = [](const Bytes& file, int bits) {
+    return static_cast<int>(
+        decode_picture(file, "picture", {.bits = bits, .heights = {}}).grey.at(0, 1));
+  };
+  const auto files = [](std::uint32_t max) {
+    Bytes pgm = text("P5 2 1 65535\n");
+    append(pgm, numbers({0, max}, 2, true));
+    Bytes row = {0};
+    append(row, numbers({0, max}, 2, true));
+    return std::vector<Bytes>{pgm, Png{2, 1, 16, Png::kGrey, row}.bytes(),
+                              Tiff(2, 1, numbers({0, max}, 2)).with(258, {16}).bytes()};
+  };
+  for (const Bytes& file : files(4095)) {
+    CHECK_THROWS_AS(level(file, 0), FileError);
+    CHECK(level(file, 12) == 255);
+    CHECK(level(file, 13) == 127);
+    CHECK(level(file, 16) == 16);
+    CHECK_THROWS_AS(level(file, 11), FileError);
+  }
+  for (const Bytes& file : files(kMinMaxWideSample)) CHECK(level(file, 0) == 64);
+  for (const Bytes& file : files(0)) CHECK(level(file, 0) == 0);
+  CHECK(level(text("P5 2 1 4095\n\x00\x00\x0f\xff"sv), 0) == 255);
+}
+
+/// The four bytes of a float, as a number.
+std::uint32_t bits_of(float value) {
+  return std::bit_cast<std::uint32_t>(value);
+}
+
+TEST_CASE(
+    "the heights of a floating-point TIFF become grey levels of their own range or a given one") {
+  const bool big = GENERATE(false, true);
+  const Bytes file =
+      Tiff(3, 1, numbers({bits_of(-1.5F), bits_of(0.0F), bits_of(1.5F)}, 4, big), big)
+          .with(258, {32})
+          .with(339, {3})
+          .bytes();
+  const auto row = [&](const SampleScale& scale) {
+    const Picture picture = decode_picture(file, "picture", scale);
+    CHECK(picture.notes.heights == std::pair(-1.5, 1.5));
+    return Row(picture.grey.samples().begin(), picture.grey.samples().end());
+  };
+  CHECK(row({}) == Row{0, 128, 255});
+  CHECK(row({.bits = 0, .heights = std::pair(-3.0, 3.0)}) == Row{64, 128, 191});
+  CHECK(row({.bits = 0, .heights = std::pair(0.0, 1.0)}) == Row{0, 0, 255});
+  const Bytes gap =
+      Tiff(2, 1, numbers({bits_of(NAN), 0}, 4)).with(258, {32}).with(339, {3}).bytes();
+  CHECK_THROWS_AS(decode_picture(gap, "picture"), FileError);
+  const Bytes flat = Tiff(2, 1, numbers({0, 0}, 4)).with(258, {32}).with(339, {3}).bytes();
+  CHECK(decode_picture(flat, "picture").grey.at(0, 1) == 0);
+}
+
+/// A TIFF of several directories with a picture each, of whose first pixel only `pixel` is known.
+Bytes tiff_of(const std::vector<std::pair<std::uint32_t, std::uint8_t>>& subfile_and_pixel) {
+  Bytes file = text("II*");
+  file.push_back(0);
+  append(file, number(8, 4));
+  for (std::size_t i = 0; i < subfile_and_pixel.size(); ++i) {
+    const auto [subfile, pixel] = subfile_and_pixel[i];
+    constexpr std::size_t kEntries = 9;
+    const std::size_t samples_at = file.size() + 2 + 12 * kEntries + 4;
+    const bool is_last = i + 1 == subfile_and_pixel.size();
+    append(file, number(kEntries, 2));
+    const auto entry = [&](std::uint32_t tag, std::uint64_t value) {
+      append(file, numbers({tag, 4}, 2));
+      append(file, number(1, 4));
+      append(file, number(value, 4));
+    };
+    entry(254, subfile);
+    entry(256, 2);
+    entry(257, 1);
+    entry(258, 8);
+    entry(259, 1);
+    entry(262, 1);
+    entry(273, samples_at);
+    entry(277, 1);
+    entry(279, 2);
+    append(file, number(is_last ? 0 : samples_at + 2, 4));
+    append(file, {pixel, 7});
+  }
+  return file;
+}
+
+TEST_CASE("of a TIFF's pictures the first is read that is no reduced copy") {
+  const auto read = [](const Bytes& file) {
+    const Picture picture = decode_picture(file, "picture");
+    return std::pair<int, int>(picture.grey.at(0, 0), picture.notes.pictures);
+  };
+  CHECK(read(tiff_of({{0, 9}})) == std::pair(9, 1));
+  CHECK(read(tiff_of({{1, 5}, {0, 9}})) == std::pair(9, 1));
+  CHECK(read(tiff_of({{1, 5}, {0, 9}, {1, 4}, {2, 8}})) == std::pair(9, 2));
+  CHECK(read(tiff_of({{1, 5}, {1, 6}})) == std::pair(5, 1));
+  Bytes endless = tiff_of({{0, 9}, {0, 8}});
+  std::fill(endless.end() - 6, endless.end() - 2, std::uint8_t{0});
+  endless[endless.size() - 6] = 8;  // the last directory leads back to the first
+  CHECK(read(endless).first == 9);
+}
+
+TEST_CASE("a JPEG without its end marker is read, unless a block may be missing") {
+  Bytes file = jpeg_file(colour_picture());
+  const GreyImage whole = decode_picture(file, "picture").grey;
+  file.resize(file.size() - 2);
+  const Picture picture = decode_picture(file, "picture");
+  CHECK(picture.grey == whole);
+  CHECK(picture.notes.lacks_end);
+  CHECK(remarks_on(picture.notes).size() == 1);
+  file.pop_back();
+  CHECK_THROWS_AS(decode_picture(file, "picture"), FileError);
+}
+
+TEST_CASE("transparent pixels are counted in every kind of picture that has some") {
+  const auto share = [](const Bytes& file) {
+    return decode_picture(file, "picture").notes.transparent_share;
+  };
+  CHECK(share(Png{3, 1, 8, Png::kGreyAlpha, hex("000aff64ffc800")}.bytes()) == Approx(1.0 / 3));
+  CHECK(share(Png{4, 1, 8, Png::kGrey, hex("00000564ff"), hex("0064")}.bytes()) == 0.25);
+  CHECK(share(Tiff(2, 1, {10, 255, 100, 128}).with(258, {8, 8}).with(277, {2}).bytes()) == 0.5);
+  Tiff colour(2, 1, {10, 20, 30, 255, 100, 110, 120, 128});
+  colour.with(258, {8, 8, 8, 8}).with(262, {2}).with(277, {4});
+  CHECK(share(colour.with(338, {2}).bytes()) == 0.5);
+  CHECK(share(colour.with(338, {1}).bytes()) == 0.5);
+  CHECK(share(colour.with(338, {0}).bytes()) == 0.0);
+  CHECK(share(png_file(colour_picture())) == 0.0);
 }
 
 TEST_CASE("a JPEG is made grey from its decoded colours") {

@@ -59,6 +59,33 @@ TEST_CASE("orientation and resolution are found in every kind of file that has t
   CHECK(*phys.pixels_per_mm == Approx(11.811));
 }
 
+TEST_CASE("a resolution that a camera wrote says nothing of the object") {
+  // A directory with a resolution, the name of a maker, and notes on the exposure behind it.
+  const auto camera = [](std::uint32_t dots, bool is_named, bool has_exposure) {
+    const auto entry = [](std::uint32_t tag, std::uint32_t type, const std::string& value) {
+      return big(tag, 2) + big(type, 2) + big(1, 4) + value;
+    };
+    const std::uint32_t after = 8 + 2 + 5 * 12 + 4;
+    const std::string name = entry(is_named ? 271 : 270, 2, "A\0\0\0"s);
+    return "MM\0*"s + big(8, 4) + big(5, 2) + name + entry(282, 5, big(after, 4)) +
+           entry(283, 5, big(after, 4)) + entry(296, 3, big(2, 2) + "\0\0"s) +
+           entry(has_exposure ? 34665 : 34666, 4, big(after + 8, 4)) + big(0, 4) + big(dots, 4) +
+           big(1, 4) + big(1, 2) + entry(33434, 5, big(after, 4)) + big(0, 4);
+  };
+  for (const std::uint32_t dots : {180U, 240U, 300U, 350U}) {
+    CHECK_FALSE(notes_of(camera(dots, true, false)).pixels_per_mm.has_value());
+    CHECK(notes_of(camera(dots, true, false)).camera_dpi == Approx(dots));
+    CHECK(notes_of(camera(dots, false, false)).pixels_per_mm.has_value());
+  }
+  CHECK_FALSE(notes_of(camera(600, false, true)).pixels_per_mm.has_value());
+  CHECK(notes_of(camera(600, true, false)).pixels_per_mm.has_value());  // a scanner's
+  const std::string jfif =
+      "\xff\xe0"s + big(16, 2) + "JFIF\0\1\1\1"s + big(300, 2) + big(300, 2) + "\0\0"s;
+  const std::string exif = "Exif\0\0"s + camera(72, true, true);
+  CHECK_FALSE(
+      notes_of("\xff\xd8"s + jfif + jpeg("\xff\xe1", exif).substr(2)).pixels_per_mm.has_value());
+}
+
 TEST_CASE("placeholders and unusable resolutions count as absent") {
   CHECK_FALSE(notes_of(directory(1, 72, 2)).pixels_per_mm.has_value());
   CHECK_FALSE(notes_of(directory(1, 96, 2)).pixels_per_mm.has_value());

@@ -12,6 +12,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::samples {
@@ -190,6 +191,41 @@ inline Bytes packed_bmp() {
   const Bytes runs = {3, 1, 1, 2, 1, 3, 0, 0, 0, 2, 2, 0, 1, 2, 0, 0, 5, 3, 0, 1};
   Bytes file = Bmp{5, 3, 8, runs, palette, 1, {}}.bytes();
   file[46] = 4;  // entries of the palette
+  return file;
+}
+
+/// A GIF of 2 x 2 pixels, whose four colours are the grey levels 0, 10, 20 and 30. It has the
+/// pictures 1 2 / 3 0 and, if there are two, 3 3 / 3 3.
+/// \param transparent  the colour that is transparent; negative: none
+inline Bytes gif_file(int pictures = 1, int transparent = -1) {
+  // Codes of three bits, lowest first: clear, pixels, clear, pixels, end.
+  const auto picture = [](std::initializer_list<std::uint32_t> pixels) {
+    constexpr std::uint32_t kClear = 4;
+    constexpr std::uint32_t kEnd = 5;
+    std::uint32_t codes = 0;
+    unsigned shift = 0;
+    const auto put = [&](std::uint32_t code) { codes |= code << std::exchange(shift, shift + 3); };
+    for (const std::uint32_t pixel : pixels) {
+      if (shift == 0 || shift == 9) put(kClear);
+      put(pixel);
+    }
+    put(kEnd);
+    Bytes block = hex("2c0000000002000200000203");
+    append(block, number(codes, 3));
+    block.push_back(0);
+    return block;
+  };
+  Bytes file = text("GIF89a");
+  append(file, hex("02000200810000"));
+  append(file, hex("0000000a0a0a1414141e1e1e"));
+  if (transparent >= 0) {
+    append(file, hex("21f904010000"));
+    append(file, number(static_cast<std::uint64_t>(transparent), 1));
+    file.push_back(0);
+  }
+  append(file, picture({1, 2, 3, 0}));
+  for (int i = 1; i < pictures; ++i) append(file, picture({3, 3, 3, 3}));
+  file.push_back(0x3B);
   return file;
 }
 

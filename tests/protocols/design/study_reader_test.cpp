@@ -190,7 +190,7 @@ TEST_CASE("what a study cannot be is refused at its place, with what helps") {
       {pair,
        "/methods/1",
        {{"name", "adaptive"}, {"label", "Adaptive"}},
-       "/methods/1: \"Adaptive\" and \"adaptive\" differ by capitals"},
+       "/methods/1: \"Adaptive\" and \"adaptive\" look alike"},
       {minimal_study(),
        "/classes/0/images",
        {"a.png", "b.png", "a.png"},
@@ -328,7 +328,7 @@ TEST_CASE("labels that tables could not tell apart or print are refused") {
     return refusal(document);
   };
   contains(with_label("rough"), "/classes/1/label: \"rough\" is the label of another class");
-  contains(with_label("Rough"), "/classes/1/label: \"Rough\" and \"rough\" differ by capitals");
+  contains(with_label("Rough"), "/classes/1/label: \"Rough\" and \"rough\" look alike");
   contains(with_label(""), "/classes/1/label: is empty");
   contains(with_label("a\nb"), "has a control character");
   contains(with_label("a\xc2\x85z"), "has a control character");

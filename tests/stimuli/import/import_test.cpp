@@ -194,10 +194,10 @@ TEST_CASE("photographs of known resolution are resampled to feel life-size") {
         Approx(200 / std::sqrt(12.0) / 2).epsilon(0.1));
   options.pixels_per_mm = 0.1;
   options.replace = true;
-  CHECK_THAT(album.refusal(options), holds_text("check --pixels-per-mm"));
+  CHECK_THROWS_AS(import_photographs(options), UnusablePhotographs);
   options.pixels_per_mm.reset();
   options.pixels_per_mm_of_files = true;
-  CHECK_THAT(album.refusal(options), holds_text("does not say how many pixels a millimetre has"));
+  CHECK_THROWS_AS(import_photographs(options), UnusablePhotographs);
 }
 
 TEST_CASE("equalised pictures have the levels that the manifest promises") {
@@ -273,7 +273,60 @@ TEST_CASE("photographs that cannot be read or felt are refused by name") {
   CHECK_THAT(album.refusal(), holds_text("E.png: has only one grey level in the crop at x"));
 }
 
-TEST_CASE("names that cannot be labels are refused, and labels that differ in capitals only") {
+TEST_CASE("all photographs that cannot be used are named at once") {
+  Album album;
+  album.add("a/one.png", noise(50, 50, 1));
+  album.add("b/one.png", noise(50, 50, 2));
+  album.add("b/latin\xe9.png", noise(50, 50, 3));
+  replace_file(album.photographs() / "a" / "two.jpg", "hostile");
+  replace_file(album.photographs() / "b" / "two.webp", "RIFF1234WEBPVP8 ");
+  fs::copy_file(album.photographs() / "a" / "one.png", album.photographs() / "b" / "twin.png");
+  try {
+    static_cast<void>(import_photographs(album.options()));
+    FAIL("not refused");
+  } catch (const UnusablePhotographs& error) {
+    REQUIRE(error.faults().size() == 4);
+    CHECK_THAT(error.faults()[0], holds_text("two.jpg"));
+    CHECK_THAT(error.faults()[1], holds_text("latin"));
+    CHECK_THAT(error.faults()[2], holds_text("twin.png"));
+    CHECK_THAT(error.faults()[3], holds_text("two.webp"));
+  }
+  CHECK(album.written().empty());
+}
+
+TEST_CASE("the files of an album are of the classes in their names") {
+  const Album album;
+  for (const char* name : {"T10_01", "T2_01", "T2_02", "T10_2"}) {
+    album.add(std::string(name) + ".png", noise(50, 50, std::hash<std::string>()(name)));
+  }
+  ImportOptions options = album.options();
+  options.names = "{class}_#";
+  const ImportReport report = import_photographs(options);
+  REQUIRE(report.classes.size() == 2);
+  CHECK(report.classes[0].label == "T2");
+  CHECK(report.classes[1].label == "T10");
+  CHECK(report.classes[1].photographs == 2);
+  options.replace = true;
+  options.names = "T#_{class}";
+  CHECK(import_photographs(options).classes.size() == 3);
+  for (const char* bad : {"no class", "{class}{class}"}) {
+    options.names = bad;
+    CHECK_THROWS_AS(import_photographs(options), UsageError);
+  }
+  options.names = "{class}-#";
+  CHECK_THROWS_AS(import_photographs(options), UnusablePhotographs);
+}
+
+TEST_CASE("a photograph is known by its first bytes, whatever its name ends in") {
+  const TwoPhotographs album;
+  album.add("E.png", noise(50, 50, 9));
+  fs::rename(album.photographs() / "E.png", album.photographs() / "E.picture");
+  const ImportReport report = import_photographs(album.options());
+  CHECK(report.classes.size() == 3);
+  CHECK(report.ignored.empty());
+}
+
+TEST_CASE("names that cannot be labels are refused, and labels that look alike") {
   const TwoPhotographs album;
   const auto refused = [&](const std::string& name) {
     album.add(name, noise(50, 50, 9));
@@ -282,12 +335,17 @@ TEST_CASE("names that cannot be labels are refused, and labels that differ in ca
     return reason;
   };
   CHECK_THAT(refused("d9.png"), holds_text("would be the class"));
-  CHECK_THAT(refused("D9.PNG"), holds_text("would be the class \"D9\" like"));
+  CHECK_THAT(refused("D9.PNG"), holds_text("would be the class \"D9\""));
+  CHECK_THAT(refused("\xef\xbc\xa4"
+                     "9.png"),
+             holds_text("would be the class"));  // a wide D
   CHECK_THAT(refused("line\nbreak.png"), holds_text("has a control character"));
   CHECK_THAT(refused("c1\xc2\x85.png"), holds_text("has a control character"));
   CHECK_THAT(refused(" D.png"), holds_text("begins or ends with a blank"));
   CHECK_THAT(refused("latin\xe9.png"), holds_text("is not UTF-8"));
   CHECK_THAT(refused(std::string(65, 'x') + ".png"), holds_text("more than 64 bytes"));
+  album.add("No\xc3\xabl.png", noise(50, 50, 8));
+  CHECK_THAT(refused("Noe\xcc\x88l.png"), holds_text("would be the class"));
   album.add("folder/E.png", noise(50, 50, 9));
   CHECK_THAT(album.refusal(), holds_text("D9.png: lies beside folders"));
 }

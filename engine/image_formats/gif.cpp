@@ -1,0 +1,142 @@
+// GIF, by stb_image.
+#include "engine/image_file.hpp"
+#include "engine/image_formats/image_format.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include <stb_image.h>
+
+namespace touchtrial::engine {
+namespace {
+
+/// A file in memory that stb_image reads byte by byte. It continues after the end of a file with
+/// zeros; the attempt is noted.
+struct Source {
+  ByteView left;
+  bool ended = false;
+};
+
+int take_bytes(void* user, char* to, int count) {
+  auto& source = *static_cast<Source*>(user);
+  const std::size_t taken = std::min(source.left.size(), static_cast<std::size_t>(count));
+  // It asks for more than it needs, but only when it needs some.
+  if (taken == 0) source.ended = true;
+  std::memcpy(to, source.left.data(), taken);
+  source.left = source.left.subspan(taken);
+  return static_cast<int>(taken);
+}
+
+void skip_bytes(void* user, int count) {
+  auto& source = *static_cast<Source*>(user);
+  const auto skipped = static_cast<std::size_t>(std::max(count, 0));
+  if (count < 0 || skipped > source.left.size()) source.ended = true;
+  source.left = source.left.subspan(std::min(skipped, source.left.size()));
+}
+
+int is_at_end(void* user) {
+  return static_cast<Source*>(user)->left.empty() ? 1 : 0;
+}
+
+constexpr stbi_io_callbacks kReading = {take_bytes, skip_bytes, is_at_end};
+
+void free_pixels(stbi_uc* pixels) {
+  stbi_image_free(pixels);
+}
+
+GreyImage read_with_stb(ByteView file, GreyScale& scale) {
+  constexpr int kChannels = 4;
+  Source source{file};
+  int width = 0;
+  int height = 0;
+  int stored_channels = 0;
+  const std::unique_ptr<stbi_uc, decltype(&free_pixels)> pixels(
+      stbi_load_from_callbacks(&kReading, &source, &width, &height, &stored_channels, kChannels),
+      free_pixels);
+  if (source.ended) throw_truncated_image();
+  if (!pixels) {
+    const std::string complaint = stbi_failure_reason();
+    if (complaint == "outofmem") throw std::bad_alloc();
+    throw_unsupported_image("cannot be decoded (" + complaint + ")");
+  }
+  GreyImage image(height, width);
+  for (int y = 0; y < height; ++y) {
+    const std::size_t at = image.row(0).size() * static_cast<std::size_t>(y) * kChannels;
+    scale.make_grey(pixels.get() + at, kChannels, Alpha::straight, image.row(y));
+  }
+  return image;
+}
+
+/// Walks through the blocks of a GIF. Source: GIF89a.
+class GifBlocks {
+ public:
+  explicit GifBlocks(ByteView file) : file_(file) {
+    constexpr std::size_t kPaletteFlagsAt = 10;
+    at_ = 13 + palette_bytes(kPaletteFlagsAt);
+    while (step()) {
+    }
+  }
+
+  [[nodiscard]] int pictures() const noexcept { return pictures_; }
+  [[nodiscard]] std::uint64_t packed_bytes() const noexcept { return packed_bytes_; }
+
+ private:
+  enum Block : std::uint8_t { kExtension = 0x21, kPicture = 0x2C, kEnd = 0x3B };
+
+  [[nodiscard]] std::size_t byte(std::size_t at) const { return bytes_at(file_, at, 1)[0]; }
+
+  [[nodiscard]] std::size_t palette_bytes(std::size_t flags_at) const {
+    const std::size_t flags = byte(flags_at);
+    return (flags & 0x80U) == 0 ? 0 : std::size_t{3} << ((flags & 7U) + 1);
+  }
+
+  /// \return false after the end
+  bool step() {
+    switch (byte(at_)) {
+      case kEnd:
+        return false;
+      case kExtension:
+        skip_data(at_ + 2);
+        return true;
+      case kPicture: {
+        constexpr std::size_t kSize = 10;
+        const std::uint64_t before = data_bytes_;
+        skip_data(at_ + kSize + palette_bytes(at_ + kSize - 1) + 1);
+        if (pictures_++ == 0) packed_bytes_ = data_bytes_ - before;
+        return true;
+      }
+      default:
+        throw_truncated_image();
+    }
+  }
+
+  /// Blocks of data, each after its size, up to an empty one.
+  void skip_data(std::size_t at) {
+    for (; byte(at) != 0; at += byte(at) + 1) data_bytes_ += byte(at);
+    at_ = at + 1;
+  }
+
+  ByteView file_;
+  std::size_t at_ = 0;
+  int pictures_ = 0;
+  std::uint64_t packed_bytes_ = 0;  ///< of the first picture
+  std::uint64_t data_bytes_ = 0;
+};
+
+}  // namespace
+
+GreyImage read_gif(ByteView file, GreyScale& scale, ImageNotes& notes) {
+  const GifBlocks blocks(file);
+  notes.pictures = blocks.pictures();
+  const std::uint64_t width = little16(file, 6);
+  const std::uint64_t height = little16(file, 8);
+  check_image_size(static_cast<std::int64_t>(width), static_cast<std::int64_t>(height));
+  // A code of at most 12 bits stands for at most 4096 pixels.
+  constexpr std::uint64_t kMaxPixelsOfByte = 2731;
+  if (width * height > blocks.packed_bytes() * kMaxPixelsOfByte) throw_truncated_image();
+  return read_with_stb(file, scale);
+}
+
+}  // namespace touchtrial::engine

@@ -1,0 +1,31 @@
+#include "core/text.hpp"
+
+#include "support/catch.hpp"
+
+using namespace touchtrial;
+
+TEST_CASE(
+    "words for missing and truth values are known in any capitals, ids are not taken for them") {
+  for (const char* word :
+       {"NA", "na", "N/A", "NaN", "nan", "NULL", "null", "None", "TRUE", "False"}) {
+    CHECK(is_read_as_missing(word));
+  }
+  for (const char* word : {"", "P01", "001", "NA1", "nano", "T", "0"}) {
+    CHECK_FALSE(is_read_as_missing(word));
+  }
+}
+
+TEST_CASE("names that look alike have one skeleton, others do not") {
+  const std::string no_el = "No\xc3\xabl";    // one letter with a diaeresis
+  const std::string no_e_l = "Noe\xcc\x88l";  // a letter and a diaeresis
+  CHECK(skeleton_of(no_el) == skeleton_of(no_e_l));
+  CHECK(skeleton_of("Fine Cloth") == skeleton_of("fine-cloth"));
+  CHECK(skeleton_of("a\xe2\x80\x8b") == skeleton_of("A"));  // a blank of no width
+  CHECK(skeleton_of("\xef\xbc\xa4"
+                    "9") == skeleton_of("d9"));                // a wide D
+  CHECK(skeleton_of("a\xe2\x80\x93z") == skeleton_of("a z"));  // an en dash
+  CHECK(skeleton_of("bark") != skeleton_of("bark2"));
+  CHECK(skeleton_of("Noel") != skeleton_of(no_el));
+  CHECK(skeleton_of("latin\xe9") == "latin\xe9");
+  CHECK(skeleton_of("").empty());
+}
