@@ -10,8 +10,9 @@ import re, sys
 
 VOID = {"meta", "br", "img", "hr", "link", "input", "col"}
 ADDRESSES = {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"}
-TAG = re.compile(r"""<(/?)([^\s=>/]+)((?:\s+[^\s=>/"']+(?:=(?:"[^"]*"|'[^']*'))?)*)\s*(/?)>""")
-ATTRIBUTE = re.compile(r"""([^\s=]+)(?:=(?:"([^"]*)"|'([^']*)'))?""")
+VALUE = r"""(?:\s*=\s*(?:"([^"]*)"|'([^']*)'))?"""
+ATTRIBUTE = re.compile(r"""\s*([^\s=>/"']+)""" + VALUE)
+TAG = re.compile(r"""<(/?)([^\s=>/]+)((?:\s+[^\s=>/"']+(?:\s*=\s*(?:"[^"]*"|'[^']*'))?)*)\s*(/?)>""")
 
 
 class Page:
@@ -68,7 +69,8 @@ class Page:
         if name in ("figure", "figcaption"):
             self.figcaption = name == "figcaption"
         role = attributes.get("role")
-        if (name == "img" and not attributes.get("alt")) or (role == "img" and not attributes.get("aria-label")):
+        if (name == "img" and not attributes.get("alt")) or (
+                role == "img" and not (attributes.get("aria-label") or attributes.get("aria-labelledby"))):
             self.faults.append("a picture without words")
         if role == "region" and not attributes.get("tabindex"):
             self.faults.append("out of reach by keyboard")
