@@ -146,12 +146,12 @@ TEST_CASE("of two prepares at once none is mixed with the other") {
     // Another name of a pack has the same key.
     const std::string second = pair % 2 == 0 ? pack : "p" + std::to_string(pair);
     const std::string file = pair % 4 < 2 ? "other.json" : "cloths.json";
-    const ProgramResult both =
-        run_program("/bin/sh", study.path(),
-                    {"-c",
-                     "(\"$0\" prepare cloths.json --pack $1; echo $? >first.rc) 2>first.txt & "
-                     "(\"$0\" prepare $3 --pack $2; echo $? >second.rc) 2>second.txt; wait",
-                     TOUCHTRIAL_PROGRAM, study.in(pack), study.in(second), study.in(file)});
+    const ProgramResult both = run_program(
+        "/bin/sh", study.path(),
+        {"-c",
+         "cd \"$4\"; (\"$0\" prepare cloths.json --pack $1; echo $? >first.rc) 2>first.txt & "
+         "(\"$0\" prepare $3 --pack $2; echo $? >second.rc) 2>second.txt; wait",
+         TOUCHTRIAL_PROGRAM, study.in(pack), study.in(second), file, study.path().string()});
     INFO(pair << both.errors << content(study.path() / "first.txt")
               << content(study.path() / "second.txt"));
     const std::string codes =

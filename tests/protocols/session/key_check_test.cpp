@@ -113,7 +113,7 @@ TEST_CASE("another study's pack, an altered field and an altered picture are ref
   bytes.back() ^= 1U;
   replace_file(field, bytes);
   CHECK_NOTHROW(session::require_opens(study.key(), station, study.pack()));
-  const auto picture = study.key().study.folder / "even0.png";
+  const auto picture = study.key().study.folder / "bark0.png";
   replace_file(picture, std::string("another"));
   CHECK_THROWS_WITH(session::require_opens(study.key(), station, study.pack()),
                     holds_text(picture.string() + ": participants would see another picture"));
