@@ -14,33 +14,33 @@ namespace {
 
 /// A file in memory that stb_image reads byte by byte. It continues after the end of a file with
 /// zeros; the attempt is noted.
-struct Source {
+struct ByteStream {
   ByteView left;
   bool ended = false;
 };
 
-int take_bytes(void* user, char* to, int count) {
-  auto& source = *static_cast<Source*>(user);
-  const std::size_t taken = std::min(source.left.size(), static_cast<std::size_t>(count));
+int stream_bytes(void* user, char* to, int count) {
+  auto& stream = *static_cast<ByteStream*>(user);
+  const std::size_t taken = std::min(stream.left.size(), static_cast<std::size_t>(count));
   // It asks for more than it needs, but only when it needs some.
-  if (taken == 0) source.ended = true;
-  std::memcpy(to, source.left.data(), taken);
-  source.left = source.left.subspan(taken);
+  if (taken == 0) stream.ended = true;
+  std::memcpy(to, stream.left.data(), taken);
+  stream.left = stream.left.subspan(taken);
   return static_cast<int>(taken);
 }
 
-void skip_bytes(void* user, int count) {
-  auto& source = *static_cast<Source*>(user);
+void skip_stream(void* user, int count) {
+  auto& stream = *static_cast<ByteStream*>(user);
   const auto skipped = static_cast<std::size_t>(std::max(count, 0));
-  if (count < 0 || skipped > source.left.size()) source.ended = true;
-  source.left = source.left.subspan(std::min(skipped, source.left.size()));
+  if (count < 0 || skipped > stream.left.size()) stream.ended = true;
+  stream.left = stream.left.subspan(std::min(skipped, stream.left.size()));
 }
 
-int is_at_end(void* user) {
-  return static_cast<Source*>(user)->left.empty() ? 1 : 0;
+int stream_ended(void* user) {
+  return static_cast<ByteStream*>(user)->left.empty() ? 1 : 0;
 }
 
-constexpr stbi_io_callbacks kReading = {take_bytes, skip_bytes, is_at_end};
+constexpr stbi_io_callbacks kReading = {stream_bytes, skip_stream, stream_ended};
 
 void free_pixels(stbi_uc* pixels) {
   stbi_image_free(pixels);
@@ -48,14 +48,14 @@ void free_pixels(stbi_uc* pixels) {
 
 GreyImage read_with_stb(ByteView file, GreyScale& scale) {
   constexpr int kChannels = 4;
-  Source source{file};
+  ByteStream stream{file};
   int width = 0;
   int height = 0;
   int stored_channels = 0;
   const std::unique_ptr<stbi_uc, decltype(&free_pixels)> pixels(
-      stbi_load_from_callbacks(&kReading, &source, &width, &height, &stored_channels, kChannels),
+      stbi_load_from_callbacks(&kReading, &stream, &width, &height, &stored_channels, kChannels),
       free_pixels);
-  if (source.ended) throw_truncated_image();
+  if (stream.ended) throw_truncated_image();
   if (!pixels) {
     const std::string complaint = stbi_failure_reason();
     if (complaint == "outofmem") throw std::bad_alloc();
@@ -69,7 +69,7 @@ GreyImage read_with_stb(ByteView file, GreyScale& scale) {
   return image;
 }
 
-/// Walks through the blocks of a GIF. Source: GIF89a.
+/// Walks through the blocks of a GIF. ByteStream: GIF89a.
 class GifBlocks {
  public:
   explicit GifBlocks(ByteView file) : file_(file) {
