@@ -69,7 +69,7 @@ GreyImage read_with_stb(ByteView file, GreyScale& scale) {
   return image;
 }
 
-/// Walks through the blocks of a GIF. ByteStream: GIF89a.
+/// Walks through the blocks of a GIF. Source: GIF89a.
 class GifBlocks {
  public:
   explicit GifBlocks(ByteView file) : file_(file) {
