@@ -34,6 +34,7 @@ struct ExportArguments {
   bool safety = false;
   bool with_database = false;
   bool with_texts = false;
+  bool for_excel = false;
   analysis::DatasetOptions dataset;
 };
 
@@ -45,6 +46,10 @@ void require_fitting(const ExportArguments& arguments) {
   if (for_bids && arguments.format != "bids") {
     throw UsageError(
         "--traces, --with-stimuli, --with-database and --institution belong to --format bids");
+  }
+  const bool is_csv = arguments.format == "csv" && arguments.participant.empty();
+  if (arguments.for_excel && (!is_csv || arguments.safety)) {
+    throw UsageError("--for-excel belongs to --format csv");
   }
   const bool for_datasets =
       !dataset.authors.empty() || !dataset.license.empty() || arguments.with_texts;
@@ -78,7 +83,10 @@ std::vector<fs::path> write_files(const ExportArguments& arguments, const store:
                                   const std::optional<analysis::Outcomes>& outcomes) {
   const std::string& format = arguments.format;
   const auto consents = consents_if_readable(arguments.database);
-  if (format == "csv") return analysis::export_csv(store, outcomes, arguments.folder, consents);
+  if (format == "csv") {
+    return analysis::export_csv(store, outcomes, arguments.folder, consents,
+                                arguments.for_excel ? analysis::kByteOrderMark : "");
+  }
   if (format == "json") {
     return {analysis::export_json(store, outcomes, arguments.folder, consents)};
   }
@@ -194,6 +202,10 @@ void add_export_command(CLI::App& program, Action& action) {
       ->excludes(participant)
       ->excludes(format);
   participant->excludes(format);
+  command->add_flag(
+      "--for-excel", arguments->for_excel,
+      "csv: begin each file with a byte order mark, without which Excel takes letters "
+      "beyond ASCII for others");
   add_dataset_options(*command, *arguments);
   command->callback([=, &action] { action = [=] { return export_study(*arguments); }; });
 }

@@ -2,6 +2,7 @@
 
 #include "core/printable.hpp"
 #include "core/text.hpp"
+#include "core/utc.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -64,6 +65,10 @@ std::string table_text(const DataTable& table, char separator, const FieldText& 
 }
 
 }  // namespace
+
+DataCell utc_cell(std::chrono::nanoseconds at, bool simulated) {
+  return simulated ? DataCell() : DataCell(utc_text(at));
+}
 
 DataCell flag(bool value) {
   return std::int64_t{value ? 1 : 0};

@@ -16,6 +16,9 @@ using DataCell =
 /// 1 or 0.
 [[nodiscard]] DataCell flag(bool value);
 
+/// A time in UTC as ISO 8601; empty if participants are simulated, whose wall clock means nothing.
+[[nodiscard]] DataCell utc_cell(std::chrono::nanoseconds at, bool simulated);
+
 struct DataTable {
   std::vector<std::string> columns;
   std::vector<std::vector<DataCell>> rows;  ///< each as long as `columns`

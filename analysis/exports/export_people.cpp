@@ -8,7 +8,6 @@
 #include "analysis/incidents.hpp"
 #include "analysis/sealed_sessions.hpp"
 #include "core/errors.hpp"
-#include "core/utc.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
@@ -28,12 +27,6 @@ DataTable rows_with(DataTable table, const std::string& column, const std::set<D
   const auto at = static_cast<std::size_t>(found - table.columns.begin());
   std::erase_if(table.rows, [&](const auto& row) { return !values.contains(row[at]); });
   return table;
-}
-
-/// The wall clock means nothing where participants are simulated.
-DataCell utc_cell(std::chrono::nanoseconds at, bool simulated) {
-  if (simulated) return std::monostate{};
-  return utc_text(at);
 }
 
 /// When the sessions of a participant were opened and closed.

@@ -100,10 +100,11 @@ Json rows_json(const DataTable& table) {
   return rows;
 }
 
-std::vector<ExportFile> csv_files(const std::vector<ResultTable>& tables) {
+std::vector<ExportFile> csv_files(const std::vector<ResultTable>& tables,
+                                  const std::string& start = {}) {
   std::vector<ExportFile> files;
   for (const ResultTable& one : tables) {
-    files.push_back(said_file(one.file, one.table, one.has_words));
+    files.push_back(said_file(one.file, one.table, one.has_words, start));
   }
   return files;
 }
@@ -132,9 +133,10 @@ std::vector<ResultTable> exported_tables(const store::StudyStore& store,
 std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
                                               const std::optional<Outcomes>& outcomes,
                                               const std::filesystem::path& folder,
-                                              const std::vector<store::PersonalRecord>& consents) {
+                                              const std::vector<store::PersonalRecord>& consents,
+                                              const std::string& start) {
   const store::StudyCommitment& commitment = store.commitment();
-  std::vector<ExportFile> files = csv_files(exported_tables(store, outcomes, consents));
+  std::vector<ExportFile> files = csv_files(exported_tables(store, outcomes, consents), start);
   if (outcomes)
     files.push_back(text_file("study_file.json", without_comments(outcomes->design.text)));
   files.push_back(text_file("export.json", contents_json(store, !outcomes, files)));
@@ -155,8 +157,8 @@ std::vector<ExportFile> event_files(const store::StudyStore& store, const design
   std::map<int, const store::SessionRow*> shown;
   for (const SessionOutcome& session : outcomes.sessions) shown[session.row.session] = &session.row;
   const std::map<int, store::PersonKeys> keys = person_keys(store, key);
-  DataTable table{{"participant", "session", "event", "kind", "at_s", "body", "safety_fault",
-                   "device_fault", "flight", "simulated"},
+  DataTable table{{"participant", "session", "event", "kind", "at_s", "at_utc", "body",
+                   "safety_fault", "device_fault", "flight", "simulated"},
                   {}};
   std::vector<ExportFile> files;
   store.for_each_of(kKinds, [&](const store::Event& stored) {
@@ -168,16 +170,18 @@ std::vector<ExportFile> event_files(const store::StudyStore& store, const design
     const store::OpenedEvent opened = whole(stored, row, own);
     const store::Event& event = opened.event;
     store::InterruptionDetail detail = detail_of(opened);
+    const bool in_session = event.session > 0;
     std::string flight;
     if (detail.ticks > 0) {
       flight = fmt::format("{}{}flight_{}_{}.csv", prefix, row.simulated ? "SIMULATED_" : "",
                            row.session, event.sequence);
       files.push_back(flight_file(flight, std::move(detail.flight)));
     }
-    table.rows.push_back({row.participant, std::int64_t{row.session}, event.sequence,
-                          std::string(name_of(event.kind)), event.at, event.body,
-                          detail.safety_fault, detail.device_fault, flight,
-                          std::int64_t{row.simulated}});
+    table.rows.push_back(
+        {row.participant, std::int64_t{row.session}, event.sequence,
+         std::string(name_of(event.kind)), in_session ? DataCell(event.at) : DataCell(),
+         in_session ? DataCell() : utc_cell(event.at, row.simulated), event.body,
+         detail.safety_fault, detail.device_fault, flight, std::int64_t{row.simulated}});
   });
   files.insert(files.begin(), text_file(prefix + "events.csv", csv_text(table)));
   return files;

@@ -14,6 +14,8 @@
 
 namespace touchtrial::analysis {
 
+inline constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
+
 /// The tables that export_csv writes, under the names of their files.
 /// \param outcomes  of this store; nothing before unblinding
 /// \param consents  of the personal data, if they are known
@@ -28,11 +30,13 @@ namespace touchtrial::analysis {
 /// the folder if necessary; files that no export wrote stay. Equal studies give equal bytes.
 /// \param outcomes  of this store; nothing before unblinding
 /// \param consents  of the personal data, if they are known
+/// \param start  of each CSV file: Excel takes a file for UTF-8 only after kByteOrderMark
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written
 std::vector<std::filesystem::path> export_csv(
     const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
-    const std::filesystem::path& folder, const std::vector<store::PersonalRecord>& consents = {});
+    const std::filesystem::path& folder, const std::vector<store::PersonalRecord>& consents = {},
+    const std::string& start = {});
 
 /// Writes said_tables beside those of the protocol's `export_model`.
 /// \return the files, in the order written

@@ -100,8 +100,10 @@ DataTable consents_table(const store::StudyStore& store,
   return table;
 }
 
-ExportFile said_file(const std::string& name, const DataTable& table, bool has_words) {
-  return text_file(name, csv_text(table), has_words ? FileMode::owner_only : FileMode::everyone);
+ExportFile said_file(const std::string& name, const DataTable& table, bool has_words,
+                     const std::string& start) {
+  return text_file(name, start + csv_text(table),
+                   has_words ? FileMode::owner_only : FileMode::everyone);
 }
 
 std::vector<ResultTable> said_tables(const store::StudyStore& store,

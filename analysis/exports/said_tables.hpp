@@ -40,7 +40,9 @@ enum class Typed { shown, left_out };
 
 /// A table as CSV.
 /// \param has_words  it has what people said: for its reader alone
-[[nodiscard]] ExportFile said_file(const std::string& name, const DataTable& table, bool has_words);
+/// \param start  of the file, before the table
+[[nodiscard]] ExportFile said_file(const std::string& name, const DataTable& table, bool has_words,
+                                   const std::string& start = {});
 
 /// What other instruments were told: each mark's time on the session's clock and, where the Lab
 /// Streaming Layer was used, on its clock.

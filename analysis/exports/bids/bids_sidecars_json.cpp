@@ -71,6 +71,19 @@ std::string instructions(const design::Study& study) {
   return fmt::format("{}", fmt::join(own->second, "\n\n"));
 }
 
+Json columns_object(const std::vector<std::string>& columns, bool simulated) {
+  Json object = Json::object();
+  put_columns(object, columns);
+  if (simulated) object["stamp"] = {{"Description", "SIMULATED: no row comes from a person"}};
+  return object;
+}
+
+/// What presented the stimuli. Source: BIDS 1.11, "Task events".
+void put_presentation(Json& object, const DatasetSource& study) {
+  object["StimulusPresentation"] = {{"SoftwareName", "Touchtrial"},
+                                    {"SoftwareVersion", study.store.commitment().program_version}};
+}
+
 /// What describes the task in the sidecars of every datatype.
 Json task_object(const DatasetSource& study, const DatasetOptions& options) {
   const store::StudyCommitment& commitment = study.store.commitment();
@@ -121,15 +134,19 @@ std::string derivative_description_json(const DatasetSource& study) {
 }
 
 std::string columns_json(const std::vector<std::string>& columns, bool simulated) {
-  Json object = Json::object();
-  put_columns(object, columns);
-  if (simulated) object["stamp"] = {{"Description", "SIMULATED: no row comes from a person"}};
+  return json_text(columns_object(columns, simulated));
+}
+
+std::string events_json(const DatasetSource& study, const std::vector<std::string>& columns) {
+  Json object = columns_object(columns, study.store.commitment().simulated);
+  put_presentation(object, study);
   return json_text(object);
 }
 
 std::string task_json(const DatasetSource& study, const DatasetOptions& options,
                       const std::vector<std::string>& columns) {
   Json object = task_object(study, options);
+  put_presentation(object, study);
   put_stamp(object, study.store.commitment().simulated, simulated_devices(study.store.sessions()));
   put_columns(object, columns);
   return json_text(object);

@@ -22,6 +22,10 @@ inline constexpr const char* kBidsVersion = "1.11.1";
 /// Describes every column of a table except `participant_id` and `session_id`, which BIDS defines.
 [[nodiscard]] std::string columns_json(const std::vector<std::string>& columns, bool simulated);
 
+/// task-*_events.json: describes the columns of every *_events.tsv.
+[[nodiscard]] std::string events_json(const DatasetSource& study,
+                                      const std::vector<std::string>& columns);
+
 /// task-*_beh.json: describes the task and the columns of every *_beh.tsv.
 [[nodiscard]] std::string task_json(const DatasetSource& study, const DatasetOptions& options,
                                     const std::vector<std::string>& columns);

@@ -269,7 +269,7 @@ void add_what_was_said(Files& files, const DatasetSource& study, const DatasetOp
     }
   }
   if (described.empty()) return;
-  files.push_back(text_file("task-" + task + "_events.json", columns_json(described, simulated)));
+  files.push_back(text_file("task-" + task + "_events.json", events_json(study, described)));
 }
 
 void add_report(Files& files, const DatasetSource& study, Typed typed) {
