@@ -15,6 +15,7 @@
 #include <cmath>
 #include <mutex>
 #include <set>
+#include <span>
 #include <stdexcept>
 #include <thread>
 
@@ -42,10 +43,30 @@ constexpr double kPushTooHardN = 2.0;
 constexpr double kSoftAgainN = 1.7;
 constexpr double kBarsTimeS = 0.06;  ///< time constant of the bars in practice
 
+/// Of a window that no monitor holds, participants see a part.
+void require_room(std::pair<int, int> size_px, std::span<GLFWmonitor*> monitors) {
+  std::pair<int, int> largest{0, 0};
+  for (GLFWmonitor* monitor : monitors) {
+    const GLFWvidmode* mode = glfwGetVideoMode(monitor);
+    if (mode->width >= size_px.first && mode->height >= size_px.second) return;
+    if (mode->width * mode->height > largest.first * largest.second) {
+      largest = {mode->width, mode->height};
+    }
+  }
+  if (monitors.empty()) return;
+  throw DeviceError("window: no monitor holds " + std::to_string(size_px.first) + " x " +
+                    std::to_string(size_px.second) + " pixels; the largest has " +
+                    std::to_string(largest.first) + " x " + std::to_string(largest.second) +
+                    ": give a smaller --window");
+}
+
 GLFWmonitor* monitor_of(const ParticipantWindowOptions& options) {
-  if (options.size_px) return nullptr;
   int count = 0;
   GLFWmonitor** monitors = glfwGetMonitors(&count);
+  if (options.size_px) {
+    require_room(*options.size_px, {monitors, static_cast<std::size_t>(count)});
+    return nullptr;
+  }
   if (options.monitor < 1 || options.monitor > count) {
     throw DeviceError("window: there is no monitor " + std::to_string(options.monitor) +
                       "; this machine has " + std::to_string(count) +
