@@ -94,16 +94,11 @@ PreparedSecrets::PreparedSecrets(const design::Study& study, const design::PackP
     key_ = design::make_study_key(study, entropy, false);
   }
   key_.pack_folder = place.pack;
-  try {
-    draft_secrets(passphrase);
-  } catch (...) {
-    for (const Draft& draft : drafts_) remove_drafts_of(draft.place);
-    throw;
-  }
+  draft_secrets(passphrase);
 }
 
-PreparedSecrets::~PreparedSecrets() {
-  for (const Draft& draft : drafts_) remove_drafts_of(draft.place);
+PreparedSecrets::Drafts::~Drafts() {
+  for (const Draft& draft : in_order) remove_drafts_of(draft.place);
 }
 
 fs::path PreparedSecrets::draft_for(const fs::path& place) {
@@ -111,7 +106,7 @@ fs::path PreparedSecrets::draft_for(const fs::path& place) {
   remove_drafts_of(target);
   fs::path file = target;
   file += kDraftEnding;
-  drafts_.push_back({file, target});
+  drafts_.in_order.push_back({file, target});
   // A copy, so that a protected file stays under its passphrase.
   if (is_there(target)) replace_file(file, read_file(target), FileMode::owner_only);
   return file;
@@ -128,7 +123,7 @@ void PreparedSecrets::draft_secrets(bool passphrase) {
     const fs::path kept = draft_for(kept_place(target_of(place_.key), earlier_->seal));
     replace_file(kept, before_, FileMode::owner_only);
     if (protects) save(kept, *earlier_);
-    std::swap(drafts_[0], drafts_[1]);
+    std::swap(drafts_.in_order[0], drafts_.in_order[1]);
   }
   save(draft_of_key, key_);
   for (const design::Station& station : key_.stations) {
@@ -145,7 +140,7 @@ void PreparedSecrets::publish() {
                     "again");
   };
   if (now != before_) refuse();
-  for (const Draft& draft : drafts_) {
+  for (const Draft& draft : drafts_.in_order) {
     if (is_same(draft.file, draft.place)) continue;
     if (is_new() && draft.place == target_of(place_.key)) {
       if (!move_to_free_name(draft.file, draft.place)) refuse();

@@ -25,9 +25,6 @@ class PreparedSecrets {
   /// \throws FileError if the key is gone whose station's file or pack is there, or a file cannot
   ///   be read or written
   PreparedSecrets(const design::Study& study, const design::PackPlace& place, bool passphrase);
-  ~PreparedSecrets();
-  PreparedSecrets(const PreparedSecrets&) = delete;
-  PreparedSecrets& operator=(const PreparedSecrets&) = delete;
 
   [[nodiscard]] const design::StudyKey& key() const noexcept { return key_; }
   /// Whether no file has had the key yet.
@@ -43,6 +40,15 @@ class PreparedSecrets {
     std::filesystem::path file;
     std::filesystem::path place;
   };
+  /// Removes those that were not put into their places.
+  struct Drafts {
+    Drafts() = default;
+    ~Drafts();
+    Drafts(const Drafts&) = delete;
+    Drafts& operator=(const Drafts&) = delete;
+
+    std::vector<Draft> in_order;  ///< in which they are put into their places
+  };
 
   void draft_secrets(bool passphrase);
   std::filesystem::path draft_for(const std::filesystem::path& place);
@@ -51,7 +57,7 @@ class PreparedSecrets {
   Bytes before_;  ///< of the key's file; empty: there was none
   std::optional<design::StudyKey> earlier_;
   design::StudyKey key_;
-  std::vector<Draft> drafts_;  ///< in the order in which they are put into their places
+  Drafts drafts_;
 };
 
 }  // namespace touchtrial::app

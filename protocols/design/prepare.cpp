@@ -4,6 +4,7 @@
 #include "core/files.hpp"
 #include "core/parallel.hpp"
 #include "core/strict_json.hpp"
+#include "core/text.hpp"
 #include "engine/image_file.hpp"
 #include "engine/rendering/gains.hpp"
 #include "protocols/design/languages.hpp"
@@ -343,6 +344,11 @@ class Preparation {
     if (!earlier_.damage().empty()) {
       report_.warnings.push_back(earlier_.damage() + ": all fields were built anew");
     }
+    // Not which: `run` may have named a code.
+    if (const auto damaged = std::ranges::count(is_damaged_, 1); damaged > 0) {
+      report_.warnings.push_back(counted(damaged, "field") +
+                                 " of the pack, damaged or gone: built anew");
+    }
     for (auto& warning : validity_warnings(key_.study)) {
       report_.warnings.push_back(std::move(warning));
     }
@@ -358,10 +364,6 @@ class Preparation {
     }
     for (std::size_t i = 0; i < key_.stimuli.size(); ++i) {
       if (!solver_warnings_[i].empty()) report_.warnings.push_back(solver_warnings_[i]);
-      if (is_damaged_[i] != 0) {
-        report_.warnings.push_back(described(key_.study, key_.stimuli[i].stimulus) +
-                                   ": its field was damaged or gone, and was built anew");
-      }
       if (measured_.flat[i] == 0) continue;
       report_.warnings.push_back(described(key_.study, key_.stimuli[i].stimulus) +
                                  ": is flat, nothing of it can be felt");
@@ -515,11 +517,17 @@ PlaneGeometry plane_of(const Study& study) {
 
 PrepareReport prepare_pack(const PackLock& lock, const StudyKey& key, const Progress& progress,
                            const PrepareOptions& options) {
+  const auto discard_drafts = [&lock] {
+    std::error_code ignored;
+    std::filesystem::remove_all(draft_folder(lock.folder()), ignored);
+  };
   try {
     return Preparation(key, lock.folder(), progress, options).run();
-  } catch (...) {
-    std::error_code ignored;
-    if (options.is_new_key) std::filesystem::remove_all(draft_folder(lock.folder()), ignored);
+  } catch (const StudyError&) {  // the next run, with another picture, uses what is finished
+    if (options.is_new_key) discard_drafts();
+    throw;
+  } catch (...) {  // what is finished may fill the disk
+    discard_drafts();
     throw;
   }
 }

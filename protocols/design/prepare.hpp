@@ -105,14 +105,14 @@ using Progress = std::function<void(int done, int of)>;
 /// from different input. Then chooses the gains, signs the table of contents with the digests of
 /// the pictures that participants see, puts everything into its place, and removes fields that no
 /// stimulus uses any more. What the key did not sign is built anew, with a warning.
-/// A run that fails leaves the pack as it was, and its drafts to the next one. A run that is killed
-/// while it puts drafts into their places leaves a pack that cannot be presented and that the next
-/// one completes. A run with nothing to do leaves the pack's files untouched.
-/// Whether a picture or a field has changed, its content tells.
-/// The pack's bytes depend only on key, study and images, not on the number of threads.
-/// Images of more than PrepareOptions::large_image_px pixels are processed one after another, so
-/// that the memory for a large image (docs/benchmarks/memory.md) is needed only once, whatever the
-/// number of threads.
+/// A run that fails leaves the pack as it was; if a picture is at fault, it leaves finished fields
+/// to the next one, as a run that is killed does. One that is killed while it puts them into their
+/// places leaves a pack that cannot be presented and that the next one completes. A run with
+/// nothing to do leaves the pack's files untouched. Whether a picture or a field has changed, its
+/// content tells. The pack's bytes depend only on key, study and images, not on the number of
+/// threads. Images of more than PrepareOptions::large_image_px pixels are processed one after
+/// another, so that the memory for a large image (docs/benchmarks/memory.md) is needed only once,
+/// whatever the number of threads.
 /// \param lock  of the pack's folder, to prepare
 /// \throws StudyError if an image cannot be read, with its place in the study
 /// \throws FileError if the pack cannot be written, or belongs to another key

@@ -159,8 +159,8 @@ TEST_CASE("a damaged or missing field is built again") {
   const design::PrepareReport report = laboratory.prepare();
   CHECK(reused(report) == 1);
   CHECK(report.stimuli[1].reused);
-  CHECK(report.warnings.size() == 2);
-  CHECK(warns(report, "class \"c0\", image c0_0.png, method adaptive: its field was damaged"));
+  CHECK(report.warnings.size() == 1);
+  CHECK(warns(report, "2 fields of the pack, damaged or gone: built anew"));
   CHECK(laboratory.files() == whole);
 }
 
@@ -301,10 +301,10 @@ TEST_CASE("a prepare that is killed between two renames is completed by the next
   const Laboratory laboratory;
   static_cast<void>(laboratory.prepare());
   for (std::uint64_t c = 0; c < 3; ++c) write_noise(laboratory.image(c), 90 + c);
-  const auto broken_off = [&] { throw FileError("broken off"); };
+  const auto broken_off = [&] { throw StudyError("broken off"); };
   CHECK_THROWS_AS(design::prepare_pack(laboratory.key(), laboratory.pack(), {},
                                        {.publish_secrets = broken_off}),
-                  FileError);
+                  StudyError);
   // Fields are renamed in the order of their codes, the list last.
   const int renamed = GENERATE(0, 1, 2, 3);
   const auto drafts = design::draft_folder(laboratory.pack());
