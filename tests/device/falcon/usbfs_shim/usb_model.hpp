@@ -1,5 +1,5 @@
-/// \file A stand-in for a USB device, and the emulated Falcon as one. The usbfs shim brings it
-/// the transfers.
+/// \file A stand-in for a USB device, and the emulated Falcon as one. The usbfs shim or umockdev
+/// brings it the transfers.
 #pragma once
 
 #include "device/falcon/emulator/falcon_emulator.hpp"
