@@ -2,7 +2,7 @@
 """An emulated Inverse service with one Inverse3 and a hand on it.
 
 Written from Haply's public documentation of the service (the simulation channel, sessions, device
-configuration, events, HTTP; version 3.5), and not from the driver that is tested with it.
+configuration, events, HTTP; versions 3.1 and 3.5), and not from the driver that is tested with it.
 What the documentation leaves open, and is assumed here, is marked "assumed".
 
 Prints "ready PORT EVENTS_PORT HTTP_PORT" once it listens. Commands on standard input, one a line:
