@@ -82,6 +82,21 @@ class FftwBuffer {
   Element* elements_;
 };
 
+/// Asks for the memory that FFTW is about to need for planes of these sides: it ends the program if
+/// it finds none. What is freed here stays with the thread. The numbers are twice what the worst
+/// sides up to 100,000 needed.
+/// \throws std::bad_alloc
+inline void ask_memory_to_plan(int height, int width) {
+  constexpr std::size_t kFixed = std::size_t{3} << 20U;
+  constexpr std::size_t kOfSide = 128;
+  const FftwBuffer<std::byte> asked(kFixed + kOfSide * static_cast<std::size_t>(height + width));
+}
+inline void ask_memory_to_execute(int height, int width) {
+  constexpr std::size_t kFixed = std::size_t{1} << 19U;
+  constexpr std::size_t kOfSide = 128;
+  const FftwBuffer<std::byte> asked(kFixed + kOfSide * static_cast<std::size_t>(height + width));
+}
+
 /// std::complex<Real> is laid out as FFTW's pair of reals (C++ standard, [complex.numbers]).
 template <typename Real>
 [[nodiscard]] typename Fftw<Real>::Complex* as_fftw(std::complex<Real>* numbers) noexcept {
@@ -99,13 +114,15 @@ class FftwPlans {
   using Make = std::function<std::vector<Plan>()>;
 
   /// \param name  of these plans among all of this precision
-  /// \param samples  that are transformed
+  /// \param height,width  of the plane
+  /// \throws std::bad_alloc if there is no memory for them
   /// \throws std::invalid_argument if FFTW has no such plan
-  FftwPlans(const std::string& name, std::size_t samples, const Make& make) {
+  FftwPlans(const std::string& name, int height, int width, const Make& make) {
     const std::lock_guard lock(planner_mutex());
-    const bool keep = samples <= kKeptUpToSamples;
+    const bool keep = is_small(height, width);
     if (keep) plans_ = kept()[name];
     if (plans_) return;
+    ask_memory_to_plan(height, width);
     plans_ = std::make_shared<Plans>(make());
     // Otherwise plans would depend on the order in which transforms are created.
     Fftw<Real>::forget();
@@ -123,6 +140,11 @@ class FftwPlans {
   FftwPlans& operator=(const FftwPlans&) = delete;
 
   [[nodiscard]] Plan operator[](std::size_t index) const noexcept { return plans_->all[index]; }
+
+  /// Whether plans of such planes are kept.
+  [[nodiscard]] static bool is_small(int height, int width) noexcept {
+    return static_cast<std::size_t>(height) * static_cast<std::size_t>(width) <= kKeptUpToSamples;
+  }
 
  private:
   static constexpr std::size_t kKeptUpToSamples = 4096;

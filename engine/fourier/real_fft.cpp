@@ -10,10 +10,12 @@ namespace touchtrial::engine {
 
 template <typename Real>
 struct RealFft<Real>::State {
-  State(int height, int width)
-      : plane(static_cast<std::size_t>(height) * static_cast<std::size_t>(width)),
+  State(int rows, int columns)
+      : height(rows),
+        width(columns),
+        plane(static_cast<std::size_t>(height) * static_cast<std::size_t>(width)),
         spectrum(static_cast<std::size_t>(height) * static_cast<std::size_t>(width / 2 + 1)),
-        plans(std::to_string(height) + 'x' + std::to_string(width), plane.span().size(), [=, this] {
+        plans(std::to_string(height) + 'x' + std::to_string(width), height, width, [this] {
           auto* const coefficients = as_fftw(spectrum.data());
           return std::vector{Fftw<Real>::plan_real_forward(height, width, plane.data(),
                                                            coefficients, kPlannerFlags),
@@ -21,6 +23,13 @@ struct RealFft<Real>::State {
                                                            plane.data(), kPlannerFlags)};
         }) {}
 
+  /// Small transforms need next to no memory of their own, and are many.
+  void ask_memory() const {
+    if (!FftwPlans<Real>::is_small(height, width)) ask_memory_to_execute(height, width);
+  }
+
+  int height;
+  int width;
   FftwBuffer<Real> plane;
   FftwBuffer<std::complex<Real>> spectrum;
   FftwPlans<Real> plans;  // forward, inverse
@@ -43,13 +52,15 @@ std::span<std::complex<Real>> RealFft<Real>::spectrum() noexcept {
 }
 
 template <typename Real>
-void RealFft<Real>::forward() noexcept {
+void RealFft<Real>::forward() {
+  state_->ask_memory();
   Fftw<Real>::real_forward(state_->plans[0], state_->plane.data(),
                            as_fftw(state_->spectrum.data()));
 }
 
 template <typename Real>
-void RealFft<Real>::inverse() noexcept {
+void RealFft<Real>::inverse() {
+  state_->ask_memory();
   Fftw<Real>::real_inverse(state_->plans[1], as_fftw(state_->spectrum.data()),
                            state_->plane.data());
 }
