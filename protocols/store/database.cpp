@@ -217,6 +217,17 @@ void make_empty_file(const std::filesystem::path& path) {
   std::fclose(file);
 }
 
+/// The log of a file that has two names lies beside one of them alone: under the other one, what
+/// was acknowledged would be missing.
+void refuse_second_name(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto names = std::filesystem::hard_link_count(path, error);
+  if (error || names == 1) return;
+  refuse_file(path, "has " + std::to_string(names) +
+                        " names (hard links), and nothing is recorded in such a file; copy it to a "
+                        "new file, and move that to this name");
+}
+
 /// The message does not repeat the address, which may hold a password.
 void refuse_address(const std::filesystem::path& path) {
   if (path.string().find("://") == std::string::npos) return;
@@ -278,6 +289,7 @@ Database Database::temporary(const std::string& name) {
 Database Database::open(const std::filesystem::path& path, Mode mode) {
   refuse_address(path);
   check_header(path);
+  if (mode == Mode::read_write) refuse_second_name(path);
   try {
     Database database(path, connected(path, mode));
     if (mode == Mode::read_write &&
