@@ -2,7 +2,9 @@
 #include "analysis/measures/evaluation_report.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/force_flag.hpp"
 #include "core/errors.hpp"
+#include "core/outputs.hpp"
 #include "engine/image_file.hpp"
 
 #include <filesystem>
@@ -49,7 +51,10 @@ std::vector<analysis::EvaluatedImage> evaluated(const EvaluateArguments& argumen
 }
 
 int evaluate(const EvaluateArguments& arguments) {
-  if (!arguments.picture.empty()) analysis::require_gnuplot();
+  if (!arguments.picture.empty()) {
+    require_output_place(arguments.picture);
+    analysis::require_gnuplot();
+  }
   const std::vector<analysis::EvaluatedImage> images = evaluated(arguments);
   if (!arguments.picture.empty()) {
     analysis::draw_with_gnuplot(analysis::order_sweep_script(images), arguments.picture);
@@ -72,6 +77,7 @@ void add_evaluate_command(CLI::App& program, Action& action) {
       ->add_option("--picture", arguments->picture,
                    "Draw the curves of the sweep as PNG (needs gnuplot)")
       ->needs(sweep);
+  add_force_flag(*command);
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return evaluate(*arguments); }; });
 }

@@ -1,10 +1,12 @@
 // extract: the texture of one image, with every stage on request.
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/force_flag.hpp"
 #include "app/method_arguments.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/npy.hpp"
+#include "core/outputs.hpp"
 #include "engine/extraction.hpp"
 #include "engine/force_field.hpp"
 #include "engine/image_file.hpp"
@@ -159,7 +161,7 @@ int extract_with(const ExtractArguments& arguments, const engine::ExtractionOpti
   return 0;
 }
 
-/// Refuses an output that is not a PNG, or that is the input.
+/// Refuses an output that is not a PNG, that is the input, or that is in another's place.
 void check_output(const fs::path& image, const fs::path& output, const std::string& option) {
   if (output.empty()) return;
   std::error_code ignored;
@@ -171,6 +173,7 @@ void check_output(const fs::path& image, const fs::path& output, const std::stri
     throw UsageError("extract: " + output.string() +
                      ": pictures are written as PNG; give a name that ends in .png");
   }
+  require_output_place(output);
 }
 
 int extract(const CLI::App& command, const ExtractArguments& arguments) {
@@ -204,6 +207,7 @@ void add_extract_command(CLI::App& program, Action& action) {
                       "Draw the force field over an enlarged patch, as PNG");
   command->add_option("--dump", arguments->dump,
                       "Write every stage as .npy files into this folder");
+  add_force_flag(*command);
   command->add_option("--precision", arguments->precision, "Precision of the extraction")
       ->check(CLI::IsMember({"float", "double"}))
       ->capture_default_str();

@@ -8,6 +8,7 @@
 #include "analysis/text_figures.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/force_flag.hpp"
 #include "app/power_files.hpp"
 #include "app/study_inputs.hpp"
 #include "app/threshold_power.hpp"
@@ -219,7 +220,10 @@ int print_report(const PowerArguments& arguments, const planning::PowerProgress&
 int combine(const PowerArguments& arguments) {
   const planning::CombinedPower all = planning::combined(load_shards(arguments.combine));
   for (const std::string& remark : all.remarks) spdlog::warn("{}", remark);
-  if (!arguments.folder.empty()) make_folder(arguments.folder);
+  if (!arguments.folder.empty()) {
+    require_power_places(arguments.folder);
+    make_folder(arguments.folder);
+  }
   return print_report(arguments, all.progress);
 }
 
@@ -299,6 +303,7 @@ int power(PowerArguments arguments) {
   if (!arguments.other.empty()) return what_if(arguments, prepared, plan);
   planning::PowerProgress progress = planning::new_progress(prepared.setting(), plan, shard);
   if (!arguments.folder.empty()) {
+    if (!arguments.has_shard) require_power_places(arguments.folder);
     make_folder(arguments.folder);
     progress = taken_up(file_of(arguments, shard), std::move(progress), arguments.resume);
   }
@@ -469,6 +474,7 @@ void add_power_command(CLI::App& program, Action& action) {
           ->excludes(resume);
   CLI::Option* other = command->get_option("--what-if");
   for (CLI::Option* option : {folder, resume, shard}) other->excludes(option);
+  add_force_flag(*command);
   // Shards contain their plan.
   for (CLI::Option* option : of_a_run) combine->excludes(option);
   add_json_flag(*command, arguments->json);

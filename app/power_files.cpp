@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "core/text.hpp"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ std::vector<fs::path> shards_in(const fs::path& folder) {
 
 void draw(const fs::path& folder, const analysis::Figure& figure, analysis::FigureFormat format,
           const char* name) {
-  replace_file(folder / name, analysis::drawn(figure, format));
+  write_output(folder / name, analysis::drawn(figure, format));
 }
 
 }  // namespace
@@ -91,10 +92,16 @@ std::vector<std::pair<fs::path, planning::PowerProgress>> load_shards(
   return shards;
 }
 
+void require_power_places(const fs::path& folder) {
+  for (const char* name : {"power.json", "power.csv", "power.md", "power.svg", "power.pdf"}) {
+    require_output_place(folder / name);
+  }
+}
+
 void write_power_results(const fs::path& folder, const planning::PowerReport& report) {
-  replace_file(folder / "power.json", planning::power_json(report));
-  replace_file(folder / "power.csv", planning::power_csv(report));
-  replace_file(folder / "power.md", planning::power_markdown(report));
+  write_output(folder / "power.json", planning::power_json(report));
+  write_output(folder / "power.csv", planning::power_csv(report));
+  write_output(folder / "power.md", planning::power_markdown(report));
   const analysis::Figure figure = planning::power_figure(report);
   try {
     draw(folder, figure, analysis::FigureFormat::svg, "power.svg");

@@ -48,9 +48,13 @@ class ProgressKeeper {
 [[nodiscard]] std::vector<std::pair<std::filesystem::path, planning::PowerProgress>> load_shards(
     const std::vector<std::filesystem::path>& places);
 
+/// Before long work: refuses a folder in which one of the results' places has another's file.
+/// \throws as require_output_place
+void require_power_places(const std::filesystem::path& folder);
+
 /// Writes power.json, power.csv, power.md, power.svg and power.pdf. Without gnuplot it warns, and
 /// omits the last two.
-/// \throws FileError if a file cannot be written
+/// \throws as write_output
 void write_power_results(const std::filesystem::path& folder, const planning::PowerReport& report);
 
 }  // namespace touchtrial::app

@@ -3,6 +3,7 @@
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/session/commitment.hpp"
@@ -52,7 +53,7 @@ int preregister(const PreregArguments& arguments) {
   if (arguments.output.empty()) {
     print(page);
   } else {
-    replace_file(arguments.output, page);
+    write_output(arguments.output, page);
   }
   return 0;
 }

@@ -4,9 +4,11 @@
 #include "analysis/sheet/stimulus_sheet.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/force_flag.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "protocols/design/prepare.hpp"
 
 #include <algorithm>
@@ -72,6 +74,7 @@ void check_output(const SheetArguments& arguments, const design::Study& study,
   for (const design::StudyClass& one : study.classes) {
     for (const fs::path& image : one.images) refuse_input(arguments.output, study.folder / image);
   }
+  require_output_place(arguments.output);
   if (kind != ".html") analysis::require_gnuplot();
 }
 
@@ -108,7 +111,7 @@ int draw_sheet(const SheetArguments& arguments) {
   if (kind == ".png") analysis::draw_sheet_png(sheet, arguments.output);
   if (kind == ".pdf") analysis::draw_sheet_pdf(sheet, arguments.output);
   if (kind == ".html")
-    replace_file(arguments.output, analysis::sheet_html(sheet), FileMode::owner_only);
+    write_output(arguments.output, analysis::sheet_html(sheet), FileMode::owner_only);
   print("sheet " + arguments.output.string() +
         " (it unblinds everybody who reads it; keep it with the key)\n");
   return 0;
@@ -125,6 +128,7 @@ void add_stimuli_sheet_command(CLI::App& stimuli, Action& action) {
       ->required();
   add_key_option(*command, arguments->key, "Key of the study (default: beside the pack)");
   add_pack_option(*command, arguments->pack);
+  add_force_flag(*command);
   command->callback([=, &action] { action = [=] { return draw_sheet(*arguments); }; });
 }
 

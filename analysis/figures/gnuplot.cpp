@@ -1,7 +1,7 @@
 #include "analysis/figures/gnuplot.hpp"
 
 #include "core/errors.hpp"
-#include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "core/text.hpp"
 
 #include <algorithm>
@@ -184,7 +184,7 @@ void draw_with_gnuplot(const std::string& script, const std::filesystem::path& p
                        FileMode mode) {
   const std::string drawn = GnuplotProcess("", script).result();
   if (drawn.empty()) throw Error("gnuplot: drew nothing" + gnuplot_remedy());
-  replace_file(picture, drawn, mode);
+  write_output(picture, drawn, mode);
 }
 
 std::string gnuplot_string(const std::string& text) {

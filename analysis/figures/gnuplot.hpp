@@ -48,7 +48,7 @@ void require_gnuplot();
 /// \param script  sets a terminal, and no output file
 /// \param mode  who may read the picture
 /// \throws Error if gnuplot is not installed or refuses the script
-/// \throws FileError if the picture cannot be written
+/// \throws as write_output
 /// Thread-safe.
 void draw_with_gnuplot(const std::string& script, const std::filesystem::path& picture,
                        FileMode mode = FileMode::everyone);

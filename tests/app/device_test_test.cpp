@@ -402,11 +402,12 @@ TEST_CASE("device accept rehearses on a device model, and says that it proves no
   const DeviceFolder lab(dhd_settings());
   replace_file(lab.path("dhd-certificate.json"), passed.dump());
   for (int time = 0; time < 2; ++time) {
-    ChildProcess skipping = lab.start("accept", {"dhd"});
+    ChildProcess skipping = lab.start("accept", {"dhd", "--force"});
     skipping.write("s\ns\ns\n");
     CHECK(skipping.finish() == 1);
     CHECK(json::parse(text_of(read_file(lab.path("dhd-certificate.json")))).at("passed") == false);
-    CHECK(text_of(read_file(lab.path("dhd-certificate.json.old"))) == passed.dump());
+    CHECK(text_of(read_file(lab.path("dhd-certificate.json.1"))) == passed.dump());
+    CHECK_FALSE(is_there(lab.path("dhd-certificate.json.2")));
   }
 }
 
