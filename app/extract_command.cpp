@@ -61,6 +61,15 @@ void dump_force(const fs::path& folder, const engine::ForceField<Real>& force) {
                   {force.x.height(), force.x.width(), 2});
 }
 
+/// Before the work: the places of all planes that a method may have.
+void require_dump_places(const fs::path& folder) {
+  for (const char* name : {"image", "subband_LL", "subband_LH", "subband_HL", "subband_HH", "csgv",
+                           "order", "enhanced", "cartoon", "texture", "texture_u8",
+                           "force_tangential"}) {
+    require_output_place(folder / (std::string(name) + ".npy"));
+  }
+}
+
 /// Writes all planes, and frees those except texture, picture and force.
 template <typename Real>
 void dump_all(const fs::path& folder, GreyImage& image, engine::Extraction<Real>& extraction) {
@@ -179,6 +188,7 @@ void check_output(const fs::path& image, const fs::path& output, const std::stri
 int extract(const CLI::App& command, const ExtractArguments& arguments) {
   check_output(arguments.image, arguments.output, "-o");
   check_output(arguments.image, arguments.arrows, "--arrows");
+  if (!arguments.dump.empty()) require_dump_places(arguments.dump);
   const engine::ExtractionOptions options = extraction_options(command, arguments.method);
   if (arguments.neighbourhood % 2 == 0) {
     throw UsageError("extract: --neighbourhood is a side length and must be odd, 3 or more");

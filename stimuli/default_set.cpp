@@ -109,10 +109,15 @@ void write_stimulus(const std::filesystem::path& folder, StimulusEntry& entry, b
   entry.pixels_sha256 = sha256(picture.samples());
 }
 
-/// The manifest of an earlier set in the folder; empty if there is none.
+/// The manifest of an earlier set in the folder; empty if there is none, or another's file.
 StimulusManifest earlier_set(const std::filesystem::path& folder) {
   const auto manifest = folder / kStimulusManifestFile;
-  return is_there(manifest) ? read_stimulus_manifest(manifest) : StimulusManifest{};
+  require_output_place(manifest);
+  try {
+    return is_there(manifest) ? read_stimulus_manifest(manifest) : StimulusManifest{};
+  } catch (const FileError&) {
+    return {};
+  }
 }
 
 /// Whether an earlier set wrote the file, and nobody changed it since.
@@ -184,11 +189,11 @@ StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
                      " exemplars of each label cannot be made; choose 1 to " +
                      std::to_string(kMaxStimulusExemplars));
   }
-  make_folder(folder);
   StimulusManifest manifest;
   manifest.entries = chosen_entries(choice);
   const StimulusManifest earlier = earlier_set(folder);
   require_places(folder, earlier, manifest);
+  make_folder(folder);
   int done = 0;
   for (StimulusEntry& entry : manifest.entries) {
     write_stimulus(folder, entry, is_of(earlier, entry.file, folder));

@@ -1,6 +1,7 @@
 #include "app/run/run_study.hpp"
 
 #include "app/console.hpp"
+#include "app/run/session_bounds.hpp"
 #include "app/study_inputs.hpp"
 #include "core/draft.hpp"
 #include "core/errors.hpp"
@@ -79,6 +80,10 @@ void require_same_study(const store::StudyCommitment& stored, const std::string&
 void check_before_pack(const RunOptions& options, const design::Study& study,
                        const design::StudyKey& key) {
   static_cast<void>(subject_for(*options.subject, study, options.on));
+  require_planned_visit(options, study);
+  if (options.heads.folder) {
+    static_cast<void>(store::HeadFiles(options.database, {}, options.heads.folder));
+  }
   refuse_other_key(key_path_for(options.database, {}), key);
   if (!is_there(options.database)) {
     require_free_name(options);

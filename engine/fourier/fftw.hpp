@@ -2,6 +2,7 @@
 /// engine/fourier.
 #pragma once
 
+#include <atomic>
 #include <complex>
 #include <cstddef>
 #include <functional>
@@ -61,6 +62,12 @@ inline std::mutex& planner_mutex() {
   return mutex;
 }
 
+/// Whether FFTW lacked memory once: its planner was left in the middle then, and plans no more.
+inline std::atomic<bool>& lacked_memory() {
+  static std::atomic<bool> lacked{false};
+  return lacked;
+}
+
 /// Memory that starts at a cache line, as all plans expect. Its content is undefined at first.
 template <typename Element>
 class FftwBuffer {
@@ -82,21 +89,6 @@ class FftwBuffer {
   Element* elements_;
 };
 
-/// Asks for the memory that FFTW is about to need for planes of these sides: it ends the program if
-/// it finds none. What is freed here stays with the thread. The numbers are twice what the worst
-/// sides up to 100,000 needed.
-/// \throws std::bad_alloc
-inline void ask_memory_to_plan(int height, int width) {
-  constexpr std::size_t kFixed = std::size_t{3} << 20U;
-  constexpr std::size_t kOfSide = 128;
-  const FftwBuffer<std::byte> asked(kFixed + kOfSide * static_cast<std::size_t>(height + width));
-}
-inline void ask_memory_to_execute(int height, int width) {
-  constexpr std::size_t kFixed = std::size_t{1} << 19U;
-  constexpr std::size_t kOfSide = 128;
-  const FftwBuffer<std::byte> asked(kFixed + kOfSide * static_cast<std::size_t>(height + width));
-}
-
 /// std::complex<Real> is laid out as FFTW's pair of reals (C++ standard, [complex.numbers]).
 template <typename Real>
 [[nodiscard]] typename Fftw<Real>::Complex* as_fftw(std::complex<Real>* numbers) noexcept {
@@ -114,15 +106,15 @@ class FftwPlans {
   using Make = std::function<std::vector<Plan>()>;
 
   /// \param name  of these plans among all of this precision
-  /// \param height,width  of the plane
-  /// \throws std::bad_alloc if there is no memory for them
+  /// \param samples  that are transformed
+  /// \throws std::bad_alloc if FFTW lacks memory, or did before
   /// \throws std::invalid_argument if FFTW has no such plan
-  FftwPlans(const std::string& name, int height, int width, const Make& make) {
+  FftwPlans(const std::string& name, std::size_t samples, const Make& make) {
     const std::lock_guard lock(planner_mutex());
-    const bool keep = is_small(height, width);
+    const bool keep = samples <= kKeptUpToSamples;
     if (keep) plans_ = kept()[name];
     if (plans_) return;
-    ask_memory_to_plan(height, width);
+    if (lacked_memory()) throw std::bad_alloc();
     plans_ = std::make_shared<Plans>(make());
     // Otherwise plans would depend on the order in which transforms are created.
     Fftw<Real>::forget();
@@ -140,11 +132,6 @@ class FftwPlans {
   FftwPlans& operator=(const FftwPlans&) = delete;
 
   [[nodiscard]] Plan operator[](std::size_t index) const noexcept { return plans_->all[index]; }
-
-  /// Whether plans of such planes are kept.
-  [[nodiscard]] static bool is_small(int height, int width) noexcept {
-    return static_cast<std::size_t>(height) * static_cast<std::size_t>(width) <= kKeptUpToSamples;
-  }
 
  private:
   static constexpr std::size_t kKeptUpToSamples = 4096;

@@ -52,7 +52,8 @@ struct PlaneFilter<Real>::State {
         // A line more than rows: the same row of all blocks should not fall on one place of caches.
         stride(blocks.block_size() + kLanes),
         spectrum(blocks.count() * stride),
-        plans(std::to_string(rows) + 'x' + std::to_string(columns) + "-filter", rows, columns,
+        plans(std::to_string(rows) + 'x' + std::to_string(columns) + "-filter",
+              static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns),
               [this] { return make_plans(); }) {}
 
   /// Transformed columns are contiguous: FFTW then needs no buffer of its own.
@@ -102,7 +103,7 @@ const ColumnBlocks<Real>& PlaneFilter<Real>::blocks() const noexcept {
 
 template <typename Real>
 void PlaneFilter<Real>::write_rows(int y, const Real* upper, const Real* lower,
-                                   Workspace& workspace) noexcept {
+                                   Workspace& workspace) {
   const auto width = static_cast<std::size_t>(state_->blocks.width);
   std::complex<Real>* const samples = workspace.buffers_->samples.data();
   std::complex<Real>* const spectrum = workspace.buffers_->spectrum.data();
@@ -114,7 +115,7 @@ void PlaneFilter<Real>::write_rows(int y, const Real* upper, const Real* lower,
 
 template <typename Real>
 void PlaneFilter<Real>::read_rows(int y, Real scale, Real* upper, Real* lower,
-                                  Workspace& workspace) const noexcept {
+                                  Workspace& workspace) const {
   const auto width = static_cast<std::size_t>(state_->blocks.width);
   std::complex<Real>* const samples = workspace.buffers_->samples.data();
   std::complex<Real>* const spectrum = workspace.buffers_->spectrum.data();
@@ -129,7 +130,6 @@ template <typename Real>
 void PlaneFilter<Real>::filter_columns(std::size_t block, std::span<const Real> factors) {
   std::complex<Real>* const columns = state_->spectrum.data() + block * state_->stride;
   const std::size_t count = state_->blocks.block_size();
-  ask_memory_to_execute(state_->blocks.height, state_->blocks.width);
   const FftwBuffer<std::complex<Real>> transformed(count);
   std::complex<Real>* const coefficients = transformed.data();
   Fftw<Real>::transform(state_->plans[columns_forward], as_fftw(columns), as_fftw(coefficients));

@@ -3,6 +3,7 @@
 #include "engine/fourier/fftw.hpp"
 
 #include <cstddef>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -10,12 +11,10 @@ namespace touchtrial::engine {
 
 template <typename Real>
 struct RealFft<Real>::State {
-  State(int rows, int columns)
-      : height(rows),
-        width(columns),
-        plane(static_cast<std::size_t>(height) * static_cast<std::size_t>(width)),
+  State(int height, int width)
+      : plane(static_cast<std::size_t>(height) * static_cast<std::size_t>(width)),
         spectrum(static_cast<std::size_t>(height) * static_cast<std::size_t>(width / 2 + 1)),
-        plans(std::to_string(height) + 'x' + std::to_string(width), height, width, [this] {
+        plans(std::to_string(height) + 'x' + std::to_string(width), plane.span().size(), [=, this] {
           auto* const coefficients = as_fftw(spectrum.data());
           return std::vector{Fftw<Real>::plan_real_forward(height, width, plane.data(),
                                                            coefficients, kPlannerFlags),
@@ -23,13 +22,6 @@ struct RealFft<Real>::State {
                                                            plane.data(), kPlannerFlags)};
         }) {}
 
-  /// Small transforms need next to no memory of their own, and are many.
-  void ask_memory() const {
-    if (!FftwPlans<Real>::is_small(height, width)) ask_memory_to_execute(height, width);
-  }
-
-  int height;
-  int width;
   FftwBuffer<Real> plane;
   FftwBuffer<std::complex<Real>> spectrum;
   FftwPlans<Real> plans;  // forward, inverse
@@ -53,16 +45,29 @@ std::span<std::complex<Real>> RealFft<Real>::spectrum() noexcept {
 
 template <typename Real>
 void RealFft<Real>::forward() {
-  state_->ask_memory();
   Fftw<Real>::real_forward(state_->plans[0], state_->plane.data(),
                            as_fftw(state_->spectrum.data()));
 }
 
 template <typename Real>
 void RealFft<Real>::inverse() {
-  state_->ask_memory();
   Fftw<Real>::real_inverse(state_->plans[1], as_fftw(state_->spectrum.data()),
                            state_->plane.data());
+}
+
+// FFTW's libraries call these, in place of their own of the same names, where they find no memory
+// to plan or to execute. Their own end the program.
+extern "C" [[gnu::visibility("default")]] void fftw_assertion_failed(const char* /*what*/,
+                                                                     int /*line*/,
+                                                                     const char* /*file*/) {
+  lacked_memory() = true;
+  throw std::bad_alloc();
+}
+extern "C" [[gnu::visibility("default")]] void fftwf_assertion_failed(const char* /*what*/,
+                                                                      int /*line*/,
+                                                                      const char* /*file*/) {
+  lacked_memory() = true;
+  throw std::bad_alloc();
 }
 
 template class RealFft<float>;

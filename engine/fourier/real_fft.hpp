@@ -27,11 +27,11 @@ class RealFft {
   [[nodiscard]] std::span<std::complex<Real>> spectrum() noexcept;
 
   /// plane -> spectrum, unscaled; the plane keeps its values.
-  /// \throws std::bad_alloc if FFTW would lack memory
+  /// \throws std::bad_alloc if FFTW lacks memory
   void forward();
   /// spectrum -> plane, unscaled: forward and inverse multiply by height * width. Destroys the
   /// spectrum.
-  /// \throws std::bad_alloc if FFTW would lack memory
+  /// \throws std::bad_alloc if FFTW lacks memory
   void inverse();
 
  private:

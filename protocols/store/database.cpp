@@ -188,6 +188,8 @@ std::string explanation(int code, const std::string& message) {
     case SQLITE_CANTOPEN:
       return "cannot be opened; check that its folder exists and may be written, and no -wal file "
              "was left beside it";
+    case SQLITE_NOMEM:
+      return "there is not enough memory to read it; close other programs";
     case SQLITE_IOERR:
       return "reading or writing failed (" + message + "); check the disk";
     default:

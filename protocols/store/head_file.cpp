@@ -326,9 +326,7 @@ void HeadFile::update(const Signer& signer, const HeadChange& change,
     for (int i = 0; i < kTries; ++i) {
       if (overwrite(signer, change, signers) || create(signer, change)) return;
     }
-    refuse_head(path_,
-                "can be neither opened nor made; if it is a link that leads nowhere, "
-                "remove it");
+    refuse_head(path_, "can be neither opened nor made, because another program keeps removing it");
   } catch (const FileError& error) {
     throw StoreError(error.what());
   }

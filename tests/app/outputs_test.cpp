@@ -331,3 +331,19 @@ TEST_CASE("settings are not written through a link") {
   workshop.done("report @cloths.db --key @moved.key");
   CHECK_FALSE(is_there(workshop.path() / "target"));
 }
+
+TEST_CASE("a run that is refused leaves nothing: no database, no pack, no head") {
+  const StudyFolder study;
+  const auto before = names_below(study.path());
+  for (const std::string refused :
+       {"--subject @none.json", "--subject @quick.json --on nosuchdevice",
+        "--subject @quick.json --visit 3", "--subject @quick.json --heads @nowhere",
+        "--subject @quick.json --db @nowhere/s.db"}) {
+    INFO(refused);
+    const std::string db = refused.find("--db") == std::string::npos ? " --db @s.db " : " ";
+    const ProgramResult result =
+        study.type("run @cloths.json --participant P01 --headless" + db + refused);
+    CHECK(result.exit_code > 0);
+    CHECK(names_below(study.path()) == before);
+  }
+}
