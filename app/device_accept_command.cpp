@@ -4,10 +4,12 @@
 #include "app/console.hpp"
 #include "app/device_accept_page.hpp"
 #include "app/device_words.hpp"
+#include "app/force_flag.hpp"
 #include "app/sound/sound_accelerometer.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "core/text.hpp"
 #include "core/version.hpp"
 #include "device/acceptance/accelerometer.hpp"
@@ -96,12 +98,6 @@ std::pair<std::string, std::string> record_words(const std::string& record) {
   return {record.substr(0, equals), record.substr(equals + 1)};
 }
 
-/// Where a file is kept that is replaced.
-fs::path kept_name(fs::path file) {
-  file += ".old";
-  return file;
-}
-
 /// Called before the device is opened, so that no work is lost at the end.
 /// \param name  of the certificate, without its ending, unless the arguments name one
 /// \throws UsageError if the certificate would not be a .json file, or a file that this very
@@ -131,21 +127,9 @@ AcceptanceFiles files_to_write(const AcceptArguments& arguments, const std::stri
                        ": is read by this acceptance, which would replace it; name another place "
                        "with --certificate");
     }
-    for (const fs::path& replaced : {*file, kept_name(*file)}) {
-      if (fs::exists(replaced, ignored) && !fs::is_regular_file(replaced, ignored)) {
-        throw FileError(
-            one_line(replaced.string()) +
-            ": is no file that could be replaced; name another place with --certificate");
-      }
-    }
-    // What is there will be kept.
-    if (is_there(*file)) static_cast<void>(read_file(*file));
+    require_output_place(*file);
     // Writing is the only proof that it can be written.
-    fs::path trial = fs::weakly_canonical(*file, ignored);
-    if (trial.empty()) trial = *file;
-    trial += ".trial";
-    replace_file(trial, "");
-    fs::remove(trial, ignored);
+    const Draft trial(*file, Draft::Kind::file);
   }
   return files;
 }
@@ -160,11 +144,12 @@ bool is_no_loss(const fs::path& certificate) {
   }
 }
 
-/// Keeps what is about to be replaced.
-void keep_old(const AcceptanceFiles& files) {
+/// Keeps a certificate that sessions may rest on, and what lies beside it.
+void keep_earlier(const AcceptanceFiles& files) {
   if (is_there(files.certificate) && is_no_loss(files.certificate)) return;
   for (const fs::path* const file : files.all()) {
-    if (is_there(*file)) replace_file(kept_name(*file), text_of(read_file(*file)));
+    if (!is_there(*file)) continue;
+    spdlog::warn("{}: is kept as {}", file->string(), keep_aside(*file).string());
   }
 }
 
@@ -187,10 +172,10 @@ int write_results(const AcceptArguments& arguments, const AcceptanceFiles& files
   device::DeviceModel model = device::model_of(certificate, info);
   if (!certificate.emulated.empty()) model.name = emulated_word(certificate.emulated);
   const std::string json = device::certificate_json(certificate);
-  keep_old(files);
-  replace_file(files.certificate, json);
-  replace_file(files.page, acceptance_page(acceptance));
-  replace_file(files.model, device::device_model_json(model));
+  keep_earlier(files);
+  write_output(files.certificate, json);
+  write_output(files.page, acceptance_page(acceptance));
+  write_output(files.model, device::device_model_json(model));
   if (arguments.json) {
     print(json);
   } else {
@@ -336,6 +321,7 @@ void add_device_accept_command(CLI::App& device, Action& action) {
   add_settings_option(*command, arguments->settings);
   command->add_option("--certificate", arguments->certificate,
                       "Certificate to write (default: NAME-certificate.json)");
+  add_force_flag(*command);
   command->add_option("--skip", arguments->skip, "Step to leave out; may be repeated")
       ->allow_extra_args(false)
       ->check(CLI::IsMember(std::vector<std::string>(device::kAcceptanceSteps.begin(),

@@ -3,8 +3,8 @@
 #include "app/acceptance_terminal.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "core/draft.hpp"
 #include "core/errors.hpp"
-#include "core/files.hpp"
 #include "core/version.hpp"
 #include "device/bring_up/bring_up.hpp"
 #include "device/registry.hpp"
@@ -190,6 +190,7 @@ int bring_up_device(const BringUpArguments& arguments) {
   }
   const fs::path out =
       arguments.out.empty() ? fs::path(arguments.driver + "-bring-up.json") : arguments.out;
+  refuse_link(out);
   if (is_there(out)) {
     throw FileError(one_line(out.string()) +
                     ": is there already; name another file with --out, or move it away");

@@ -4,9 +4,10 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/device_words.hpp"
+#include "app/force_flag.hpp"
 #include "app/test_texture.hpp"
 #include "core/errors.hpp"
-#include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "device/haptic_device.hpp"
 #include "device/mouse/mouse_device.hpp"
 #include "device/platform/realtime.hpp"
@@ -275,6 +276,8 @@ int outcome_of(const DeviceTest& test, const AttendedRun& run) {
 }
 
 int test_device(const TestArguments& arguments) {
+  require_output_place(record_path(arguments));
+  if (!arguments.screenshot.empty()) require_output_place(arguments.screenshot);
   const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   DeviceForTest tested(arguments, settings);
   AttendedRun run(tested.opened(), tested.device(), tested.limits(), arguments.rate_hz);
@@ -292,11 +295,11 @@ int test_device(const TestArguments& arguments) {
   test.quit = run.stop() == AttendedStop::quit;
   if (test.run && test.run->end == device::ServoEnd::fault && run.stop() != AttendedStop::signal) {
     test.fault_record = record_path(arguments);
-    replace_file(test.fault_record, run.flight_record());
+    write_output(test.fault_record, run.flight_record());
   }
   if (ReadingsWindow* const window = tested.opened().window();
       window != nullptr && test.run && !arguments.screenshot.empty()) {
-    replace_file(arguments.screenshot, engine::png_bytes(window->window().picture()));
+    write_output(arguments.screenshot, engine::png_bytes(window->window().picture()));
   }
   print(arguments.json ? test_json(test) : test_text(test));
   return outcome_of(test, run);
@@ -325,6 +328,7 @@ void add_device_test_command(CLI::App& device, Action& action) {
   command
       ->add_option("--screenshot", arguments->screenshot, "Write the window's last picture as PNG")
       ->needs(window);
+  add_force_flag(*command);
   add_json_flag(*command, arguments->json);
   command->add_option("--fault-record", arguments->fault_record,
                       "CSV file for the last seconds before a fault (default: "

@@ -6,6 +6,7 @@
 #include "analysis/results.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/force_flag.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "protocols/store/personal_data.hpp"
@@ -189,6 +190,7 @@ void add_export_command(CLI::App& program, Action& action) {
   command->add_option("-o,--out", arguments->folder, "Folder to write into")
       ->check(place_validator())
       ->required();
+  add_force_flag(*command);
   add_key_option(*command, arguments->key);
   CLI::Option* participant = command->add_option(
       "--participant", arguments->participant,

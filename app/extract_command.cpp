@@ -1,11 +1,13 @@
 // extract: the texture of one image, with every stage on request.
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/force_flag.hpp"
 #include "app/given_pictures.hpp"
 #include "app/method_arguments.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/npy.hpp"
+#include "core/outputs.hpp"
 #include "engine/extraction.hpp"
 #include "engine/force_field.hpp"
 #include "engine/image_file.hpp"
@@ -59,6 +61,15 @@ void dump_force(const fs::path& folder, const engine::ForceField<Real>& force) {
   }
   write_npy<Real>(folder / "force_tangential.npy", interleaved,
                   {force.x.height(), force.x.width(), 2});
+}
+
+/// Before the work: the places of all planes that a method may have.
+void require_dump_places(const fs::path& folder) {
+  for (const char* name : {"image", "subband_LL", "subband_LH", "subband_HL", "subband_HH", "csgv",
+                           "order", "enhanced", "cartoon", "texture", "texture_u8",
+                           "force_tangential"}) {
+    require_output_place(folder / (std::string(name) + ".npy"));
+  }
 }
 
 /// Writes all planes, and frees those except texture, picture and force.
@@ -161,7 +172,7 @@ int extract_with(const ExtractArguments& arguments, const engine::ExtractionOpti
   return 0;
 }
 
-/// Refuses an output that is not a PNG, or that is the input.
+/// Refuses an output that is not a PNG, that is the input, or that is in another's place.
 void check_output(const fs::path& image, const fs::path& output, const std::string& option) {
   if (output.empty()) return;
   std::error_code ignored;
@@ -173,11 +184,13 @@ void check_output(const fs::path& image, const fs::path& output, const std::stri
     throw UsageError("extract: " + output.string() +
                      ": pictures are written as PNG; give a name that ends in .png");
   }
+  require_output_place(output);
 }
 
 int extract(const CLI::App& command, const ExtractArguments& arguments) {
   check_output(arguments.image, arguments.output, "-o");
   check_output(arguments.image, arguments.arrows, "--arrows");
+  if (!arguments.dump.empty()) require_dump_places(arguments.dump);
   const engine::ExtractionOptions options = extraction_options(command, arguments.method);
   if (arguments.neighbourhood % 2 == 0) {
     throw UsageError("extract: --neighbourhood is a side length and must be odd, 3 or more");
@@ -204,6 +217,7 @@ void add_extract_command(CLI::App& program, Action& action) {
                       "Draw the force field over an enlarged patch, as PNG");
   command->add_option("--dump", arguments->dump,
                       "Write every stage as .npy files into this folder");
+  add_force_flag(*command);
   command->add_option("--precision", arguments->precision, "Precision of the extraction")
       ->check(CLI::IsMember({"float", "double"}))
       ->capture_default_str();

@@ -7,9 +7,10 @@
 #include "analysis/text_figures.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/force_flag.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
-#include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "protocols/design/protocol.hpp"
@@ -82,15 +83,6 @@ planning::FitOrigin origin_of(const FitArguments& arguments, const design::Study
   return origin;
 }
 
-bool is_subject_file(const fs::path& path) {
-  try {
-    static_cast<void>(simulation::load_subject_model(path));
-    return true;
-  } catch (const std::exception&) {
-    return false;
-  }
-}
-
 /// Whether two paths name the same file, which need not exist yet.
 bool same_file(const fs::path& one, const fs::path& other) {
   std::error_code error;
@@ -99,7 +91,7 @@ bool same_file(const fs::path& one, const fs::path& other) {
   return !error && whole == fs::weakly_canonical(other, error);
 }
 
-/// Refuses an output that would replace anything but a subject file.
+/// Refuses an output that would replace an input, or what another wrote.
 void refuse_to_replace(const FitArguments& arguments) {
   if (arguments.out.empty()) return;
   const std::string place = "fit: -o " + one_line(arguments.out.string());
@@ -113,18 +105,14 @@ void refuse_to_replace(const FitArguments& arguments) {
   if (std::ranges::any_of(inputs, is_out)) {
     throw UsageError(place + ": is one of the inputs; name another file");
   }
-  std::error_code error;
-  const fs::file_status status = fs::symlink_status(arguments.out, error);
-  if (status.type() != fs::file_type::not_found && !is_subject_file(arguments.out)) {
-    throw UsageError(place + ": exists, and is not a subject file; name another file");
-  }
+  require_output_place(arguments.out);
 }
 
 /// Prints the report first: a failure to write the file must not lose it.
 void finish(const FitArguments& arguments, const simulation::SubjectModel& fitted,
             const std::string& report) {
   print(report);
-  if (!arguments.out.empty()) replace_file(arguments.out, simulation::subject_model_json(fitted));
+  if (!arguments.out.empty()) write_output(arguments.out, simulation::subject_model_json(fitted));
 }
 
 /// Shows a share of the work on a progress bar.
@@ -257,6 +245,7 @@ void add_fit_command(CLI::App& program, Action& action) {
   CLI::Option* key = add_key_option(*command, arguments->key);
   CLI::Option* pack = command->add_option("--pack", arguments->pack, "Pack of the study");
   command->add_option("-o,--out", arguments->out, "Subject file to write");
+  add_force_flag(*command);
   command
       ->add_option("--fix", arguments->fixed,
                    "Parameters that keep the subject model's values: feature_noise, lapse, "

@@ -5,6 +5,7 @@
 #include "app/console.hpp"
 #include "app/passphrases.hpp"
 #include "app/study_inputs.hpp"
+#include "core/draft.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/design/key_protection.hpp"
@@ -36,6 +37,7 @@ struct KeyArguments {
 };
 
 void refuse_existing_secret(const fs::path& output) {
+  refuse_link(output);
   if (!is_there(output)) return;
   throw UsageError(one_line(output.string()) + ": exists already; give another name with --out");
 }

@@ -20,6 +20,7 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -141,6 +142,14 @@ int parse_and_run(int argc, char** argv) {
   return action();
 }
 
+/// Whether a thread could not be started, which needs memory for its stack. oneTBB says it in words
+/// alone.
+bool lacks_a_thread(const std::exception& error) {
+  const auto* const of_system = dynamic_cast<const std::system_error*>(&error);
+  return (of_system != nullptr && of_system->code() == std::errc::resource_unavailable_try_again) ||
+         std::string_view(error.what()).starts_with("pthread_create has failed");
+}
+
 /// Runs one command, and reports any error as one line on standard error.
 /// \return 0 done, 1 failed, 2 bad arguments or bad study file, 3 verification failed, kClosedPipe
 ///   (without a line) if nobody reads the output any more
@@ -161,7 +170,10 @@ int run_program(int argc, char** argv) noexcept {
     return complain(kFailed,
                     "there is not enough memory; close other programs or use smaller images");
   } catch (const std::exception& error) {
-    return complain(kFailed, error.what());
+    return complain(kFailed, lacks_a_thread(error)
+                                 ? "there is not enough memory for the program's threads, or too "
+                                   "many threads run; close other programs, or give fewer --jobs"
+                                 : error.what());
   }
 }
 

@@ -5,6 +5,7 @@
 #include "app/new_study_template.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "device/registry.hpp"
@@ -421,7 +422,7 @@ int write_new_study(NewArguments arguments) {
     import_pictures(arguments, study);
   }
   add_practice(study, arguments.size_px);
-  replace_file(study.file, study_text(arguments, study));
+  write_output(study.file, study_text(arguments, study));
   static_cast<void>(design::load_study(study.file));
   made.keep();
   print(next_steps(arguments, study));

@@ -3,9 +3,11 @@
 #include "analysis/paper/paper_document.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/force_flag.hpp"
 #include "app/given_pictures.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "engine/metrics/ssim.hpp"
 #include "stimuli/generator.hpp"
 
@@ -18,7 +20,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace touchtrial::app {
 namespace {
@@ -67,14 +68,6 @@ PaperImages generated_pictures(stimuli::StimulusKind kind) {
   return pictures;
 }
 
-/// Whether the folder's numbers are an earlier output of this command.
-bool is_own_output(const fs::path& folder) {
-  if (!is_there(folder / kNumbers)) return false;
-  const Bytes bytes = read_file(folder / kNumbers);
-  const auto json = nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false);
-  return json.is_object() && json.contains("command") && json["command"] == "paper";
-}
-
 /// The names of all files that the command writes, drawn or not.
 std::vector<std::string> names_of_output() {
   return {"paper.md",
@@ -86,17 +79,11 @@ std::vector<std::string> names_of_output() {
           "images/paper-methods.svg"};
 }
 
-void refuse_files_of_others(const fs::path& folder) {
+void require_places(const fs::path& folder) {
   if (is_there(folder) && !fs::is_directory(folder)) {
     throw FileError(one_line(folder.string()) + ": is no folder; choose another with --out");
   }
-  if (is_own_output(folder)) return;
-  for (const std::string& name : names_of_output()) {
-    if (!is_there(folder / name)) continue;
-    throw FileError(one_line((folder / name).string()) +
-                    ": exists already, and `touchtrial paper` did not write it; choose another "
-                    "folder with --out, or move the file");
-  }
+  for (const std::string& name : names_of_output()) require_output_place(folder / name);
 }
 
 /// Fig. 3, without an SVG if gnuplot cannot draw it.
@@ -119,16 +106,16 @@ analysis::Picture drawn_sweep(const analysis::PaperMeasures& measures) {
 void write_paper(const fs::path& folder, const analysis::Document& document,
                  const std::vector<analysis::Picture>& pictures, const std::string& numbers) {
   make_folder(folder / "images");
-  replace_file(folder / kNumbers, numbers);
+  write_output(folder / kNumbers, numbers);
   for (const analysis::Picture& one : pictures) {
-    if (!one.svg.empty()) replace_file(folder / "images" / (one.id + ".svg"), one.svg);
+    if (!one.svg.empty()) write_output(folder / "images" / (one.id + ".svg"), one.svg);
   }
-  replace_file(folder / "paper.md", analysis::document_markdown(document, "images"));
-  replace_file(folder / "paper.html", analysis::page_html(document));
+  write_output(folder / "paper.md", analysis::document_markdown(document, "images"));
+  write_output(folder / "paper.html", analysis::page_html(document));
 }
 
 int make_paper(const PaperArguments& arguments) {
-  refuse_files_of_others(arguments.folder);
+  require_places(arguments.folder);
   const bool own = arguments.images.empty();
   const PaperImages pictures =
       own ? generated_pictures(stimuli::StimulusKind::texture) : pictures_in(arguments.images);
@@ -162,6 +149,7 @@ void add_paper_command(CLI::App& program, Action& action) {
       ->add_option("-o,--out", arguments->folder,
                    "Folder for paper.html, paper.md, the pictures and paper.json")
       ->required();
+  add_force_flag(*command);
   command->callback([=, &action] { action = [=] { return make_paper(*arguments); }; });
 }
 

@@ -1,8 +1,10 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
+#include "core/draft.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/session/commitment.hpp"
@@ -35,6 +37,7 @@ int preregister(const PreregArguments& arguments) {
         ": is not prepared; run `touchtrial prepare` first, or name the pack and the key "
         "with --pack and --key");
   }
+  refuse_link(arguments.output);
   if (!arguments.output.empty() && is_there(arguments.output)) {
     throw UsageError(arguments.output.string() +
                      ": exists already and may have been deposited; choose another name");
@@ -52,7 +55,7 @@ int preregister(const PreregArguments& arguments) {
   if (arguments.output.empty()) {
     print(page);
   } else {
-    replace_file(arguments.output, page);
+    write_output(arguments.output, page);
   }
   return 0;
 }

@@ -2,6 +2,7 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/experimenter/experimenter_desk.hpp"
+#include "app/force_flag.hpp"
 #include "app/participant/preview_screens.hpp"
 #include "app/participant/screen.hpp"
 #include "app/run/run_session.hpp"
@@ -9,6 +10,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/nearest_name.hpp"
+#include "core/outputs.hpp"
 #include "core/text.hpp"
 #include "engine/pictures/colour_image.hpp"
 
@@ -115,21 +117,25 @@ class Preview {
 
   void draw() {
     const bool is_one = !arguments_.screen.empty();
+    const std::size_t end = is_one ? first_ + 1 : screens_.size();
+    const auto file_of = [&](const PreviewScreen& screen) {
+      return is_one ? arguments_.png : arguments_.png / (screen.name + ".png");
+    };
+    const fs::path console =
+        (is_one ? arguments_.png.parent_path() : arguments_.png) / "console.png";
+    for (std::size_t i = first_; i < end; ++i) require_output_place(file_of(screens_[i]));
+    if (arguments_.console) require_output_place(console);
     if (!is_one) make_folder(arguments_.png);
-    for (std::size_t i = first_; i < (is_one ? first_ + 1 : screens_.size()); ++i) {
+    for (std::size_t i = first_; i < end; ++i) {
       present(screens_[i]);
       require_shown();
-      const fs::path file = is_one ? arguments_.png : arguments_.png / (screens_[i].name + ".png");
-      write(file, window_.picture());
+      write(file_of(screens_[i]), window_.picture());
     }
-    if (arguments_.console) {
-      write((is_one ? arguments_.png.parent_path() : arguments_.png) / "console.png",
-            window_.console_picture());
-    }
+    if (arguments_.console) write(console, window_.console_picture());
   }
 
   static void write(const fs::path& file, const engine::ColourImage& picture) {
-    replace_file(file, engine::png_bytes(picture));
+    write_output(file, engine::png_bytes(picture));
     print(file.string() + "\n");
   }
 
@@ -196,6 +202,7 @@ void add_preview_command(CLI::App& program, Action& action) {
   command->add_option("--png", arguments->png,
                       "Write the screen to this PNG file, or without --screen every screen to this "
                       "folder");
+  add_force_flag(*command);
   command->add_flag("--mouse", arguments->mouse, "As with the device mouse");
   command->add_flag("--console", arguments->console,
                     "The experimenter's window too; with --png as console.png beside the others");

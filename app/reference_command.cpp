@@ -2,9 +2,11 @@
 // as --help.
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/force_flag.hpp"
 #include "app/reference/pages.hpp"
 #include "app/shipped_files.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "device/registry.hpp"
 #include "engine/extraction_options.hpp"
 
@@ -26,8 +28,8 @@ int write_reference(const CLI::App& program, const fs::path& folder) {
   for (const CLI::App* command : every_command(program)) {
     const std::string words = words_of(*command, "-");
     const std::string name = command == &program ? "index" : words.substr(words.find('-') + 1);
-    replace_file(folder / "man" / (words + ".1"), page_of(*command, PageFormat::man));
-    replace_file(folder / "commands" / (name + ".md"), page_of(*command, PageFormat::markdown));
+    write_output(folder / "man" / (words + ".1"), page_of(*command, PageFormat::man));
+    write_output(folder / "commands" / (name + ".md"), page_of(*command, PageFormat::markdown));
   }
   return 0;
 }
@@ -106,6 +108,7 @@ void add_reference_command(CLI::App& program, Action& action) {
   reference->group("");
   CLI::Option* out = reference->add_option("--out", *folder, "Folder");
   reference->add_flag("--table", *is_table, "Print the table instead")->excludes(out);
+  add_force_flag(*reference);
   reference->callback([=, &program, &action] {
     if (out->count() == 0 && !*is_table) throw CLI::RequiredError("--out or --table");
     action = [=, &program] {

@@ -7,6 +7,7 @@
 #include "analysis/results.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/force_flag.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -173,6 +174,7 @@ void add_report_command(CLI::App& program, Action& action) {
                                             "tables as Markdown and LaTeX, the figures "
                                             "as SVG and PDF, and results.json");
   folder->check(place_validator())->excludes(json);
+  add_force_flag(*command);
   command
       ->add_option(
           "--cues", arguments->cues,

@@ -4,14 +4,18 @@
 #include "app/console.hpp"
 #include "app/heads.hpp"
 #include "app/study_inputs.hpp"
+#include "core/draft.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/session/commitment.hpp"
+#include "protocols/store/head_file.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <chrono>
+#include <optional>
+#include <system_error>
 
 #include <nlohmann/json.hpp>
 
@@ -27,6 +31,17 @@ void refuse_existing(const std::filesystem::path& path) {
   }
 }
 
+/// Puts a head file in the place of that of a database that is gone.
+void put_beside(const std::filesystem::path& made, const std::filesystem::path& place) {
+  refuse_link(place);
+  std::error_code error;
+  std::filesystem::rename(made, place, error);
+  if (error) {
+    throw StoreError(one_line(place.string()) + ": cannot be written (" + error.message() +
+                     "); check the folder and its permissions");
+  }
+}
+
 /// Simulated studies need no blinding, unless the blind phase itself is rehearsed.
 void end_collection(store::StudyStore& store) {
   store.close_study(0ns);
@@ -36,6 +51,7 @@ void end_collection(store::StudyStore& store) {
 }  // namespace
 
 simulation::SimulationReport simulate_study(const StudyToSimulate& wanted) {
+  refuse_link(wanted.database);
   refuse_existing(wanted.database);
   const design::Study study = design::load_study(wanted.study);
   const simulation::SubjectModel subject = subject_for(wanted.subject, study, wanted.on);
@@ -44,13 +60,19 @@ simulation::SimulationReport simulate_study(const StudyToSimulate& wanted) {
   refuse_other_key(key_file, key);
   prepare_simulated_pack(key);
   const engine::Pack pack(key.pack_folder);
-  store::StudyStore store = store::StudyStore::create(
-      wanted.database, session::commitment_of(key, pack, true, false), 0ns, key.signer());
-  design::save_study_key(key_file, key);
+  const Draft draft(wanted.database, Draft::Kind::folder);
+  const std::filesystem::path made = draft.path() / wanted.database.filename();
+  std::optional<store::StudyStore> store = store::StudyStore::create(
+      made, session::commitment_of(key, pack, true, false), 0ns, key.signer());
   const simulation::SimulationReport report = simulation::simulate_study(
-      key, pack, subject, wanted.options, store, progress_bar("simulating"));
-  if (!wanted.keep_blind) end_collection(store);
-  make_head(store, wanted.database, key.signer());
+      key, pack, subject, wanted.options, *store, progress_bar("simulating"));
+  if (!wanted.keep_blind) end_collection(*store);
+  make_head(*store, made, key.signer());
+  store.reset();  // closes it, so that nothing lies beside it
+  design::save_study_key(key_file, key);
+  // After the others: a database that is there is whole.
+  put_beside(store::head_path_for(made), store::head_path_for(wanted.database));
+  if (!move_to_free_name(made, wanted.database)) refuse_existing(wanted.database);
   return report;
 }
 

@@ -1,6 +1,7 @@
 // stimuli: pictures for studies, which the program generates or imports from photographs.
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/force_flag.hpp"
 #include "app/given_pictures.hpp"
 #include "core/errors.hpp"
 #include "core/text.hpp"
@@ -158,7 +159,7 @@ void add_picture_options(CLI::App& command, stimuli::ImportOptions& options) {
   add_seed_option(command, options.seed, "Seed of the crops and the study's schedules");
   command.add_option("--licence", options.licence, "Licence of the photographs, for the manifest");
   command.add_option("--source", options.source, "Source of the photographs, for the manifest");
-  command.add_flag("--force", options.replace, "Replace the files of an earlier import");
+  add_force_flag(command)->each([&options](const std::string&) { options.replace = true; });
 }
 
 void add_import_command(CLI::App& stimuli, Action& action) {
@@ -188,6 +189,7 @@ void add_generate_command(CLI::App& stimuli, Action& action) {
       "generate",
       "Make the default pictures: textures, objects, their materials, practice pictures, flat");
   command->add_option("-o,--out", arguments->folder, "Folder to write into")->capture_default_str();
+  add_force_flag(*command);
   add_seed_option(*command, arguments->choice.seed, "Seed of the pictures");
   add_count_option(*command, "--size", arguments->choice.size_px, "Side of a picture, pixels",
                    stimuli::kMinStimulusSizePx, stimuli::kMaxStimulusSizePx);

@@ -3,9 +3,11 @@
 #include "analysis/sheet/stimulus_sheet.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/force_flag.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "protocols/design/prepare.hpp"
 
 #include <algorithm>
@@ -67,6 +69,7 @@ void check_output(const SheetArguments& arguments, const design::Study& study,
   for (const design::StudyClass& one : study.classes) {
     for (const fs::path& image : one.images) refuse_input(arguments.output, study.folder / image);
   }
+  require_output_place(arguments.output);
 }
 
 /// How strong each stimulus is on the study's device, and the blank plane beside it.
@@ -98,7 +101,7 @@ int draw_sheet(const SheetArguments& arguments) {
   analysis::StimulusSheet sheet = analysis::make_stimulus_sheet(key, engine::Pack(place.pack),
                                                                 side_px, progress_bar("drawing"));
   add_levels(key, place.pack, sheet);
-  replace_file(arguments.output, analysis::sheet_html(sheet), FileMode::owner_only);
+  write_output(arguments.output, analysis::sheet_html(sheet), FileMode::owner_only);
   print("sheet " + arguments.output.string() +
         " (it unblinds everybody who reads it; keep it with the key)\n");
   return 0;
@@ -114,6 +117,7 @@ void add_stimuli_sheet_command(CLI::App& stimuli, Action& action) {
   command->add_option("-o,--output", arguments->output, "HTML file to write")->required();
   add_key_option(*command, arguments->key, "Key of the study (default: beside the pack)");
   add_pack_option(*command, arguments->pack);
+  add_force_flag(*command);
   command->callback([=, &action] { action = [=] { return draw_sheet(*arguments); }; });
 }
 

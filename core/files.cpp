@@ -1,5 +1,6 @@
 #include "core/files.hpp"
 
+#include "core/draft.hpp"
 #include "core/errors.hpp"
 
 #include <cerrno>
@@ -26,47 +27,33 @@ namespace {
 class Descriptor {
  public:
   explicit Descriptor(int number) noexcept : number_(number) {}
-  ~Descriptor() { close(); }
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
 
   [[nodiscard]] int number() const noexcept { return number_; }
-  int close() noexcept { return number_ < 0 ? 0 : ::close(std::exchange(number_, -1)); }
 
  private:
   int number_;
 };
 
-bool write_all(int descriptor, ByteView content) {
-  while (!content.empty()) {
-    const ssize_t written = ::write(descriptor, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    content = content.subspan(static_cast<std::size_t>(written));
+/// For file systems that cannot rename to free names alone: something empty claims the name first.
+/// \return 0, or -1 with errno
+int claim_and_rename(const std::filesystem::path& file, const std::filesystem::path& name) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    if (::mkdir(name.c_str(), 0700) != 0) return -1;
+  } else {
+    const Descriptor claim(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+    if (claim.number() < 0) return -1;
   }
-  return true;
-}
-
-/// The file to replace: the target of a link, never a link, device or pipe itself.
-std::filesystem::path replaceable(const std::filesystem::path& path) {
-  std::error_code error;
-  const auto status = std::filesystem::symlink_status(path, error);
-  if (!std::filesystem::exists(status)) return path;
-  if (std::filesystem::is_symlink(status)) {
-    const std::filesystem::path target = std::filesystem::canonical(path, error);
-    if (!error) return replaceable(target);
-    fail(path, "is a link to a file that does not exist", error.value(), "give the path of a file");
-  }
-  if (std::filesystem::is_regular_file(status)) return path;
-  throw FileError(one_line(path.string()) +
-                  ": is a folder, device or pipe, not a file; give the path of a file");
-}
-
-/// Makes a rename in the folder survive a power cut.
-void sync_folder(const std::filesystem::path& folder) {
-  const Descriptor descriptor(
-      ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY));
-  if (descriptor.number() >= 0) ::fsync(descriptor.number());
+  if (std::rename(file.c_str(), name.c_str()) == 0) return 0;
+  const int error = errno;
+  std::filesystem::remove(name, ignored);
+  errno = error;
+  return -1;
 }
 
 }  // namespace
@@ -94,24 +81,17 @@ Bytes read_file(const std::filesystem::path& path, std::uintmax_t limit_bytes) {
   return content;
 }
 
-void replace_file(const std::filesystem::path& given, ByteView content, FileMode mode) {
-  const std::filesystem::path path = replaceable(given);
-  const mode_t permissions = mode == FileMode::owner_only ? 0600 : 0644;
-  std::filesystem::path draft = path;
-  draft += ".tmp" + std::to_string(::getpid());
-  const std::string remedy = "check the folder, its permissions and the free space";
-  ::unlink(draft.c_str());
-  Descriptor file(::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, permissions));
-  if (file.number() < 0) fail(path, "cannot be written", errno, remedy);
-  const bool written = write_all(file.number(), content) && ::fsync(file.number()) == 0;
-  const int write_error = errno;
-  const bool closed = file.close() == 0;
-  if (!written || !closed || std::rename(draft.c_str(), path.c_str()) != 0) {
-    const int reason = written ? errno : write_error;
-    ::unlink(draft.c_str());
-    fail(path, "cannot be written", reason, remedy);
+void replace_file(const std::filesystem::path& path, ByteView content, FileMode mode) {
+  refuse_link(path);
+  std::error_code error;
+  const auto status = std::filesystem::symlink_status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw FileError(one_line(path.string()) +
+                    ": is a folder, device or pipe, not a file; give the path of a file");
   }
-  sync_folder(path.parent_path());
+  Draft draft(path, Draft::Kind::file, mode);
+  draft.write(content);
+  draft.replace();
 }
 
 void replace_file(const std::filesystem::path& path, std::string_view content, FileMode mode) {
@@ -127,11 +107,7 @@ void rename_file(const std::filesystem::path& file, const std::filesystem::path&
 
 bool move_to_free_name(const std::filesystem::path& file, const std::filesystem::path& name) {
   int failed = ::renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), RENAME_NOREPLACE);
-  if (failed != 0 && (errno == EINVAL || errno == ENOSYS)) {
-    // The file system has no such rename: an empty file claims the name first.
-    const Descriptor claim(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
-    failed = claim.number() < 0 ? -1 : std::rename(file.c_str(), name.c_str());
-  }
+  if (failed != 0 && (errno == EINVAL || errno == ENOSYS)) failed = claim_and_rename(file, name);
   if (failed != 0 && errno == EEXIST) return false;
   if (failed != 0) {
     fail(name, "cannot be made", errno, "check the folder, its permissions and the free space");

@@ -19,9 +19,9 @@ enum class FileMode { everyone, owner_only };
 [[nodiscard]] Bytes read_file(const std::filesystem::path& path,
                               std::uintmax_t limit_bytes = std::uintmax_t{1} << 32U);
 
-/// Writes a draft beside the target, syncs it, and renames it over the target: after a crash the
-/// file has its old or its new content, never half of it. Follows a link; refuses devices and
-/// pipes.
+/// For files that are the program's own by name, as keys are; core/outputs.hpp writes the others.
+/// Writes a draft, syncs it, and renames it over the target: after a crash the file has its old or
+/// its new content, never half of it. Refuses links, devices and pipes.
 /// \throws FileError with the system's reason
 void replace_file(const std::filesystem::path& path, ByteView content,
                   FileMode mode = FileMode::everyone);

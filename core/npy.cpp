@@ -1,7 +1,7 @@
 #include "core/npy.hpp"
 
 #include "core/bytes.hpp"
-#include "core/files.hpp"
+#include "core/outputs.hpp"
 
 #include <bit>
 #include <cstddef>
@@ -57,7 +57,7 @@ void write_npy(const std::filesystem::path& path, std::span<const Sample> sample
   Bytes content = header_of(descr<Sample>(), shape);
   const auto* raw = reinterpret_cast<const std::uint8_t*>(samples.data());
   content.insert(content.end(), raw, raw + samples.size_bytes());
-  replace_file(path, ByteView(content));
+  write_output(path, ByteView(content));
 }
 
 template void write_npy(const std::filesystem::path&, std::span<const std::uint8_t>,

@@ -11,7 +11,7 @@ namespace touchtrial {
 
 /// Writes an array. Sample is std::uint8_t, float or double.
 /// \param shape  its product is the number of samples
-/// \throws FileError if the file cannot be written
+/// \throws as write_output
 template <typename Sample>
 void write_npy(const std::filesystem::path& path, std::span<const Sample> samples,
                const std::vector<int>& shape);

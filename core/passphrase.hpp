@@ -21,9 +21,10 @@ struct PassphraseCost {
   friend bool operator==(const PassphraseCost&, const PassphraseCost&) = default;
 };
 
-/// The range of a cost that key_of_passphrase accepts.
+/// The range of a cost that key_of_passphrase accepts. Files of this program never cost more than
+/// the default: who forged one that does would have every command work for hours.
 inline constexpr PassphraseCost kLeastPassphraseCost{1, std::uint64_t{8} << 10U};
-inline constexpr PassphraseCost kMostPassphraseCost{32, std::uint64_t{4} << 30U};
+inline constexpr PassphraseCost kMostPassphraseCost{};
 [[nodiscard]] bool is_in_range(const PassphraseCost& cost) noexcept;
 
 /// \throws std::invalid_argument if a number of the cost is out of range

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "engine/image_formats/image_format.hpp"
 #include "engine/pictures/colour_image.hpp"
 
@@ -137,7 +138,7 @@ void write_png(const std::filesystem::path& path, const GreyImage& image) {
   } catch (const FileError&) {
     throw error_about(path.string(), "cannot be encoded as PNG", "give a smaller image");
   }
-  replace_file(path, bytes);
+  write_output(path, bytes);
 }
 
 }  // namespace touchtrial::engine

@@ -72,7 +72,7 @@ struct SampleScale {
 
 /// Writes an 8-bit grey PNG. The same image gives the same bytes on one machine.
 /// \param image  at least 1 x 1
-/// \throws FileError if the file cannot be written
+/// \throws as write_output
 /// \throws std::invalid_argument if the image is empty
 void write_png(const std::filesystem::path& path, const GreyImage& image);
 

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "engine/image_file.hpp"
 
 #include <algorithm>
@@ -95,33 +96,46 @@ std::vector<StimulusEntry> chosen_entries(const StimuliChoice& choice) {
   return entries;
 }
 
-void write_stimulus(const std::filesystem::path& folder, StimulusEntry& entry) {
+/// \param is_earlier  the file is that of an earlier set, also if its mark is gone, as in a copy
+void write_stimulus(const std::filesystem::path& folder, StimulusEntry& entry, bool is_earlier) {
   const GreyImage picture =
       generate_stimulus(entry.label, entry.seed, entry.size_px, entry.exemplar);
   make_folder((folder / entry.file).parent_path());
+  if (is_earlier && origin_of(folder / entry.file) != Origin::ours) {
+    std::filesystem::remove(folder / entry.file);
+  }
   engine::write_png(folder / entry.file, picture);
   entry.sha256 = sha256_of_file(folder / entry.file);
   entry.pixels_sha256 = sha256(picture.samples());
 }
 
-/// The manifest of an earlier set in the folder; empty if there is none.
+/// The manifest of an earlier set in the folder; empty if there is none, or another's file.
 StimulusManifest earlier_set(const std::filesystem::path& folder) {
   const auto manifest = folder / kStimulusManifestFile;
-  return is_there(manifest) ? read_stimulus_manifest(manifest) : StimulusManifest{};
+  require_output_place(manifest);
+  try {
+    return is_there(manifest) ? read_stimulus_manifest(manifest) : StimulusManifest{};
+  } catch (const FileError&) {
+    return {};
+  }
+}
+
+/// Whether an earlier set wrote the file, and nobody changed it since.
+bool is_of(const StimulusManifest& earlier, const std::string& file,
+           const std::filesystem::path& folder) {
+  const auto entry = std::ranges::find(earlier.entries, file, &StimulusEntry::file);
+  return entry != earlier.entries.end() && is_there(folder / file) &&
+         sha256_of_file(folder / file) == entry->sha256;
 }
 
 bool lists(const StimulusManifest& manifest, const std::string& file) {
   return std::ranges::find(manifest.entries, file, &StimulusEntry::file) != manifest.entries.end();
 }
 
-void refuse_foreign_pictures(const std::filesystem::path& folder, const StimulusManifest& earlier,
-                             const StimulusManifest& wanted) {
+void require_places(const std::filesystem::path& folder, const StimulusManifest& earlier,
+                    const StimulusManifest& wanted) {
   for (const StimulusEntry& entry : wanted.entries) {
-    const auto file = folder / entry.file;
-    if (!is_there(file) || lists(earlier, entry.file)) continue;
-    throw FileError(one_line(file.string()) +
-                    ": is in the way and belongs to no generated set; move it, or choose another "
-                    "folder with -o");
+    if (!is_of(earlier, entry.file, folder)) require_output_place(folder / entry.file);
   }
 }
 
@@ -146,7 +160,7 @@ void write_stimulus_manifest(const std::filesystem::path& path, const StimulusMa
                {"licence", manifest.licence},
                {"stimuli", Json::array()}};
   for (const StimulusEntry& entry : manifest.entries) json["stimuli"].push_back(to_json(entry));
-  replace_file(path, json.dump(2) + "\n");
+  write_output(path, json.dump(2) + "\n");
 }
 
 StimulusManifest read_stimulus_manifest(const std::filesystem::path& path) {
@@ -175,14 +189,14 @@ StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
                      " exemplars of each label cannot be made; choose 1 to " +
                      std::to_string(kMaxStimulusExemplars));
   }
-  make_folder(folder);
   StimulusManifest manifest;
   manifest.entries = chosen_entries(choice);
   const StimulusManifest earlier = earlier_set(folder);
-  refuse_foreign_pictures(folder, earlier, manifest);
+  require_places(folder, earlier, manifest);
+  make_folder(folder);
   int done = 0;
   for (StimulusEntry& entry : manifest.entries) {
-    write_stimulus(folder, entry);
+    write_stimulus(folder, entry, is_of(earlier, entry.file, folder));
     if (progress) progress(++done, static_cast<int>(manifest.entries.size()));
   }
   write_stimulus_manifest(folder / kStimulusManifestFile, manifest);

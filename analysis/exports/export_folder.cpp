@@ -2,9 +2,11 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "core/parallel.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <system_error>
@@ -85,21 +87,38 @@ void require_no_other_dataset(const fs::path& folder, const ExportMark& mark,
   }
 }
 
-void require_own_files(const fs::path& folder, const FolderMark& found,
-                       const std::set<std::string>& names) {
+/// Tells whether a name stays inside the folder. The name comes from a file that anybody may have
+/// edited.
+bool stays_inside(const std::string& name) {
+  const fs::path path(name);
+  return !path.empty() && path.is_relative() &&
+         std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; });
+}
+
+/// Checks the places of all files that are to be written or removed.
+/// \return those listed that their file system cannot mark as outputs
+std::set<std::string> unmarked_files(const fs::path& folder, const FolderMark& found,
+                                     const std::set<std::string>& names,
+                                     const std::set<std::string>& before) {
   std::set<std::string> own;
   for (const auto& [format, files] : found.files) own.insert(files.begin(), files.end());
-  for (const std::string& name : names) {
-    if (own.contains(name) || !is_there(folder / name)) continue;
-    throw FileError(one_line((folder / name).string()) +
-                    ": is there already, and no export of this study wrote it; give another "
-                    "folder, or move it away");
+  std::set<std::string> unmarked;
+  std::set<std::string> touched = names;
+  std::ranges::copy_if(before, std::inserter(touched, touched.end()), stays_inside);
+  for (const std::string& name : touched) {
+    if (own.contains(name) && origin_of(folder / name) == Origin::unknown) {
+      unmarked.insert(name);
+    } else {
+      require_output_place(folder / name);
+    }
   }
+  return unmarked;
 }
 
 /// Removes a file, and then the folders above it that are empty.
 /// \throws FileError, naming the file, if it cannot be removed
 void remove_obsolete(const fs::path& folder, const std::string& name) {
+  make_way(folder / name);
   std::error_code error;
   fs::remove(folder / name, error);
   if (error) {
@@ -130,25 +149,17 @@ void write_all(const fs::path& folder, const std::vector<ExportFile>& files) {
   in_parallel(0, concurrent.size(), [&](std::size_t i) { write_one(folder, *concurrent[i]); });
 }
 
-/// Tells whether a name stays inside the folder. The name comes from a file that anybody may have
-/// edited.
-bool stays_inside(const std::string& name) {
-  const fs::path path(name);
-  return !path.empty() && path.is_relative() &&
-         std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; });
-}
-
 }  // namespace
 
 ExportFile text_file(fs::path name, std::function<std::string()> content) {
   return {std::move(name), [content = std::move(content)](const fs::path& path) {
-            replace_file(path, std::string_view(content()));
+            write_output(path, std::string_view(content()));
           }};
 }
 
 ExportFile text_file(fs::path name, std::string content, FileMode mode) {
   return {std::move(name), [content = std::move(content), mode](const fs::path& path) {
-            replace_file(path, std::string_view(content), mode);
+            write_output(path, std::string_view(content), mode);
           }};
 }
 
@@ -158,13 +169,15 @@ std::vector<fs::path> write_export(const fs::path& folder, const ExportMark& mar
   FolderMark found = mark_of(folder, mark);
   const std::set<std::string> names = names_of(files);
   require_no_other_dataset(folder, mark, found);
-  require_own_files(folder, found, names);
   const std::set<std::string> before = found.files[mark.format];
+  const std::set<std::string> unmarked = unmarked_files(folder, found, names, before);
   found.files[mark.format].insert(names.begin(), names.end());
   replace_file(folder / kExportMark, folder_mark_json(found));
+  for (const std::string& name : unmarked) fs::remove(folder / name);
   write_all(folder, files);
   for (const std::string& name : before) {
-    if (!names.contains(name) && stays_inside(name)) remove_obsolete(folder, name);
+    if (names.contains(name) || unmarked.contains(name)) continue;
+    if (stays_inside(name)) remove_obsolete(folder, name);
   }
   found.files[mark.format] = names;
   replace_file(folder / kExportMark, folder_mark_json(found));

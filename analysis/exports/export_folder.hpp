@@ -14,7 +14,7 @@ namespace touchtrial::analysis {
 /// One file of an export.
 struct ExportFile {
   std::filesystem::path name;  ///< relative to the export's folder
-  /// Writes the whole file or throws. The folder of the file exists.
+  /// Writes the whole file as an output or throws. The folder of the file exists.
   std::function<void(const std::filesystem::path&)> write;
   /// Writing takes long and may run on any thread, at the same time as other concurrent files.
   bool concurrent = false;
@@ -45,8 +45,8 @@ inline constexpr const char* kExportMark = ".touchtrial-export.json";
 /// cores.
 /// \return the files, in the order given
 /// \throws FileError if the folder or a file cannot be written
-/// \throws FileError, before anything is written, if the folder holds the export of another study,
-///   or a file with one of these names that no export of this study wrote
+/// \throws FileError, before anything is written, if the folder holds the export of another study
+/// \throws as require_output_place, before anything is written
 std::vector<std::filesystem::path> write_export(const std::filesystem::path& folder,
                                                 const ExportMark& mark,
                                                 const std::vector<ExportFile>& files);

@@ -1,7 +1,7 @@
 #include "analysis/figures/gnuplot.hpp"
 
 #include "core/errors.hpp"
-#include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "core/text.hpp"
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #include "core/bytes.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 
 #include <set>
 #include <sstream>
@@ -47,12 +48,15 @@ std::set<std::string> removable(const std::set<std::string>& claimed) {
   return paths;
 }
 
-void require_own(const fs::path& folder, const std::set<std::string>& claimed,
+/// Whether an earlier report's list names a file that its file system cannot mark as an output.
+bool is_unmarked(const fs::path& folder, const std::set<std::string>& claimed,
                  const std::string& path) {
-  if (claimed.contains(path) || !is_there(folder / path)) return;
-  throw FileError(one_line((folder / path).string()) +
-                  ": exists already, and no report wrote it; choose another folder with --out, or "
-                  "move the file");
+  return claimed.contains(path) && origin_of(folder / path) == Origin::unknown;
+}
+
+void require_place(const fs::path& folder, const std::set<std::string>& claimed,
+                   const std::string& path) {
+  if (!is_unmarked(folder, claimed, path)) require_output_place(folder / path);
 }
 
 std::string list_of(const ReportFiles& files) {
@@ -88,14 +92,17 @@ ReportFiles report_files(const Document& document, const std::string& results) {
 
 void refuse_strangers(const fs::path& folder) {
   const std::set<std::string> claimed = claimed_in(folder);
-  for (const char* path : {"report.html", "results.json"}) require_own(folder, claimed, path);
+  for (const char* path : {"report.html", "results.json"}) require_place(folder, claimed, path);
+  if (!claimed.contains("results.json")) require_output_place(folder / kList);
 }
 
 void write_report_folder(const fs::path& folder, const ReportFiles& files) {
   make_folder(folder);
   const std::set<std::string> claimed = claimed_in(folder);
-  for (const auto& [path, content] : files) require_own(folder, claimed, path);
   const std::set<std::string> before = removable(claimed);
+  for (const auto& [path, content] : files) require_place(folder, claimed, path);
+  for (const std::string& path : before) require_place(folder, claimed, path);
+  if (!claimed.contains("results.json")) make_way(folder / kList);
   // The list is written first, so that after a crash the next report still recognises its own
   // files.
   std::string list = list_of(files);
@@ -105,11 +112,14 @@ void write_report_folder(const fs::path& folder, const ReportFiles& files) {
   replace_file(folder / kList, list);
   for (const auto& [path, content] : files) {
     if (path.find('/') != std::string::npos) make_folder((folder / path).parent_path());
-    replace_file(folder / path, content);
+    if (is_unmarked(folder, claimed, path)) fs::remove(folder / path);
+    write_output(folder / path, content);
   }
   for (const std::string& path : before) {
+    if (files.contains(path)) continue;
+    if (!is_unmarked(folder, claimed, path)) make_way(folder / path);
     std::error_code ignored;
-    if (!files.contains(path)) fs::remove(folder / path, ignored);
+    fs::remove(folder / path, ignored);
   }
   replace_file(folder / kList, list_of(files));
 }

@@ -36,16 +36,14 @@ struct DrawnFigures {
 /// a report's
 void refuse_other_study(const std::filesystem::path& folder, const std::string& study);
 
-/// Checks a folder before long work. A page or a results.json that no report's list names belongs
-/// to somebody else.
-/// \throws FileError if the folder has such a file
+/// Checks the places of page, results and list before long work.
+/// \throws as require_output_place
 void refuse_strangers(const std::filesystem::path& folder);
 
 /// Writes each file as a whole, and removes the files of an earlier report that this report does
 /// not have ("report-files.txt" lists them). Leaves everything else in the folder alone.
 /// \throws FileError if a folder or file cannot be written
-/// \throws FileError, before anything is written, if the folder has a file of the same name that
-/// the list does not name
+/// \throws as require_output_place, before anything is written
 void write_report_folder(const std::filesystem::path& folder, const ReportFiles& files);
 
 }  // namespace touchtrial::analysis

@@ -1,7 +1,9 @@
 #include "app/run/run_study.hpp"
 
 #include "app/console.hpp"
+#include "app/run/session_bounds.hpp"
 #include "app/study_inputs.hpp"
+#include "core/draft.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/utc.hpp"
@@ -9,6 +11,7 @@
 #include "protocols/design/pack_lock.hpp"
 #include "protocols/design/signed_pack.hpp"
 #include "protocols/session/commitment.hpp"
+#include "protocols/store/head_file.hpp"
 
 #include <string>
 #include <utility>
@@ -51,9 +54,47 @@ RunStudy checked_study(design::StationKey&& key, const fs::path& pack_folder,
   return {std::move(key), std::move(pack), std::move(source)};
 }
 
+[[noreturn]] void refuse(const RunOptions& options, const std::string& why) {
+  throw StoreError(options.database.string() + ": " + why);
+}
+
+/// \throws StoreError if no database can be made there
+void require_free_name(const RunOptions& options) {
+  refuse_link(options.database);
+  const fs::path folder = options.database.parent_path();
+  if (folder.empty() || is_there(folder)) return;
+  refuse(options, "there is no folder for it; make it, or give another --db");
+}
+
+void require_same_study(const store::StudyCommitment& stored, const std::string& study_id,
+                        const Digest& seal, const RunOptions& options) {
+  if (stored.study_id == study_id && stored.seal == seal) return;
+  refuse(options,
+         "is the database of another study, or of this one before it was prepared anew; "
+         "give another --db");
+}
+
+/// Refuses what can be refused before a pack is made.
+void check_before_pack(const RunOptions& options, const design::Study& study,
+                       const design::StudyKey& key) {
+  static_cast<void>(subject_for(*options.subject, study, options.on));
+  require_planned_visit(options, study);
+  if (options.heads.folder) {
+    static_cast<void>(store::HeadFiles(options.database, {}, options.heads.folder));
+  }
+  refuse_other_key(key_path_for(options.database, {}), key);
+  if (!is_there(options.database)) {
+    require_free_name(options);
+    return;
+  }
+  const store::StudyStore store =
+      store::StudyStore::open(options.database, store::StudyStore::Access::read_only);
+  require_same_study(store.commitment(), key.study_id, key.seal, options);
+}
+
 RunStudy simulated_study(const RunOptions& options, const design::Study& study) {
   design::StudyKey key = simulated_key(study, options.study);
-  refuse_other_key(key_path_for(options.database, {}), key);
+  check_before_pack(options, study, key);
   prepare_simulated_pack(key);
   RunStudy made = checked_study(design::station_key(key, design::kOnlyStation), key.pack_folder,
                                 design::PackLock::Wait::yes);
@@ -61,17 +102,9 @@ RunStudy simulated_study(const RunOptions& options, const design::Study& study) 
   return made;
 }
 
-[[noreturn]] void refuse(const RunOptions& options, const std::string& why) {
-  throw StoreError(options.database.string() + ": " + why);
-}
-
 void require_same(const store::StudyCommitment& stored, const store::StudyCommitment& ours,
                   const RunOptions& options) {
-  if (stored.study_id != ours.study_id || stored.seal != ours.seal) {
-    refuse(options,
-           "is the database of another study, or of this one before it was prepared anew; "
-           "give another --db");
-  }
+  require_same_study(stored, ours.study_id, ours.seal, options);
   if (stored.investigator != ours.investigator) {
     refuse(options,
            "is of another investigator than the station's file; copy that file anew from the "
@@ -147,6 +180,16 @@ void warn_of_clock(const RunOptions& options, const store::StudyStore& store) {
       utc_words(utc_now()), one_line(options.database.string()), utc_words(last->at));
 }
 
+/// Refuses, before there is a database, what would refuse its head files.
+void require_head_places(const RunOptions& options, const store::StudyCommitment& commitment) {
+  const store::HeadFiles heads(options.database, store::head_signers(commitment),
+                               options.heads.folder);
+  for (const fs::path& head : heads.paths()) {
+    refuse_link(head);
+    const Draft proof(head, Draft::Kind::file);
+  }
+}
+
 }  // namespace
 
 RunDatabase::RunDatabase(const RunOptions& options, const RunStudy& study)
@@ -157,15 +200,11 @@ RunDatabase::RunDatabase(const RunOptions& options, const RunStudy& study)
     open();
     return;
   }
-  const fs::path folder = options.database.parent_path();
-  if (!folder.empty() && !is_there(folder)) {
-    refuse(options, "there is no folder for it; make it, or give another --db");
-  }
+  require_free_name(options);
   refuse_lost_database(options.database, ours_, options.heads);
 }
 
 void RunDatabase::open() {
-  lock_.emplace(options_.database, options_.participant);
   store_ = store::StudyStore::open(options_.database, store::StudyStore::Access::read_write);
   require_same(store_->commitment(), ours_, options_);
   if (store_->stations() > 0) {
@@ -173,6 +212,7 @@ void RunDatabase::open() {
            "was merged from several stations' databases and takes no sessions of its own; run them "
            "in this station's database, and merge again");
   }
+  lock_.emplace(options_.database, options_.participant);
   const Signer signer = study_.key.signer();
   store_->sign_with(signer);
   keep_heads(*store_, options_.database, signer, options_.heads, HeadUse::required);
@@ -188,6 +228,7 @@ store::StudyStore& RunDatabase::made() {
     open();  // another program has made it meanwhile
     return *store_;
   }
+  require_head_places(options_, ours_);
   lock_.emplace(options_.database, options_.participant);
   // Before there is a database, because a database without its key is useless.
   const fs::path key = key_path_for(options_.database, {});

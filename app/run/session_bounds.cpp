@@ -145,15 +145,6 @@ std::string visit_words(const RunOptions& options, const RunStudy& study) {
                      options.participant, options.visit, study.key.study.visits.count);
 }
 
-/// \throws UsageError if the study has no such visit
-void require_planned_visit(const RunOptions& options, const RunStudy& study) {
-  const int visits = study.key.study.visits.count;
-  if (options.visit <= visits) return;
-  throw UsageError(visits == 1 ? "run: the study has one visit; leave --visit out"
-                               : fmt::format("run: the study has {} visits; give --visit 1 to {}",
-                                             visits, visits));
-}
-
 /// Opens the session of the visit after a participant's last one.
 /// \throws StoreError if it may not follow yet
 EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunDatabase& database,
@@ -402,6 +393,14 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
 
 }  // namespace
 
+void require_planned_visit(const RunOptions& options, const design::Study& study) {
+  const int visits = study.visits.count;
+  if (options.visit <= visits) return;
+  throw UsageError(visits == 1 ? "run: the study has one visit; leave --visit out"
+                               : fmt::format("run: the study has {} visits; give --visit 1 to {}",
+                                             visits, visits));
+}
+
 void confirm_enrolment(const RunOptions& options, const design::StationKey& key) {
   if (options.enrolment == 0 || key.station.name != design::kOnlyStation) return;
   std::set<int> taken;
@@ -425,7 +424,7 @@ void confirm_enrolment(const RunOptions& options, const design::StationKey& key)
 
 EnteredSession enter_session(const RunOptions& options, const RunStudy& study,
                              RunDatabase& database, const DescribeOpening& describe) {
-  require_planned_visit(options, study);
+  require_planned_visit(options, study.key.study);
   const store::StudyStore* const store = database.present();
   const auto row = store == nullptr ? std::nullopt : store->session_of(options.participant);
   if (row && options.visit == row->visit + 1) {

@@ -33,6 +33,9 @@ struct EnteredSession {
 /// Fills in what a new session's first event says about device and station.
 using DescribeOpening = std::function<void(store::SessionOpening&)>;
 
+/// \throws UsageError if the study has no such visit
+void require_planned_visit(const RunOptions& options, const design::Study& study);
+
 /// Asks at the terminal about an enrolment number that the options name and that lies beyond the
 /// participants that the study plans, or, if it states no plan, beyond the next number. The ranges
 /// of a divided study's stations are bounds of their own.

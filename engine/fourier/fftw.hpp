@@ -2,6 +2,7 @@
 /// engine/fourier.
 #pragma once
 
+#include <atomic>
 #include <complex>
 #include <cstddef>
 #include <functional>
@@ -61,6 +62,12 @@ inline std::mutex& planner_mutex() {
   return mutex;
 }
 
+/// Whether FFTW lacked memory once: its planner was left in the middle then, and plans no more.
+inline std::atomic<bool>& lacked_memory() {
+  static std::atomic<bool> lacked{false};
+  return lacked;
+}
+
 /// Memory that starts at a cache line, as all plans expect. Its content is undefined at first.
 template <typename Element>
 class FftwBuffer {
@@ -100,12 +107,14 @@ class FftwPlans {
 
   /// \param name  of these plans among all of this precision
   /// \param samples  that are transformed
+  /// \throws std::bad_alloc if FFTW lacks memory, or did before
   /// \throws std::invalid_argument if FFTW has no such plan
   FftwPlans(const std::string& name, std::size_t samples, const Make& make) {
     const std::lock_guard lock(planner_mutex());
     const bool keep = samples <= kKeptUpToSamples;
     if (keep) plans_ = kept()[name];
     if (plans_) return;
+    if (lacked_memory()) throw std::bad_alloc();
     plans_ = std::make_shared<Plans>(make());
     // Otherwise plans would depend on the order in which transforms are created.
     Fftw<Real>::forget();

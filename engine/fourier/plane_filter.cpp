@@ -103,7 +103,7 @@ const ColumnBlocks<Real>& PlaneFilter<Real>::blocks() const noexcept {
 
 template <typename Real>
 void PlaneFilter<Real>::write_rows(int y, const Real* upper, const Real* lower,
-                                   Workspace& workspace) noexcept {
+                                   Workspace& workspace) {
   const auto width = static_cast<std::size_t>(state_->blocks.width);
   std::complex<Real>* const samples = workspace.buffers_->samples.data();
   std::complex<Real>* const spectrum = workspace.buffers_->spectrum.data();
@@ -115,7 +115,7 @@ void PlaneFilter<Real>::write_rows(int y, const Real* upper, const Real* lower,
 
 template <typename Real>
 void PlaneFilter<Real>::read_rows(int y, Real scale, Real* upper, Real* lower,
-                                  Workspace& workspace) const noexcept {
+                                  Workspace& workspace) const {
   const auto width = static_cast<std::size_t>(state_->blocks.width);
   std::complex<Real>* const samples = workspace.buffers_->samples.data();
   std::complex<Real>* const spectrum = workspace.buffers_->spectrum.data();

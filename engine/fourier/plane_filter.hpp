@@ -85,10 +85,11 @@ class PlaneFilter {
   /// Writes two rows.
   /// \param y  of the upper one; even
   /// \param upper,lower  width samples each
-  void write_rows(int y, const Real* upper, const Real* lower, Workspace& workspace) noexcept;
+  /// \throws std::bad_alloc if FFTW lacks memory; so do all that transform
+  void write_rows(int y, const Real* upper, const Real* lower, Workspace& workspace);
   /// Reads two rows, multiplied by `scale`: after filter_columns with factors of 1 and with a scale
   /// of 1, those that were written. Reading changes nothing.
-  void read_rows(int y, Real scale, Real* upper, Real* lower, Workspace& workspace) const noexcept;
+  void read_rows(int y, Real scale, Real* upper, Real* lower, Workspace& workspace) const;
 
   /// Filters the columns of one block.
   /// \param factors  of all blocks, arranged

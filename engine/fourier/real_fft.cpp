@@ -3,6 +3,7 @@
 #include "engine/fourier/fftw.hpp"
 
 #include <cstddef>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -43,15 +44,30 @@ std::span<std::complex<Real>> RealFft<Real>::spectrum() noexcept {
 }
 
 template <typename Real>
-void RealFft<Real>::forward() noexcept {
+void RealFft<Real>::forward() {
   Fftw<Real>::real_forward(state_->plans[0], state_->plane.data(),
                            as_fftw(state_->spectrum.data()));
 }
 
 template <typename Real>
-void RealFft<Real>::inverse() noexcept {
+void RealFft<Real>::inverse() {
   Fftw<Real>::real_inverse(state_->plans[1], as_fftw(state_->spectrum.data()),
                            state_->plane.data());
+}
+
+// FFTW's libraries call these, in place of their own of the same names, where they find no memory
+// to plan or to execute. Their own end the program.
+extern "C" [[gnu::visibility("default")]] void fftw_assertion_failed(const char* /*what*/,
+                                                                     int /*line*/,
+                                                                     const char* /*file*/) {
+  lacked_memory() = true;
+  throw std::bad_alloc();
+}
+extern "C" [[gnu::visibility("default")]] void fftwf_assertion_failed(const char* /*what*/,
+                                                                      int /*line*/,
+                                                                      const char* /*file*/) {
+  lacked_memory() = true;
+  throw std::bad_alloc();
 }
 
 template class RealFft<float>;

@@ -27,10 +27,12 @@ class RealFft {
   [[nodiscard]] std::span<std::complex<Real>> spectrum() noexcept;
 
   /// plane -> spectrum, unscaled; the plane keeps its values.
-  void forward() noexcept;
+  /// \throws std::bad_alloc if FFTW lacks memory
+  void forward();
   /// spectrum -> plane, unscaled: forward and inverse multiply by height * width. Destroys the
   /// spectrum.
-  void inverse() noexcept;
+  /// \throws std::bad_alloc if FFTW lacks memory
+  void inverse();
 
  private:
   struct State;

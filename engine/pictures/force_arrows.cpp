@@ -1,7 +1,7 @@
 #include "engine/pictures/force_arrows.hpp"
 
 #include "core/errors.hpp"
-#include "core/files.hpp"
+#include "core/outputs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -201,7 +201,7 @@ ArrowPatch write_force_arrows(const std::filesystem::path& path, const GreyImage
   } catch (const FileError& error) {
     throw FileError(one_line(path.string()) + ": " + error.what());
   }
-  replace_file(path, bytes);
+  write_output(path, bytes);
   return patch;
 }
 

@@ -44,7 +44,7 @@ struct ArrowPatch {
 /// \param texture  8-bit picture of the same shape as the field, at least 1 x 1
 /// \return the patch
 /// \throws std::invalid_argument if the shapes differ or are empty
-/// \throws FileError if the file cannot be written
+/// \throws as write_output
 ArrowPatch write_force_arrows(const std::filesystem::path& path, const GreyImage& texture,
                               const ForceField<double>& force);
 

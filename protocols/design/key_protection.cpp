@@ -85,7 +85,6 @@ std::optional<Envelope> envelope_of(const std::vector<std::string>& words) {
   std::ranges::copy(*salt, envelope.salt.begin());
   envelope.cost = {*passes, *memory};
   envelope.box = *std::move(box);
-  if (!is_in_range(envelope.cost)) return std::nullopt;
   return envelope;
 }
 
@@ -95,6 +94,12 @@ std::optional<Envelope> envelope_in(const std::string& text, const std::filesyst
   if (!text.starts_with(kProtectedFormat)) return std::nullopt;
   const std::vector<std::string> words = words_of(text);
   std::optional<Envelope> envelope = envelope_of(words);
+  if (envelope && !is_in_range(envelope->cost)) {
+    refuse_file(path, "asks for " + std::to_string(envelope->cost.passes) + " passes over " +
+                          std::to_string(envelope->cost.memory_bytes) +
+                          " bytes of Argon2id, which no file of this program does; restore it from "
+                          "a backup");
+  }
   // The bytes follow from the content, so any altered byte is found.
   if (envelope && text_of_envelope(*envelope) == text) return envelope;
   const bool is_newer = words.size() > 1 && number_in<int>(words[1]).value_or(0) > 1;

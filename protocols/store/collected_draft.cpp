@@ -1,5 +1,6 @@
 #include "protocols/store/collected_draft.hpp"
 
+#include "core/draft.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/store/file_chain.hpp"
@@ -9,11 +10,8 @@
 
 #include <map>
 #include <optional>
-#include <system_error>
 #include <utility>
 #include <vector>
-
-#include <unistd.h>
 
 namespace touchtrial::store {
 namespace {
@@ -22,30 +20,11 @@ namespace {
   throw StoreError(one_line(path.string()) + ": exists already; choose another name");
 }
 
-/// A file that is removed, with all that SQLite laid beside it, unless it got another name before.
-class DraftFile {
- public:
-  explicit DraftFile(std::filesystem::path path) : path_(std::move(path)) { remove(); }
-  ~DraftFile() { remove(); }
-  DraftFile(const DraftFile&) = delete;
-  DraftFile& operator=(const DraftFile&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-
- private:
-  void remove() const noexcept {
-    for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) {
-      std::error_code ignored;
-      std::filesystem::remove(path_.string() + suffix, ignored);
-    }
-  }
-  std::filesystem::path path_;
-};
-
 }  // namespace
 
 struct CollectedDraft::Impl {
-  Impl(std::unique_ptr<DraftFile> draft, Database made, std::filesystem::path name)
-      : file(std::move(draft)), database(std::move(made)), target(std::move(name)) {
+  Impl(std::unique_ptr<Draft> folder, Database made, std::filesystem::path name)
+      : draft(std::move(folder)), database(std::move(made)), target(std::move(name)) {
     make_tables(database);
     database.run([&] { database.write_carelessly(); });
   }
@@ -90,7 +69,7 @@ struct CollectedDraft::Impl {
     }
   }
 
-  std::unique_ptr<DraftFile> file;
+  std::unique_ptr<Draft> draft;  ///< outlives the database in it
   Database database;
   std::filesystem::path target;
   CollectedChain chain;
@@ -105,9 +84,10 @@ CollectedDraft::~CollectedDraft() = default;
 CollectedDraft::CollectedDraft(CollectedDraft&&) noexcept = default;
 
 CollectedDraft CollectedDraft::in_file(const std::filesystem::path& target) {
+  refuse_link(target);
   if (is_there(target)) refuse_taken_place(target);
-  auto draft = std::make_unique<DraftFile>(target.string() + ".new" + std::to_string(::getpid()));
-  Database database = Database::create(draft->path());
+  auto draft = std::make_unique<Draft>(target, Draft::Kind::folder);
+  Database database = Database::create(draft->path() / target.filename());
   return CollectedDraft(std::make_unique<Impl>(std::move(draft), std::move(database), target));
 }
 
@@ -176,9 +156,9 @@ void CollectedDraft::end_traces() const {
 void CollectedDraft::finish() && {
   impl_->database.run([&] { impl_->database.write_safely(); });
   const std::filesystem::path target = impl_->target;
-  const auto file = std::move(impl_->file);
+  const std::unique_ptr<Draft> draft = std::move(impl_->draft);
   impl_.reset();  // closes it, so that nothing lies beside it
-  if (!move_to_free_name(file->path(), target)) refuse_taken_place(target);
+  if (!move_to_free_name(draft->path() / target.filename(), target)) refuse_taken_place(target);
 }
 
 }  // namespace touchtrial::store

@@ -188,6 +188,8 @@ std::string explanation(int code, const std::string& message) {
     case SQLITE_CANTOPEN:
       return "cannot be opened; check that its folder exists and may be written, and no -wal file "
              "was left beside it";
+    case SQLITE_NOMEM:
+      return "there is not enough memory to read it; close other programs";
     case SQLITE_IOERR:
       return "reading or writing failed (" + message + "); check the disk";
     default:
@@ -215,6 +217,17 @@ void make_empty_file(const std::filesystem::path& path) {
                           : ": cannot be made; check that its folder exists and may be written"));
   }
   std::fclose(file);
+}
+
+/// The log of a file that has two names lies beside one of them alone: under the other one, what
+/// was acknowledged would be missing.
+void refuse_second_name(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto names = std::filesystem::hard_link_count(path, error);
+  if (error || names == 1) return;
+  refuse_file(path, "has " + std::to_string(names) +
+                        " names (hard links), and nothing is recorded in such a file; copy it to a "
+                        "new file, and move that to this name");
 }
 
 /// The message does not repeat the address, which may hold a password.
@@ -278,6 +291,7 @@ Database Database::temporary(const std::string& name) {
 Database Database::open(const std::filesystem::path& path, Mode mode) {
   refuse_address(path);
   check_header(path);
+  if (mode == Mode::read_write) refuse_second_name(path);
   try {
     Database database(path, connected(path, mode));
     if (mode == Mode::read_write &&

@@ -1,5 +1,6 @@
 #include "protocols/store/head_file.hpp"
 
+#include "core/draft.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/text.hpp"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <system_error>
 #include <thread>
@@ -34,7 +34,10 @@ class LockedHead {
   /// \param access  O_RDONLY or O_RDWR
   /// \throws FileError if the file cannot be opened, or another program holds it for too long
   LockedHead(const std::filesystem::path& path, int access, std::chrono::milliseconds patience)
-      : path_(path), file_(::open(path.c_str(), access | O_CLOEXEC | O_NONBLOCK)) {
+      : path_(path) {
+    const bool writes = access == O_RDWR;
+    if (writes) refuse_link(path);
+    file_ = ::open(path.c_str(), access | (writes ? O_NOFOLLOW : 0) | O_CLOEXEC | O_NONBLOCK);
     if (file_ < 0 && errno == ENOENT) return;
     if (file_ < 0) refuse_with_reason(path, "cannot be opened", errno, "check its permissions");
     try {
@@ -165,12 +168,6 @@ HeadSlots read_slots(const LockedHead& file, std::span<const PublicKey> signers,
 
 void drop_oldest(std::map<int, ChainHead>& sessions) {
   while (sessions.size() > kMostHeadSessions) sessions.erase(sessions.begin());
-}
-
-/// A name for a file that gets its own when it is whole.
-std::filesystem::path draft_beside(const std::filesystem::path& path) {
-  static std::atomic<unsigned> drafts = 0;
-  return path.string() + ".new" + std::to_string(::getpid()) + "-" + std::to_string(drafts++);
 }
 
 void require_second_folder(const std::filesystem::path& folder,
@@ -329,9 +326,7 @@ void HeadFile::update(const Signer& signer, const HeadChange& change,
     for (int i = 0; i < kTries; ++i) {
       if (overwrite(signer, change, signers) || create(signer, change)) return;
     }
-    refuse_head(path_,
-                "can be neither opened nor made; if it is a link that leads nowhere, "
-                "remove it");
+    refuse_head(path_, "can be neither opened nor made, because another program keeps removing it");
   } catch (const FileError& error) {
     throw StoreError(error.what());
   }
@@ -358,17 +353,9 @@ bool HeadFile::create(const Signer& signer, const HeadChange& change) const {
   record.count = 1;
   drop_oldest(record.sessions);
   const std::string slot = head_copy_of(record, signer, path_);
-  const std::filesystem::path draft = draft_beside(path_);
-  replace_file(draft, slot + slot);
-  std::error_code ignored;
-  try {
-    if (move_to_free_name(draft, path_)) return true;
-  } catch (...) {
-    std::filesystem::remove(draft, ignored);
-    throw;
-  }
-  std::filesystem::remove(draft, ignored);
-  return false;
+  Draft draft(path_, Draft::Kind::file);
+  draft.write(bytes_of(slot + slot));
+  return draft.take_free_place();
 }
 
 HeadFiles::HeadFiles(const std::filesystem::path& database, std::vector<PublicKey> signers,

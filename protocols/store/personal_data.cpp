@@ -1,7 +1,7 @@
 #include "protocols/store/personal_data.hpp"
 
+#include "core/draft.hpp"
 #include "core/errors.hpp"
-#include "core/files.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -27,6 +27,7 @@ constexpr int kPersonalBusyTimeoutMs = 2000;
 
 /// Creates the file with its final permissions, so that others can never read it, not for a moment.
 void make_private(const std::filesystem::path& path) {
+  refuse_link(path);
   const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (file >= 0) {
     ::close(file);

@@ -1,4 +1,5 @@
 #include "core/bytes.hpp"
+#include "core/draft.hpp"
 #include "core/errors.hpp"
 #include "core/hash.hpp"
 #include "protocols/store/session_lock.hpp"
@@ -40,8 +41,9 @@ bool take(int file, const std::string& participant) {
 }  // namespace
 
 SessionLock::SessionLock(const std::filesystem::path& database, const std::string& participant) {
-  const std::string path = database.string() + ".lock";
-  file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  const std::filesystem::path path = beside_database(database, ".lock");
+  refuse_link(path);
+  file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (file_ < 0) {
     refuse_lock(path, std::string("cannot be made (") + std::strerror(errno) +
                           "); check that its folder may be written");

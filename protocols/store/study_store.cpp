@@ -1,6 +1,8 @@
 #include "protocols/store/study_store.hpp"
 
+#include "core/draft.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/rows.hpp"
 #include "protocols/store/schema.hpp"
@@ -10,17 +12,8 @@
 #include <system_error>
 #include <utility>
 
-#include <unistd.h>
-
 namespace touchtrial::store {
 namespace {
-
-void remove_database(const std::filesystem::path& path) {
-  for (const char* const suffix : {"", "-wal", "-shm"}) {
-    std::error_code ignored;
-    std::filesystem::remove(path.string() + suffix, ignored);
-  }
-}
 
 [[noreturn]] void refuse_taken(const std::filesystem::path& path) {
   throw StoreError(one_line(path.string()) +
@@ -72,17 +65,13 @@ StudyStore& StudyStore::operator=(StudyStore&&) noexcept = default;
 
 StudyStore StudyStore::create(const std::filesystem::path& path, const StudyCommitment& commitment,
                               std::chrono::nanoseconds at, const Signer& signer) {
+  refuse_link(path);
   if (is_there(path)) refuse_taken(path);
   // The file gets its name when it is whole, so that no early end of the program leaves half of it.
-  const std::filesystem::path draft = path.string() + ".new" + std::to_string(::getpid());
-  remove_database(draft);
-  try {
-    fill_new(draft, commitment, at, signer);
-    if (!move_to_free_name(draft, path)) refuse_taken(path);
-  } catch (...) {
-    remove_database(draft);
-    throw;
-  }
+  const Draft draft(path, Draft::Kind::folder);
+  const std::filesystem::path made = draft.path() / path.filename();
+  fill_new(made, commitment, at, signer);
+  if (!move_to_free_name(made, path)) refuse_taken(path);
   StudyStore store = open(path, Access::read_write);
   store.sign_with(signer);
   return store;
@@ -408,16 +397,10 @@ std::optional<ChainFault> StudyStore::first_fault(TraceCheck traces,
 namespace {
 
 void copy(const Database& database, const std::filesystem::path& to) {
-  std::filesystem::path draft = to;
-  draft += ".part";
-  std::error_code error;
-  std::filesystem::remove(draft, error);  // left by a copy that broke off
-  database.run([&] { database.copy_to(draft); });
-  std::filesystem::rename(draft, to, error);
-  if (error) {
-    throw StoreError(one_line(to.string()) + ": cannot be written (" + error.message() +
-                     "); give another folder or change its permissions");
-  }
+  const Draft draft(to, Draft::Kind::folder);
+  const std::filesystem::path made = draft.path() / to.filename();
+  database.run([&] { database.copy_to(made); });
+  move_to_output(made, to);
 }
 
 }  // namespace

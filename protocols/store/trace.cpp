@@ -9,12 +9,14 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <zstd.h>
+#include <zstd_errors.h>
 
 namespace touchtrial::store {
 namespace {
@@ -174,6 +176,7 @@ using Compressor = std::unique_ptr<ZSTD_CCtx, FreeCompressor>;
 /// size.
 Compressor make_compressor() {
   Compressor compressor(ZSTD_createCCtx());
+  if (!compressor) throw std::bad_alloc();
   constexpr std::array<std::pair<ZSTD_cParameter, int>, 3> kParameters = {
       {{ZSTD_c_compressionLevel, 1}, {ZSTD_c_minMatch, 7}, {ZSTD_c_hashLog, 6}}};
   for (const auto& [parameter, value] : kParameters) {
@@ -262,6 +265,7 @@ void require_consistent(Cursor cursor, std::size_t count) {
 void read_plane(Cursor& cursor, Bytes& plane) {
   const ByteView frame = read_frame(cursor);
   const std::size_t size = ZSTD_decompress(plane.data(), plane.size(), frame.data(), frame.size());
+  if (ZSTD_getErrorCode(size) == ZSTD_error_memory_allocation) throw std::bad_alloc();
   if (ZSTD_isError(size) != 0 || size != plane.size()) refuse_bytes("a part does not decompress");
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "core/parallel.hpp"
 #include "engine/image_file.hpp"
 #include "stimuli/default_set.hpp"
@@ -12,8 +13,6 @@
 #include <map>
 #include <mutex>
 #include <system_error>
-
-#include <unistd.h>
 
 namespace touchtrial::stimuli {
 namespace {
@@ -71,70 +70,44 @@ class Duplicates {
   std::map<Digest, fs::path> seen_;
 };
 
-/// A hidden path beside the target, so that renaming stays on one file system.
-fs::path beside(const fs::path& target, const std::string& purpose) {
-  const std::string name = target.filename().string();
-  return target.parent_path() / ("." + name + "." + purpose + std::to_string(::getpid()));
+/// Whether all of a folder's files are outputs of this program that nobody changed since.
+bool are_ours(const fs::path& folder) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.is_symlink() || origin_of(entry.path()) != Origin::ours) return false;
+  }
+  return true;
 }
 
-void move(const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  fs::rename(from, to, error);
-  if (!error) return;
-  throw FileError(one_line(to.string()) + ": cannot be written (" + error.message() +
-                  "); check the folder and its permissions");
-}
-
-/// A folder that appears whole or not at all: files are written into a draft beside the target, and
-/// `put_in_place` renames it. Until `keep` is called, the destructor restores the earlier state.
-class DraftFolder {
+/// Puts a folder of new pictures in the place of earlier ones, which return unless `keep` is called.
+/// Those that somebody added to or changed are kept under another name.
+class NewPictures {
  public:
-  /// \throws FileError if the draft cannot be made
-  explicit DraftFolder(fs::path target)
-      : target_(std::move(target)), draft_(beside(target_, "draft")) {
-    std::error_code error;
-    fs::remove_all(draft_, error);
-    if (fs::create_directory(draft_, error)) return;
-    throw FileError(one_line(target_.string()) + ": cannot be made (" + error.message() +
-                    "); check the folder above it and its permissions");
+  NewPictures(Draft& draft, const fs::path& place) : place_(place) {
+    if (is_there(place_) && !are_ours(place_)) make_way(place_);
+    if (is_there(place_)) earlier_ = keep_aside(place_);
+    if (draft.take_free_place()) return;
+    throw FileError(one_line(place_.string()) + ": another program makes it; try again");
   }
-  ~DraftFolder() {
+  ~NewPictures() {
     std::error_code ignored;
-    if (!kept_) {
-      fs::remove_all(in_place_ ? target_ : draft_, ignored);
-      if (!earlier_.empty()) fs::rename(earlier_, target_, ignored);
-    }
+    if (is_kept_) return;
+    fs::remove_all(place_, ignored);
+    if (!earlier_.empty()) fs::rename(earlier_, place_, ignored);
   }
-  DraftFolder(const DraftFolder&) = delete;
-  DraftFolder& operator=(const DraftFolder&) = delete;
+  NewPictures(const NewPictures&) = delete;
+  NewPictures& operator=(const NewPictures&) = delete;
 
-  [[nodiscard]] const fs::path& path() const noexcept { return draft_; }
-
-  /// Moves an earlier target aside, and the draft to its place.
-  /// \throws FileError if one of them cannot be moved
-  void put_in_place() {
-    if (is_there(target_)) {
-      const fs::path aside = beside(target_, "earlier");
-      move(target_, aside);
-      earlier_ = aside;
-    }
-    move(draft_, target_);
-    in_place_ = true;
-  }
-
-  /// Nothing can fail any more: removes the earlier target.
+  /// Nothing can fail any more: removes the earlier ones.
   void keep() noexcept {
-    kept_ = true;
+    is_kept_ = true;
     std::error_code ignored;
     if (!earlier_.empty()) fs::remove_all(earlier_, ignored);
   }
 
  private:
-  fs::path target_;
-  fs::path draft_;
-  fs::path earlier_;  ///< where the earlier target is now; empty if there is none
-  bool in_place_ = false;
-  bool kept_ = false;
+  fs::path place_;
+  fs::path earlier_;  ///< where they are now; empty if there were none
+  bool is_kept_ = false;
 };
 
 /// One run: reads each photograph once to check it, and again to cut it.
@@ -154,7 +127,7 @@ class Import {
     check_import(options_);
     PhotoFolder folder = surveyed();
     const auto shares = plan_shares(classes_, options_);
-    DraftFolder draft(options_.pictures);
+    Draft draft(options_.pictures, Draft::Kind::folder);
     cut_all(draft.path(), shares);
     equalise(draft.path());
     finish(draft);
@@ -298,15 +271,16 @@ class Import {
   }
 
   /// Writes the study last; if that fails, the earlier pictures return.
-  void finish(DraftFolder& draft) {
-    replace_file(draft.path() / kStimulusManifestFile, import_manifest(record_, options_));
+  void finish(Draft& draft) {
+    write_output(draft.path() / kStimulusManifestFile, import_manifest(record_, options_));
     const fs::path from = fs::absolute(options_.study).lexically_normal().parent_path();
     const fs::path pictures =
         fs::absolute(options_.pictures).lexically_normal().lexically_relative(from);
     const std::string study = import_study(record_, options_, study_name(options_.study), pictures);
-    draft.put_in_place();
-    replace_file(options_.study, study);
-    draft.keep();
+    require_output_place(options_.study);
+    NewPictures pictures_in_place(draft, options_.pictures);
+    write_output(options_.study, study);
+    pictures_in_place.keep();
   }
 
   ImportReport report(std::vector<std::string> ignored,

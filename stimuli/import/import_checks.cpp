@@ -1,7 +1,7 @@
 #include "stimuli/import/import_checks.hpp"
 
+#include "core/draft.hpp"
 #include "core/errors.hpp"
-#include "core/files.hpp"
 #include "core/strict_json.hpp"
 
 #include <algorithm>
@@ -68,9 +68,11 @@ void check_writable(const fs::path& path, const ImportOptions& options, const st
     refuse(one_line(path.string()) +
            " and the folder of photographs lie within one another; give another " + option);
   }
+  refuse_link(path);
   if (!is_there(path) || options.replace) return;
   refuse(one_line(path.string()) + " exists already; give another " + option +
-         ", or --force to replace what an earlier import wrote");
+         ", or --force, which replaces what an earlier import wrote and keeps everything else under "
+         "another name");
 }
 
 void check_places(const ImportOptions& options) {
@@ -89,11 +91,6 @@ void check_places(const ImportOptions& options) {
   std::error_code ignored;
   if (fs::is_directory(options.study, ignored)) {
     refuse(one_line(options.study.string()) + " is a folder; give another --study");
-  }
-  if (is_there(options.pictures) && !is_imported(options.pictures)) {
-    refuse(
-        one_line(options.pictures.string()) +
-        " was not written by an import and is not replaced; move it away, or give another --out");
   }
 }
 

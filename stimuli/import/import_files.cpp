@@ -151,16 +151,4 @@ std::string import_study(const ImportRecord& record, const ImportOptions& option
   return study.dump(2) + "\n";
 }
 
-bool is_imported(const std::filesystem::path& folder) {
-  try {
-    const Bytes bytes = read_file(folder / kStimulusManifestFile);
-    const Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
-    return json.is_object() && json.value("format", "") == kImportFormat;
-  } catch (const FileError&) {
-    return false;
-  } catch (const nlohmann::json::exception&) {
-    return false;
-  }
-}
-
 }  // namespace touchtrial::stimuli

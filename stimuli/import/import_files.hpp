@@ -52,7 +52,4 @@ struct ImportRecord {
                                        const std::string& name,
                                        const std::filesystem::path& folder);
 
-/// Whether an earlier import wrote this folder.
-[[nodiscard]] bool is_imported(const std::filesystem::path& folder);
-
 }  // namespace touchtrial::stimuli

@@ -295,11 +295,12 @@ TEST_CASE("device accept rehearses on a device model, and says that it proves no
   const DeviceFolder lab(dhd_settings());
   replace_file(lab.path() / "dhd-certificate.json", certificate.dump());
   for (int time = 0; time < 2; ++time) {
-    ChildProcess skipping = lab.start("accept dhd");
+    ChildProcess skipping = lab.start("accept dhd --force");
     skipping.write("s\ns\ns\n");
     CHECK(skipping.finish() == 1);
     CHECK(lab.object_in("dhd-certificate.json").at("passed") == false);
-    CHECK(content(lab.in("dhd-certificate.json.old")) == certificate.dump());
+    CHECK(content(lab.in("dhd-certificate.json.1")) == certificate.dump());
+    CHECK_FALSE(fs::exists(lab.in("dhd-certificate.json.2")));
   }
 }
 

@@ -10,6 +10,8 @@
 #include "windows/virtual_screen.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <set>
 #include <variant>
 
@@ -120,6 +122,16 @@ TEST_CASE("screens are drawn into files, one or all, each of them another pictur
   CHECK(files > 25);
   CHECK(pictures.size() == files);
   CHECK_FALSE(is_there(drawer.folder.path() / "config/study.pack"));
+
+  const std::vector<std::string> again = {"--screen", "answer", "--png", file};
+  CHECK(drawer.preview(again).exit_code == 0);
+  std::ofstream(file) << "mine";
+  CHECK(drawer.preview(again).exit_code == 1);
+  CHECK(text_of(read_file(file)) == "mine");
+  std::vector<std::string> forced = again;
+  forced.emplace_back("--force");
+  CHECK(drawer.preview(forced).exit_code == 0);
+  CHECK(text_of(read_file(file + ".1")) == "mine");
   const ProgramResult unknown = drawer.preview({"--screen", "anwser"});
   CHECK(unknown.exit_code == 2);
   CHECK_THAT(unknown.errors, holds_text("did you mean answer?"));

@@ -4,7 +4,7 @@
 #include "analysis/exports/trial_tables.hpp"
 #include "analysis/sealed_sessions.hpp"
 #include "core/errors.hpp"
-#include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "protocols/store/marks.hpp"
 #include "protocols/store/payload_json.hpp"
 
@@ -198,7 +198,7 @@ class MotionFiles {
     files_.push_back({path,
                       [study = study_, row, recording, shared = shared_](const auto& to) {
                         const store::Trace trace = opened_trace(study, row, *shared);
-                        replace_file(to, motion_text(trace, recording));
+                        write_output(to, motion_text(trace, recording));
                       },
                       true});
     files_.push_back(

@@ -7,6 +7,7 @@
 #include "analysis/exports/trial_tables.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/outputs.hpp"
 #include "protocols/store/marks.hpp"
 #include "protocols/store/study_store.hpp"
 
@@ -74,7 +75,7 @@ Files stimulus_files(const design::Study& study) {
       }
       files.push_back(
           {"stimuli/" + stimulus_name(study, i, k), [image](const std::filesystem::path& path) {
-             replace_file(path, ByteView(read_file(image)));
+             write_output(path, ByteView(read_file(image)));
            }});
     }
   }

@@ -1,0 +1,168 @@
+#include "core/draft.hpp"
+
+#include "core/errors.hpp"
+#include "core/text.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <mutex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kBegin = ".touchtrial-";
+constexpr std::string_view kEnd = ".tmp";
+constexpr int kToRead = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+
+[[noreturn]] void refuse_draft(const fs::path& place, int error) {
+  throw FileError(one_line(place.string()) + ": cannot be written (" +
+                  std::generic_category().message(error) +
+                  "); check the folder, its permissions and the free space");
+}
+
+fs::path folder_of(const fs::path& place) {
+  return place.has_parent_path() ? place.parent_path() : fs::path(".");
+}
+
+fs::path new_name(const fs::path& place) {
+  static std::atomic<unsigned> made{0};
+  return place.parent_path() / (std::string(kBegin) + std::to_string(::getpid()) + "-" +
+                                std::to_string(made++) + std::string(kEnd));
+}
+
+/// Two numbers between the beginning and the end.
+bool is_name_of_draft(std::string_view name) {
+  if (!name.starts_with(kBegin) || !name.ends_with(kEnd)) return false;
+  if (name.size() <= kBegin.size() + kEnd.size()) return false;
+  name = name.substr(kBegin.size(), name.size() - kBegin.size() - kEnd.size());
+  const std::size_t dash = name.find('-');
+  return dash != std::string_view::npos && number_in<unsigned>(name.substr(0, dash)) &&
+         number_in<unsigned>(name.substr(dash + 1));
+}
+
+/// \return false if another program has the lock; true as well where the disk knows no locks
+bool lock(int descriptor) {
+  return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
+/// Removes a draft of this user that no living program holds.
+void remove_if_stale(const fs::path& draft) {
+  const int descriptor = ::open(draft.c_str(), kToRead);
+  if (descriptor < 0) return;
+  struct stat status {};
+  const bool is_own = ::fstat(descriptor, &status) == 0 && status.st_uid == ::geteuid();
+  if (is_own && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+    std::error_code ignored;  // what stays does no harm
+    fs::remove_all(draft, ignored);
+  }
+  ::close(descriptor);
+}
+
+/// The first time in each folder.
+void remove_stale_drafts(const fs::path& folder) {
+  static std::mutex mutex;
+  static std::set<fs::path> seen;
+  std::error_code ignored;
+  const std::lock_guard guard(mutex);
+  if (!seen.insert(fs::absolute(folder, ignored)).second) return;
+  std::vector<fs::path> drafts;
+  for (fs::directory_iterator entry(folder, ignored), end; entry != end; entry.increment(ignored)) {
+    if (is_name_of_draft(entry->path().filename().string())) drafts.push_back(entry->path());
+  }
+  for (const fs::path& draft : drafts) remove_if_stale(draft);
+}
+
+}  // namespace
+
+void refuse_link(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_symlink(fs::symlink_status(path, error))) return;
+  const fs::path target = fs::read_symlink(path, error);
+  throw FileError(one_line(path.string() + ": is a link to " + target.string() +
+                           ", and nothing is written through a link; give the path of the file "
+                           "itself, or remove the link"));
+}
+
+void sync_folder(const fs::path& folder) noexcept {
+  const int descriptor =
+      ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+Draft::Draft(fs::path place, Kind kind, FileMode mode) : place_(std::move(place)) {
+  remove_stale_drafts(folder_of(place_));
+  while (!make(kind, mode)) {
+  }
+}
+
+/// \return false if the name was taken, or another program took the draft for one that nobody holds
+bool Draft::make(Kind kind, FileMode mode) {
+  path_ = new_name(place_);
+  if (kind == Kind::folder) {
+    if (::mkdir(path_.c_str(), 0777) != 0) {
+      if (errno == EEXIST) return false;
+      refuse_draft(place_, errno);
+    }
+    descriptor_ = ::open(path_.c_str(), kToRead | O_DIRECTORY);
+  } else {
+    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
+                         mode == FileMode::owner_only ? 0600 : 0644);
+  }
+  if (descriptor_ < 0) {
+    const int error = errno;
+    if (error == EEXIST || (error == ENOENT && kind == Kind::folder)) return false;
+    std::error_code ignored;
+    if (kind == Kind::folder) fs::remove(path_, ignored);
+    refuse_draft(place_, error);
+  }
+  struct stat status {};
+  if (lock(descriptor_) && ::fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return true;
+  ::close(std::exchange(descriptor_, -1));
+  return false;
+}
+
+Draft::~Draft() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void Draft::write(ByteView content) const {
+  while (!content.empty()) {
+    const ssize_t written = ::write(descriptor_, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) refuse_draft(place_, errno);
+    content = content.subspan(static_cast<std::size_t>(written));
+  }
+  if (::fsync(descriptor_) != 0) refuse_draft(place_, errno);
+}
+
+void Draft::replace() {
+  if (std::rename(path_.c_str(), place_.c_str()) != 0) refuse_draft(place_, errno);
+  path_.clear();
+  sync_folder(place_.parent_path());
+}
+
+bool Draft::take_free_place() {
+  if (!move_to_free_name(path_, place_)) return false;
+  path_.clear();
+  return true;
+}
+
+}  // namespace touchtrial
