@@ -108,9 +108,7 @@ nlohmann::ordered_json hands_json(const Collection& collection) {
                      {"contact", outside.contact},
                      {"path", outside.path},
                      {"force", outside.force},
-                     {"speed", outside.speed},
-                     {"saturated", nullptr}});
-    if (session.saturated) hands.back()["saturated"] = *session.saturated;
+                     {"speed", outside.speed}});
   }
   return hands;
 }
@@ -128,15 +126,12 @@ std::string sessions_text(const QualityReport& report) {
   return text;
 }
 
-/// How answers are spread, by session: somebody who always presses one key shows here.
 std::string answers_text(const QualityReport& report) {
-  TextTable table({"session", "answers", "different", "largest share", "longest run", "median"});
+  TextTable table({"session", "answers", "one key"});
   for (const SessionRecord& session : report.collection.sessions) {
     if (!session.answers) continue;
-    const store::AnswerSummary& answers = *session.answers;
-    table.add({std::to_string(session.row.session), std::to_string(answers.n),
-               std::to_string(answers.different), percent(100.0 * answers.largest_share, 1),
-               std::to_string(answers.longest_run), fmt::format("{:.1f} s", answers.median_s)});
+    table.add({std::to_string(session.row.session), std::to_string(*session.answers),
+               session.one_key ? "yes" : ""});
   }
   return heading("answers by session", report.simulated) + table.text();
 }
@@ -144,14 +139,13 @@ std::string answers_text(const QualityReport& report) {
 /// The trials in which the hand was outside a window, by session: somebody who does not press or
 /// does not move shows here.
 std::string hands_text(const QualityReport& report) {
-  TextTable table({"session", "with a trace", "contact", "path", "force", "speed", "saturated"});
+  TextTable table({"session", "with a trace", "contact", "path", "force", "speed"});
   for (const SessionRecord& session : report.collection.sessions) {
     const HandCounts& outside = session.outside;
     if (outside.trials == 0) continue;
     table.add({std::to_string(session.row.session), std::to_string(outside.trials),
                std::to_string(outside.contact), std::to_string(outside.path),
-               std::to_string(outside.force), std::to_string(outside.speed),
-               session.saturated ? std::to_string(*session.saturated) : "-"});
+               std::to_string(outside.force), std::to_string(outside.speed)});
   }
   return heading("trials outside a window, by session", report.simulated) + table.text();
 }
