@@ -53,7 +53,38 @@ void finish(SessionRecord& record) {
   if (record.row.state != store::SessionState::stopped) record.stop_reason.clear();
 }
 
+/// \return nothing for no times
+std::optional<double> median_in_tenths(std::vector<double> times_s) {
+  if (times_s.empty()) return std::nullopt;
+  std::ranges::sort(times_s);
+  const std::size_t half = times_s.size() / 2;
+  const bool is_odd = times_s.size() % 2 == 1;
+  return store::in_tenths(is_odd ? times_s[half] : (times_s[half - 1] + times_s[half]) / 2.0);
+}
+
 }  // namespace
+
+std::optional<AnswerSpread> spread_of(std::vector<store::TrialRow> trials) {
+  std::erase_if(trials, [](const store::TrialRow& trial) { return !trial.position; });
+  if (trials.empty()) return std::nullopt;
+  std::ranges::sort(trials, {}, &store::TrialRow::answered_at);
+  AnswerSpread spread;
+  std::map<int, int> counts;
+  int most = 0;
+  int run = 0;
+  std::vector<double> times_s;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    most = std::max(most, ++counts[*trials[i].position]);
+    run = i > 0 && trials[i].position == trials[i - 1].position ? run + 1 : 1;
+    spread.longest_run = std::max(spread.longest_run, run);
+    const auto took = trials[i].reaction_time();
+    if (took) times_s.push_back(std::chrono::duration<double>(*took).count());
+  }
+  spread.different = static_cast<int>(counts.size());
+  spread.largest_share = static_cast<double>(most) / static_cast<double>(trials.size());
+  spread.median_s = median_in_tenths(std::move(times_s));
+  return spread;
+}
 
 std::optional<CollectionDates> dates_of(const std::vector<SessionRecord>& sessions) {
   constexpr std::size_t kDay = 10;  // "2026-01-31"

@@ -51,6 +51,21 @@ struct PracticeRecord {
   bool passed = true;          ///< whether there is no deviation `practice-not-passed`
 };
 
+/// How the answers of a session are spread: an outcome.
+struct AnswerSpread {
+  int different = 0;           ///< positions that were answered
+  double largest_share = 0.0;  ///< of the most frequent position, in (0, 1]
+  int longest_run = 0;         ///< answers at one position in a row
+  /// From plane-on to the answer, to tenths of a second; empty: each waited for the end of a pause.
+  std::optional<double> median_s{};
+
+  friend bool operator==(const AnswerSpread&, const AnswerSpread&) = default;
+};
+
+/// \param trials  of one session, opened
+/// \return nothing if none is answered
+[[nodiscard]] std::optional<AnswerSpread> spread_of(std::vector<store::TrialRow> trials);
+
 /// Trials of a session with a trace, and those of them in which the hand was outside a window
 /// (store::HandWindows).
 struct HandCounts {
@@ -70,9 +85,10 @@ struct SessionRecord {
   std::optional<store::StationRecord> station;  ///< only for sessions in real time
   std::string opened_utc;                       ///< ISO 8601; empty for simulated sessions
   std::optional<PracticeRecord> practice;
-  std::optional<store::AnswerSummary> answers;  ///< of a session that has ended with answers
+  std::optional<int> answers;            ///< of a session that has ended
+  bool one_key = false;                  ///< see session::Session::close
+  std::optional<AnswerSpread> spread{};  ///< once outcomes are shown
   HandCounts outside{};
-  std::optional<int> saturated{};     ///< trials at the force limit, of a session that has ended
   std::vector<Deviation> deviations;  ///< including those noted later; duplicates appear once
   // In the words of people; "(sealed)" without the key.
   std::string exclusion_reason;
@@ -80,7 +96,7 @@ struct SessionRecord {
   std::string replacement_reason;
   std::string stop_reason;  ///< or the program's
   std::string withdrawal_reason;
-  std::optional<double> largest_force_n;  ///< sent, to tenths; of a session that has ended
+  std::optional<double> largest_force_n;  ///< sent, to tenths; once outcomes are shown
   int resumed = 0;        ///< how often the session was resumed after the program had ended
   int interruptions = 0;  ///< of presentations, repeated or not
   int pauses = 0;

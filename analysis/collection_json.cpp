@@ -45,13 +45,15 @@ Json practice_json(const std::optional<PracticeRecord>& practice) {
   return object;
 }
 
-Json answers_json(const std::optional<store::AnswerSummary>& answers) {
-  if (!answers) return nullptr;
-  return {{"n", answers->n},
-          {"different", answers->different},
-          {"largest_share", figure_json(answers->largest_share)},
-          {"longest_run", answers->longest_run},
-          {"median_s", figure_json(answers->median_s)}};
+Json answers_json(const SessionRecord& session) {
+  if (!session.answers) return nullptr;
+  Json object{{"n", *session.answers}, {"one_key", session.one_key}};
+  if (!session.spread) return object;
+  object["different"] = session.spread->different;
+  object["largest_share"] = figure_json(session.spread->largest_share);
+  object["longest_run"] = session.spread->longest_run;
+  object["median_s"] = figure_json(session.spread->median_s);
+  return object;
 }
 
 Json session_json(const SessionRecord& session) {
@@ -71,7 +73,7 @@ Json session_json(const SessionRecord& session) {
                         {"source", session.station->screen->source}};
   }
   object["practice"] = practice_json(session.practice);
-  object["answers"] = answers_json(session.answers);
+  object["answers"] = answers_json(session);
   object["exclusion_reason"] = exclusion_words(session);
   object["replacement_reason"] = session.replacement_reason;
   object["stop_reason"] = session.stop_reason;

@@ -41,7 +41,7 @@ std::string stop_in(const store::Event& event) {
 
 void add_end(const store::ClosedBody& closed, SessionRecord& session) {
   session.answers = closed.answers;
-  session.saturated = closed.saturated;
+  session.one_key = closed.one_key;
   session.largest_force_n = closed.largest_force_n;
 }
 
@@ -72,6 +72,7 @@ bool is_partly_sealed(store::EventKind kind) {
     case store::EventKind::practised:
     case store::EventKind::deviated:
     case store::EventKind::stopped:
+    case store::EventKind::closed:
     case store::EventKind::participant_excluded:
     case store::EventKind::participant_withdrawn:
     case store::EventKind::participant_replaced:

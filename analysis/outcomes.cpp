@@ -139,6 +139,21 @@ void add_dealt(const Outcomes& outcomes, Collection& collection) {
   }
 }
 
+/// Adds how the answers of each session that is shown are spread, and takes away what was opened of
+/// the ends of others.
+void add_spreads(const std::vector<store::TrialRow>& trials,
+                 const std::map<int, SessionOutcome>& shown, Collection& collection) {
+  std::map<int, std::vector<store::TrialRow>> by_session;
+  for (const store::TrialRow& trial : trials) by_session[trial.session].push_back(trial);
+  for (SessionRecord& record : collection.sessions) {
+    if (!shown.contains(record.row.session)) {
+      record.largest_force_n.reset();
+    } else {
+      record.spread = spread_of(std::move(by_session[record.row.session]));
+    }
+  }
+}
+
 /// Answers, incidents and demographics of the sessions that are shown.
 void take_what_was_said(const OpenedSessions& opened, const design::Study& study,
                         Outcomes& outcomes) {
@@ -206,6 +221,7 @@ Outcomes opened(const store::StudyStore& store, const design::StudyKey& key, Sho
   const auto schedules = open_schedules(events, key, keys);
   Measures measures;
   const std::vector<store::TrialRow> trials = sessions_opened.take_trials(measures);
+  add_spreads(trials, sessions, outcomes.collection);
   outcomes.trials.reserve(trials.size());
   for (const store::TrialRow& row : trials) {
     const auto schedule = schedules.find(row.session);

@@ -107,9 +107,7 @@ nlohmann::ordered_json hands_json(const Collection& collection) {
                      {"contact", outside.contact},
                      {"path", outside.path},
                      {"force", outside.force},
-                     {"speed", outside.speed},
-                     {"saturated", nullptr}});
-    if (session.saturated) hands.back()["saturated"] = *session.saturated;
+                     {"speed", outside.speed}});
   }
   return hands;
 }

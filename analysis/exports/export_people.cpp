@@ -96,8 +96,10 @@ class SafetyRecord {
       keys_ = person_keys(store, *key);
     }
     for (const store::SessionRow& row : store.sessions()) sessions_[row.session].row = row;
-    store.for_each(EventKind::closed, [&](const store::Event& event) {
-      Session& session = sessions_.at(event.session);
+    store.for_each(EventKind::closed, [&](const store::Event& stored) {
+      Session& session = sessions_.at(stored.session);
+      const store::Event event = readable(stored, session.row);
+      if (!event.sealed.empty()) return;
       session.largest_force_n = store::closed_from_json(event.body).largest_force_n;
       session.force_of = session.largest_force_n ? ForceOf::session : ForceOf::none;
     });

@@ -334,7 +334,7 @@ void give_up(const RunOptions& options, const RunStudy& study, store::StudyStore
   const std::unique_ptr<store::EventSink> sink = store.continue_session(row.session);
   session::Session session = restored(options, study, kept, row, *sink);
   if (session.accepts(session::SessionInput::stop)) session.stop(session.last(), "", "restarted");
-  session.close(session.last());
+  session.close(session.last(), study.key.study.protocol->may_name_one_key(study.key.study));
 }
 
 /// Opens a new session with the enrolment number of the previous one, which has ended.
@@ -529,10 +529,23 @@ std::string summary(const RunOptions& options, int session, const session::Sessi
                      answered_trials(store, session), seconds / 60, seconds % 60);
 }
 
+/// A session's end erases the station's copy of its key, which stays in the database's log as long
+/// as another program reads there.
+void require_key_erased(const RunOptions& options, int session, store::StudyStore& store) {
+  if (store.clear_log()) return;
+  const std::string database = one_line(options.database.string());
+  spdlog::warn(
+      "{}: another program reads it, so that this station's key of session {} is not erased from "
+      "{}-wal yet, which is recorded; close that program, then run `touchtrial status {}`",
+      database, session, database, database);
+  store.note(session, utc_now(), "key-not-erased",
+             "another program had the database open when the session ended");
+}
+
 }  // namespace
 
 int conclude_session(const RunOptions& options, int session, const session::SessionTally& tally,
-                     const store::StudyStore& store, std::string trouble) {
+                     store::StudyStore& store, std::string trouble) {
   if (trouble.empty() && !is_on_disk(options.database, session, store)) {
     trouble = one_line(options.database.string()) + " was changed while the session ran";
   }
@@ -541,6 +554,7 @@ int conclude_session(const RunOptions& options, int session, const session::Sess
         fmt::format("{}, and does not hold session {} of participant {} to its end; {}", trouble,
                     session, options.participant, rescue(options.database, store)));
   }
+  if (!tally.left) require_key_erased(options, session, store);
   const bool is_complete =
       store.session_of(options.participant)->state == store::SessionState::completed;
   // Nobody has a day sheet of simulated participants.

@@ -102,6 +102,6 @@ class RunExperimenter final : public session::Experimenter {
 /// \return the exit code, as run_study_session
 [[nodiscard]] int conclude_session(const RunOptions& options, int session,
                                    const session::SessionTally& tally,
-                                   const store::StudyStore& store, std::string trouble);
+                                   store::StudyStore& store, std::string trouble);
 
 }  // namespace touchtrial::app

@@ -21,6 +21,7 @@ inline constexpr auto kDeviationCodes = std::to_array<std::string_view>({"answer
                                                                          "database-locked",
                                                                          "focus-lost",
                                                                          "key-at-station",
+                                                                         "key-not-erased",
                                                                          "no-blindfold",
                                                                          "no-calibration",
                                                                          "no-certificate",

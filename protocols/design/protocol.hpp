@@ -89,6 +89,11 @@ class Protocol {
   [[nodiscard]] virtual std::optional<int> right_choice(const Study& study,
                                                         const Presentation& shown) const = 0;
 
+  /// Whether a session's end may say in clear that nearly all answers came from one key. Not where
+  /// a key means something by itself, as "same" does, and not where people who feel nothing keep to
+  /// one key, as between intervals: there it is the outcome.
+  [[nodiscard]] virtual bool may_name_one_key(const Study& /*study*/) const { return false; }
+
   /// The page of the instructions that tells participants what to do, in English. Needed only by a
   /// protocol for which the files in config/texts have no page of its name; otherwise empty.
   [[nodiscard]] virtual std::string instruction() const { return {}; }

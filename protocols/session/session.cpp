@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -11,44 +10,14 @@
 namespace touchtrial::session {
 namespace {
 
-/// To tenths of a second: an exact time would tell more than how quickly somebody answers.
-/// \return 0 if every answer waited for the end of a pause
-double median_s(std::span<const GivenAnswer> answers) {
-  std::vector<double> times_s;
-  for (const GivenAnswer& answer : answers) {
-    if (answer.took) times_s.push_back(std::chrono::duration<double>(*answer.took).count());
-  }
-  if (times_s.empty()) return 0.0;
-  std::ranges::sort(times_s);
-  const std::size_t half = times_s.size() / 2;
-  const bool is_odd = times_s.size() % 2 == 1;
-  const double median = is_odd ? times_s[half] : (times_s[half - 1] + times_s[half]) / 2.0;
-  return std::round(10.0 * median) / 10.0;
-}
-
-int longest_run(std::span<const GivenAnswer> answers) {
-  int longest = 0;
-  int run = 0;
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    const bool goes_on = i > 0 && answers[i].position == answers[i - 1].position;
-    run = goes_on ? run + 1 : 1;
-    longest = std::max(longest, run);
-  }
-  return longest;
-}
-
-/// How a participant answered, without what was right; nothing without answers.
-std::optional<store::AnswerSummary> summary_of(std::span<const GivenAnswer> answers) {
-  if (answers.empty()) return std::nullopt;
-  std::map<int, int> counts;
-  int most = 0;
-  for (const GivenAnswer& answer : answers) most = std::max(most, ++counts[answer.position]);
-  const auto n = static_cast<int>(answers.size());
-  return store::AnswerSummary{.n = n,
-                              .different = static_cast<int>(counts.size()),
-                              .largest_share = static_cast<double>(most) / n,
-                              .longest_run = longest_run(answers),
-                              .median_s = median_s(answers)};
+/// Whether nearly all of enough answers are at one position.
+bool is_one_key(const std::map<int, int>& answers, int n) {
+  constexpr int kEnough = 20;
+  constexpr int kOtherOneIn = 20;
+  if (n < kEnough) return false;
+  const auto& [position, most] =
+      *std::ranges::max_element(answers, {}, &std::pair<const int, int>::second);
+  return (n - most) * kOtherOneIn <= n;
 }
 
 }  // namespace
@@ -190,10 +159,8 @@ void Session::present(Time at) {
 void Session::begin_presentation(Time at) noexcept {
   // The first trial after a break, instructions or practice: until then the hand has rested.
   if (done_since_break_ == 0) rested_at_ = at;
-  presented_at_ = at;
   had_contact_ = false;
   was_timed_out_ = false;
-  paused_answer_ = false;
   evidence_.reset();
   answer_.reset();
   ++begun_;
@@ -265,19 +232,8 @@ void Session::confirm(Time at, std::optional<int> confidence) {
     body.target = chosen->target;
   }
   recorder_.answered(at, body, evidence_);
-  note_answer(at, answer_->position);
+  ++answers_[answer_->position];
   finish_presentation(at, answer_->position);
-}
-
-void Session::note_evidence(const store::TraceBody& body) {
-  if (body.saturated) ++saturated_;
-  note_force(body.largest_force_n);
-}
-
-void Session::note_answer(Time at, int position) {
-  GivenAnswer given{position, std::nullopt};
-  if (!paused_answer_) given.took = at - presented_at_;
-  answers_.push_back(given);
 }
 
 std::optional<int> Session::trial_under_way() const noexcept {
@@ -289,7 +245,7 @@ void Session::note_force(double largest_n) {
 }
 
 void Session::finish_presentation(Time at, std::optional<int> position) {
-  if (evidence_) note_evidence(evidence_->body);
+  if (evidence_) note_force(evidence_->body.largest_force_n);
   course_.finish(position);
   evidence_.reset();
   ++done_since_break_;
@@ -321,7 +277,6 @@ void Session::take_break(Time at, const std::string& text) {
 
 void Session::pause(Time at, const std::string& reason) {
   require(Input::pause, at);
-  if (in_presentation()) paused_answer_ = true;
   recorder_.paused(at, {.text = reason, .trial = trial_under_way()});
   before_pause_ = phase_;
   move_to(Phase::paused, at);
@@ -381,9 +336,11 @@ void Session::stop(Time at, const std::string& reason, const std::string& code) 
   move_to(Phase::stopped, at);
 }
 
-void Session::close(Time at) {
+void Session::close(Time at, bool may_name_one_key) {
   require(Input::close, at);
-  recorder_.closed(at, phase_ == Phase::finished, summary_of(answers_), saturated_,
+  int n = 0;
+  for (const auto& [position, count] : answers_) n += count;
+  recorder_.closed(at, phase_ == Phase::finished, n, may_name_one_key && is_one_key(answers_, n),
                    largest_force_n_);
   move_to(Phase::closed, at);
 }

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -21,11 +22,6 @@ struct MarksBody;
 }
 
 namespace touchtrial::session {
-
-struct GivenAnswer {
-  int position = 0;
-  std::optional<std::chrono::nanoseconds> took;  ///< from plane-on; empty if it contains a pause
-};
 
 /// The state of a session.
 enum class SessionPhase {
@@ -194,7 +190,9 @@ class Session {
   /// \param reason  in the experimenter's words, sealed; may be empty
   /// \param code  in clear, if the program stops it
   void stop(Time at, const std::string& reason, const std::string& code = "");
-  void close(Time at);
+  /// \param may_name_one_key  Protocol::may_name_one_key; only then the end says in clear if 95 % of
+  ///   20 answers or more are at one position
+  void close(Time at, bool may_name_one_key = false);
 
  private:
   struct Answer {
@@ -208,9 +206,7 @@ class Session {
   void begin_presentation(Time at) noexcept;
   /// \param position  of the answer, if there is one
   void finish_presentation(Time at, std::optional<int> position);
-  void note_answer(Time at, int position);
   [[nodiscard]] std::optional<int> trial_under_way() const noexcept;
-  void note_evidence(const store::TraceBody& body);
   void note_force(double largest_n);
   /// Takes the current presentation off, as the study's on_interruption has it; after kPauseReason
   /// it is the next one.
@@ -234,15 +230,12 @@ class Session {
   SessionPhase phase_ = SessionPhase::fresh;
   SessionPhase before_pause_ = SessionPhase::ready;
   Time last_{};
-  Time presented_at_{};
   bool had_contact_ = false;
   bool was_timed_out_ = false;
-  bool paused_answer_ = false;  ///< there was a pause in the current presentation
   std::optional<store::TrialEvidence> evidence_;
   std::optional<Answer> answer_;
   SessionRemarks remarks_;
-  std::vector<GivenAnswer> answers_;
-  int saturated_ = 0;                      ///< trials
+  std::map<int, int> answers_;             ///< how many, by position
   std::optional<double> largest_force_n_;  ///< sent in presentations
   int begun_ = 0;
   int done_since_break_ = 0;

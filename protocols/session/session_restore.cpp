@@ -60,7 +60,7 @@ bool Session::follow_trial(const store::Event& event) {
       had_contact_ = true;
       return true;
     case store::EventKind::trace_stored:
-      note_evidence(store::trace_body_from_json(event.body));
+      note_force(store::trace_body_from_json(event.body).largest_force_n);
       return true;
     case store::EventKind::timed_out:
       require_current();
@@ -78,7 +78,7 @@ bool Session::follow_trial(const store::Event& event) {
       if (*position < 0 || *position >= static_cast<int>(layout().size())) {
         refuse(event, "answers at a position that there is not");
       }
-      note_answer(event.at, *position);
+      ++answers_[*position];
       finish_presentation(event.at, *position);
       return true;
     }
@@ -141,7 +141,6 @@ void Session::follow_course(const store::Event& event) {
       return;
     }
     case store::EventKind::paused:
-      if (in_presentation()) paused_answer_ = true;
       before_pause_ = phase_;
       phase_ = Phase::paused;
       return;

@@ -325,7 +325,10 @@ SessionTally run_session(Session& session, const SessionParts& parts) {
   if (session.phase() == SessionPhase::finished) ask_closing_questions(desk);
   if (!desk.left()) desk.tell_of_end();
   desk.record_marks();
-  if (!desk.left()) session.close(desk.now());
+  if (!desk.left()) {
+    const design::Study& study = parts.key.study;
+    session.close(desk.now(), study.protocol->may_name_one_key(study));
+  }
   tally.duration = desk.now();
   tally.left = desk.left();
   if (!tally.left) show_end(desk);

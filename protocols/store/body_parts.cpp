@@ -23,6 +23,7 @@ constexpr auto kCode = std::to_array<std::string_view>({"code"});
 constexpr auto kInterrupted =
     std::to_array<std::string_view>({"device_fault", "reason", "safety_fault", "trial"});
 constexpr auto kResumed = std::to_array<std::string_view>({"after", "program_version", "trial"});
+constexpr auto kClosed = std::to_array<std::string_view>({"answers", "complete", "one_key"});
 constexpr auto kTraceStored =
     std::to_array<std::string_view>({"contact_ok", "force_ok", "overruns", "path_ok", "rate_hz",
                                      "servo", "speed_ok", "trace", "trial", "valid"});
@@ -54,6 +55,8 @@ std::optional<Members> clear_members(EventKind kind) {
       return kResumed;
     case EventKind::trace_stored:
       return kTraceStored;
+    case EventKind::closed:
+      return kClosed;
     default:
       return std::nullopt;
   }

@@ -293,7 +293,11 @@ class Inspection {
 
   /// Runs last: a fault of stored data is named before the missing trigger that allowed it.
   void inspect_schema() const {
-    if (const auto differs = schema_fault(database_)) throw EventFault(0, kNoEvent, *differs);
+    const auto differs = schema_fault(database_);
+    if (!differs) return;
+    throw EventFault(
+        0, kNoEvent,
+        differs->what + (differs->remedy.empty() ? "" : "; remove it: " + differs->remedy));
   }
 
   const Database& database_;

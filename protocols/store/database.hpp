@@ -79,7 +79,7 @@ class Query {
 };
 
 /// The version of databases. It counts every change of the tables and of what is in them.
-inline constexpr int kSchemaVersion = 7;
+inline constexpr int kSchemaVersion = 8;
 
 /// Not to be shared between threads.
 class Database {

@@ -315,29 +315,18 @@ struct InterruptionDetail {
   friend bool operator==(const InterruptionDetail&, const InterruptionDetail&) = default;
 };
 
-/// How a participant answered in one session, over all answered presentations: shows in clear
-/// whether somebody presses one key, and nothing of what was right.
-struct AnswerSummary {
-  int n = 0;                   ///< answers, from 1
-  int different = 0;           ///< positions that were answered
-  double largest_share = 0.0;  ///< of the most frequent position, in (0, 1]
-  int longest_run = 0;         ///< answers at one position in a row
-  double median_s = 0.0;       ///< from plane-on to the answer, to tenths of a second
-
-  friend bool operator==(const AnswerSummary&, const AnswerSummary&) = default;
-};
-
 /// A multiple of 0.1 that has one decimal when it is printed.
 [[nodiscard]] inline double in_tenths(double number) {
   return std::round(10.0 * number) / 10.0;
 }
 
-/// `closed`.
+/// `closed`. How answers are spread is not in it: where a key means something, that is the outcome.
 struct ClosedBody {
-  bool complete = false;                   ///< whether the schedule was finished
-  std::optional<AnswerSummary> answers{};  ///< empty: no answers
-  int saturated = 0;                       ///< trials that were too often at the force limit
-  /// That was sent in all presentations, to tenths of a newton; empty: there was none.
+  bool complete = false;  ///< whether the schedule was finished
+  int answers = 0;        ///< answered presentations
+  bool one_key = false;   ///< see session::Session::close
+  /// That was sent in all presentations, to tenths of a newton; sealed, since weak levels of an
+  /// adaptive track need less. Empty: there was none, or it is not opened.
   std::optional<double> largest_force_n{};
 };
 

@@ -210,19 +210,10 @@ void members(Io& io, In<Io, InterruptionDetail>& body) {
 }
 
 template <typename Io>
-void members(Io& io, In<Io, AnswerSummary>& body) {
-  io("n", body.n, 1);
-  io("different", body.different, 1);
-  io("largest_share", body.largest_share);
-  io("longest_run", body.longest_run, 1);
-  io("median_s", body.median_s);
-}
-
-template <typename Io>
 void members(Io& io, In<Io, ClosedBody>& body) {
   io("complete", body.complete);
-  io.part("answers", body.answers);
-  io.if_any("saturated", body.saturated);
+  io.if_any("answers", body.answers);
+  io.if_any("one_key", body.one_key);
   io("largest_force_n", body.largest_force_n);
 }
 

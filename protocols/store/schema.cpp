@@ -1,7 +1,12 @@
 #include "protocols/store/schema.hpp"
 
+#include "core/errors.hpp"
+
+#include <algorithm>
+#include <cctype>
 #include <map>
 #include <utility>
+#include <vector>
 
 namespace touchtrial::store {
 namespace {
@@ -63,10 +68,102 @@ SchemaObjects objects_of(SQLite::Database& connection) {
   return objects;
 }
 
-SchemaObjects expected_objects() {
+/// What SQLite keeps for itself, which any viewer's ANALYZE or AUTOINCREMENT leaves behind. Its
+/// statistics sample no column but the keys of rows, which are in clear.
+const SchemaObjects& harmless_objects() {
+  static const auto table = [](std::string name, const std::string& columns) {
+    std::string sql = name + " CREATETABLE" + name + "(" + columns + ")";
+    return SchemaObjects::value_type({"table", std::move(name)}, std::move(sql));
+  };
+  static const SchemaObjects objects = {table("sqlite_sequence", "name,seq"),
+                                        table("sqlite_stat1", "tbl,idx,stat"),
+                                        table("sqlite_stat2", "tbl,idx,sampleno,sample"),
+                                        table("sqlite_stat3", "tbl,idx,neq,nlt,ndlt,sample"),
+                                        table("sqlite_stat4", "tbl,idx,neq,nlt,ndlt,sample")};
+  return objects;
+}
+
+using Columns = std::vector<std::string>;
+
+Columns columns_of(SQLite::Database& connection, const std::string& table) {
+  SQLite::Statement query(connection, "SELECT name FROM pragma_table_xinfo(?)");
+  query.bind(1, table);
+  Columns columns;
+  while (query.executeStep()) columns.push_back(query.getColumn(0).getString());
+  return columns;
+}
+
+struct Schema {
+  SchemaObjects objects;
+  std::map<std::string, Columns> columns;  ///< by table
+};
+
+Schema expected_schema() {
   SQLite::Database empty(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   empty.exec(schema_sql());
-  return objects_of(empty);
+  Schema schema{objects_of(empty), {}};
+  for (const char* const table : kTables) schema.columns[table] = columns_of(empty, table);
+  return schema;
+}
+
+std::string identifier(const std::string& name) {
+  std::string quoted = "\"";
+  for (const char c : name) quoted.append(c == '"' ? 2 : 1, c);
+  return quoted + '"';
+}
+
+/// A word for a shell, on one line: '...' or, where a byte cannot be shown, $'...' of bash and zsh.
+std::string shell_word(const std::string& text) {
+  if (one_line(text) == text) {
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? std::string(R"('\'')") : std::string(1, c);
+    return word + '\'';
+  }
+  std::string word = "$'";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_plain = byte >= ' ' && byte < 0x7f && c != '\'' && c != '\\';
+    if (is_plain) {
+      word += c;
+      continue;
+    }
+    word += '\\';
+    for (const int place : {64, 8, 1}) word += static_cast<char>('0' + byte / place % 8);
+  }
+  return word + '\'';
+}
+
+/// The command that drops objects and columns.
+/// \param statements  SQL
+std::string drop_command(const std::filesystem::path& database, const std::string& statements) {
+  // sqlite3 takes a name that begins so for an option or an address.
+  const std::string path = database.string();
+  const bool is_name = path.starts_with('-') || path.starts_with("file:");
+  return "sqlite3 " + shell_word(is_name ? "./" + path : path) + ' ' + shell_word(statements);
+}
+
+/// Drops what does not belong to the schema: first what depends on tables.
+/// \param alien  objects; internal indexes go with their tables
+std::string drop_statements(const SchemaObjects& alien) {
+  std::string sql;
+  for (const char* const type : {"trigger", "view", "index", "table"}) {
+    for (const auto& [object, made_by] : alien) {
+      if (object.first != type || object.second.starts_with("sqlite_autoindex_")) continue;
+      std::string keyword = type;
+      std::ranges::transform(keyword, keyword.begin(), [](char c) { return std::toupper(c); });
+      sql += "DROP " + keyword + " IF EXISTS " + identifier(object.second) + "; ";
+    }
+  }
+  return sql;
+}
+
+std::string drop_columns(const std::string& table, Columns found, const Columns& expected) {
+  std::string sql;
+  for (const std::string& column : found) {
+    if (std::ranges::find(expected, column) != expected.end()) continue;
+    sql += "ALTER TABLE " + table + " DROP COLUMN " + identifier(column) + "; ";
+  }
+  return sql;
 }
 
 }  // namespace
@@ -78,18 +175,36 @@ void make_tables(const Database& database) {
   });
 }
 
-std::optional<std::string> schema_fault(const Database& database) {
-  static const SchemaObjects expected = expected_objects();
-  SchemaObjects found = objects_of(database.connection());
-  for (const auto& [object, made_by] : expected) {
-    const auto same = found.extract(object);
+std::optional<SchemaFault> schema_fault(const Database& database) {
+  static const Schema expected = expected_schema();
+  SchemaObjects alien = objects_of(database.connection());
+  std::string what;
+  std::string columns;
+  for (const auto& [object, made_by] : expected.objects) {
+    const auto same = alien.extract(object);
     const std::string name = object.first + " " + object.second;
-    if (same.empty()) return name + " is missing from the schema";
-    if (same.mapped() != made_by) return name + " is not as its schema has it";
+    if (same.empty()) return SchemaFault{name + " is missing from the schema", ""};
+    if (same.mapped() == made_by) continue;
+    if (what.empty()) what = name + " is not as its schema has it";
+    const auto own = expected.columns.find(object.second);
+    const std::string more =
+        own == expected.columns.end()
+            ? ""
+            : drop_columns(own->first, columns_of(database.connection(), own->first), own->second);
+    if (more.empty()) return SchemaFault{what, ""};
+    columns += more;
   }
-  if (found.empty()) return std::nullopt;
-  const auto& [type, name] = found.begin()->first;
-  return type + " " + name + " does not belong to the schema";
+  std::erase_if(alien, [](const auto& object) {
+    const auto harmless = harmless_objects().find(object.first);
+    return harmless != harmless_objects().end() && harmless->second == object.second;
+  });
+  const std::string statements = drop_statements(alien) + columns;
+  if (what.empty() && !alien.empty()) {
+    const auto& [type, name] = alien.begin()->first;
+    what = one_line(type + " " + name) + " does not belong to the schema";
+  }
+  if (what.empty()) return std::nullopt;
+  return SchemaFault{what, statements.empty() ? "" : drop_command(database.path(), statements)};
 }
 
 }  // namespace touchtrial::store

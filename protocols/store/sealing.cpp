@@ -108,7 +108,7 @@ SecretKey safety_key(const SecretKey& participant_key) {
 }
 
 bool is_safety_record(EventKind kind) {
-  return kind == EventKind::stopped || kind == EventKind::deviated;
+  return kind == EventKind::stopped || kind == EventKind::deviated || kind == EventKind::closed;
 }
 
 NewKeys wrap_participant_key(const PublicKey& investigator, int own_session,

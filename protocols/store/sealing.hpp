@@ -1,9 +1,9 @@
 /// \file What is encrypted under a participant's two keys, and who holds them: the investigator
 /// always, the station only while the session is open. The safety key follows from the
-/// participant's key, and outlives it: it opens why sessions were stopped and what deviated, and no
-/// outcome. A box is bound to the session's own number (Event::own_session) and to its place there,
-/// an event's also to all that is in clear of it, so that none can be passed off as another.
-/// Format: docs/data-dictionary.md, "Events".
+/// participant's key, and outlives it: it opens why sessions were stopped, what deviated and how a
+/// session ended, and no outcome. A box is bound to the session's own number (Event::own_session)
+/// and to its place there, an event's also to all that is in clear of it, so that none can be
+/// passed off as another. Format: docs/data-dictionary.md, "Events".
 #pragma once
 
 #include "core/public_keys.hpp"

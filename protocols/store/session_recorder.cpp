@@ -151,14 +151,13 @@ void SessionRecorder::stopped(std::chrono::nanoseconds at, const StopBody& why) 
   append(at, {EventKind::stopped, to_json(why)});
 }
 
-void SessionRecorder::closed(std::chrono::nanoseconds at, bool complete,
-                             const std::optional<AnswerSummary>& answers, int saturated,
+void SessionRecorder::closed(std::chrono::nanoseconds at, bool complete, int answers, bool one_key,
                              std::optional<double> largest_force_n) {
   if (largest_force_n) largest_force_n = in_tenths(*largest_force_n);
   // Sealing this takes the key: a chain that somebody makes anew without it ends differently.
   const ClosedBody body{.complete = complete,
                         .answers = answers,
-                        .saturated = saturated,
+                        .one_key = one_key,
                         .largest_force_n = largest_force_n};
   append(at,
          {EventKind::closed, to_json(body), to_json(ChainEnd{.length = length_, .head = head_})});

@@ -103,9 +103,8 @@ class SessionRecorder {
   void stopped(std::chrono::nanoseconds at, const StopBody& why);
   /// Seals the chain's length and head up to here into the event, see ChainEnd.
   /// \param complete  whether the schedule was finished
-  /// \param answers, saturated, largest_force_n  in clear, see ClosedBody; empty: there are none
-  void closed(std::chrono::nanoseconds at, bool complete,
-              const std::optional<AnswerSummary>& answers = std::nullopt, int saturated = 0,
+  /// \param answers, one_key, largest_force_n  see ClosedBody
+  void closed(std::chrono::nanoseconds at, bool complete, int answers = 0, bool one_key = false,
               std::optional<double> largest_force_n = std::nullopt);
 
   /// Goes on with a chain that is stored already.

@@ -99,7 +99,9 @@ StudyStore StudyStore::open(const std::filesystem::path& path, Access access) {
     if (access == Access::read_only) return;
     // A trigger of somebody else's could swallow what is to be recorded.
     if (const auto differs = schema_fault(impl->database())) {
-      impl->study.refuse(*differs + "; nothing is recorded in it, run `touchtrial verify`");
+      impl->study.refuse(differs->what + "; nothing is recorded in it" +
+                         (differs->remedy.empty() ? ", run `touchtrial verify`"
+                                                  : "; remove it: " + differs->remedy));
     }
   });
   return StudyStore(std::move(impl));
@@ -345,8 +347,7 @@ void StudyStore::withdraw(std::span<const int> sessions, std::chrono::nanosecond
   });
   if (kept == Kept::data) return impl_->run([&] { impl_->study.empty_log(); });
   // The log still holds the pages with the keys.
-  const bool emptied = impl_->run([&] { return impl_->database().checkpoint(); });
-  if (!emptied) {
+  if (!clear_log()) {
     impl_->study.refuse(
         "the withdrawal is recorded, but another program keeps the key in the file's -wal; close "
         "it there, then open and close the database once for writing");
@@ -404,6 +405,10 @@ void copy(const Database& database, const std::filesystem::path& to) {
 }
 
 }  // namespace
+
+bool StudyStore::clear_log() const {
+  return impl_->run([&] { return impl_->database().checkpoint(); });
+}
 
 void StudyStore::copy_to(const std::filesystem::path& path) const {
   copy(impl_->database(), path);

@@ -89,6 +89,9 @@ class StudyStore {
   [[nodiscard]] StudyState state() const;
   /// The end of the file's chain.
   [[nodiscard]] ChainHead file_head() const;
+  /// Empties the write-ahead log, where a key that was erased lies until then.
+  /// \return whether no other program prevented it
+  [[nodiscard]] bool clear_log() const;
   /// Lays a copy of the database as it is now at a path; an existing file is replaced.
   /// \throws StoreError if another program keeps it from being read, or the copy cannot be written
   void copy_to(const std::filesystem::path& path) const;

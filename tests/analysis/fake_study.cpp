@@ -208,7 +208,7 @@ void FakeStudy::add(const FakeSession& session) {
     }
     return;
   }
-  recorder.closed(milliseconds(10'000'000), session.complete, session.summary, session.saturated);
+  recorder.closed(milliseconds(10'000'000), session.complete, place, session.one_key);
   store_.add_session(buffer, keys, session.after + milliseconds(number));
 }
 

@@ -34,11 +34,10 @@ struct FakeSession {
   int stop_after = 1 << 20;  ///< presentations
   /// Recorded after the opening, before 10 s have passed.
   std::function<void(store::SessionRecorder&)> before_trials{};
-  std::optional<store::AnswerSummary> summary{};  ///< that the session ends with
-  FakeTraces traces{};                            ///< empty: a touch too short to feel anything
-  store::HandWindows hand{};                      ///< of every second trial
-  int saturated = 0;                              ///< that the session ends with
-  bool ends = true;  ///< false: it is left open after its last presentation
+  bool one_key = false;       ///< that the session ends with
+  FakeTraces traces{};        ///< empty: a touch too short to feel anything
+  store::HandWindows hand{};  ///< of every second trial
+  bool ends = true;           ///< false: it is left open after its last presentation
   int visit = 1;
   std::chrono::hours after{};  ///< later on the file's chain than sessions usually are
 };

@@ -1,6 +1,8 @@
 #include "analysis/quality.hpp"
 
+#include "analysis/json_figures.hpp"
 #include "analysis/fake_study.hpp"
+#include "analysis/outcomes.hpp"
 #include "analysis/page/study_document.hpp"
 #include "analysis/text_matching.hpp"
 #include "protocols/identification/analysis/report.hpp"
@@ -84,28 +86,29 @@ TEST_CASE("A quality report counts interruptions, repeated or not, pauses and no
   CHECK(json["collection"]["sessions"][0]["interruptions"] == 3);
 }
 
-TEST_CASE("A quality report shows by session how answers are spread") {
+TEST_CASE("A quality report names who presses one key, and how answers are spread stays sealed") {
   FakeStudy study(design::identification::classification());
-  FakeSession session{.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()};
-  session.summary = store::AnswerSummary{
-      .n = 12, .different = 2, .largest_share = 0.75, .longest_run = 7, .median_s = 4.3};
-  study.add(session);
+  const auto first = [](const design::Presentation&) { return 0; };
+  study.add({.participant = "P01", .enrolment = 1, .answers = first, .one_key = true});
   study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
-  const analysis::QualityReport report = analysis::make_quality(study.store());
-  const auto json = nlohmann::json::parse(analysis::quality_json(report));
-  const auto& sessions = json["collection"]["sessions"];
-  CHECK(sessions[0]["answers"]["different"] == 2);
-  CHECK(sessions[0]["answers"]["longest_run"] == 7);
-  CHECK(sessions[1]["answers"].is_null());
-  CHECK_FALSE(json["responses"].contains("by_position"));
-  CHECK_FALSE(json["responses"].contains("changed"));
+  const auto sessions = [](const analysis::Collection& collection) {
+    return analysis::collection_object(collection)["sessions"];
+  };
+  const auto blind = sessions(analysis::make_quality(study.store()).collection);
+  CHECK(blind[0]["answers"].dump() == R"({"n":12,"one_key":true})");
+  CHECK(blind[1]["answers"].dump() == R"({"n":12,"one_key":false})");
+  study.close_and_unblind();
+  const auto shown = sessions(analysis::load_outcomes(study.store(), study.key()).collection);
+  CHECK(shown[0]["answers"]["largest_share"] == 1.0);
+  CHECK(shown[0]["answers"]["longest_run"] == 12);
+  CHECK(shown[1]["answers"]["different"] == 3);
+  CHECK(shown[1]["answers"]["median_s"] == 4.3);
 }
 
 TEST_CASE("A quality report shows by session in how many trials the hand was outside a window") {
   FakeStudy study(design::identification::classification());
   FakeSession session{.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()};
   session.hand = {.path = false, .speed = false};
-  session.saturated = 3;
   study.add(session);
   study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
   study.add({.participant = "P03", .enrolment = 3, .answers = FakeStudy::always_right()});
@@ -118,8 +121,6 @@ TEST_CASE("A quality report shows by session in how many trials the hand was out
   const auto outside = nlohmann::json::parse(analysis::quality_json(report))["outside"];
   REQUIRE(outside.size() == 2);
   CHECK(outside[0]["speed"] == 6);
-  CHECK(outside[0]["saturated"] == 3);
-  CHECK(outside[1]["saturated"] == 0);
 }
 
 TEST_CASE("make_quality counts every session once, and replaced ones apart") {

@@ -314,6 +314,29 @@ TEST_CASE(
   check_verified(study);
 }
 
+TEST_CASE("a session that ends while others read says and records that its key is still there") {
+  const PeopleStudy study;
+  {
+    SQLite::Database reader(study.in("study.db"), SQLite::OPEN_READONLY);
+    reader.exec("BEGIN");
+    static_cast<void>(reader.execAndGet("SELECT count(*) FROM station_keys").getInt());
+    const ProgramResult ended = succeeded(study.session_of("P009"));
+    CHECK_THAT(ended.errors,
+               holds_text("another program reads it") && holds_text("touchtrial status"));
+    const StudyStore store = study.store();
+    const Event last = store.events(0).back();
+    CHECK(last.kind == EventKind::participant_noted);
+    CHECK(note_from_json(last.body).code == "key-not-erased");
+    CHECK(fs::file_size(study.in("study.db-wal")) > 0);
+  }
+  succeeded(study.type("status @study.db"));
+  CHECK_FALSE(fs::exists(study.in("study.db-wal")));
+  check_verified(study);
+  const ProgramResult alone = succeeded(study.session_of("P010"));
+  CHECK(alone.errors.find("another program") == std::string::npos);
+  CHECK(study.store().events(0).back().kind == EventKind::session_closed);
+}
+
 TEST_CASE("a withdrawal says and records what it could not erase") {
   const PeopleStudy study;
   const ProgramResult withdrawn =

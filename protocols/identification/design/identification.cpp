@@ -37,6 +37,7 @@ class Identification : public Protocol {
   std::optional<int> right_choice(const Study&, const Presentation& shown) const override {
     return shown.stimulus.class_index;
   }
+  bool may_name_one_key(const Study& /*study*/) const override { return true; }
 };
 
 class Classification final : public Identification {

@@ -144,7 +144,7 @@ TEST_CASE("The safety record says where the largest force of an open session com
     return found;
   };
   CHECK(forces(nullptr) ==
-        std::vector<std::string>{"not-known:", "not-known:", "not-known:", "none:"});
+        std::vector<std::string>{"not-known:", "not-known:", "not-known:", "not-known:"});
   CHECK(forces(&study.key()) ==
         std::vector<std::string>{"so-far:1.5", "not-known:", "none:", "none:"});
 }

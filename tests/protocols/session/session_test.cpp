@@ -524,60 +524,38 @@ TEST_CASE("events that do not fit the schedule are refused") {
                     holds_text("verify"));
 }
 
-TEST_CASE("a session ends with how its answers are spread, also after it was taken up") {
-  Laboratory lab(5);
-  lab.run_trial(2);
-  lab.run_trial(0);
+/// The end of a session whose first answers are at position 1 and the rest at 0, taken up after the
+/// first five.
+std::string end_of(int answers, int at_1, bool may_name_one_key) {
+  Laboratory lab(answers);
+  for (int trial = 1; trial <= 5; ++trial) lab.run_trial(trial <= at_1 ? 1 : 0);
   FickleSink sink;
-  session::Session again(schedule_of(5), {}, store::SessionRecorder(1, SecretKey{}, sink));
+  session::Session again(schedule_of(answers), {}, store::SessionRecorder(1, SecretKey{}, sink));
   again.restore(as_recorded(lab.sink.stored.events, SecretKey{}));
   std::chrono::nanoseconds now = again.last();
   again.take_up(now, {"program-ended", 1.0, "1"});
-  for (const int trial : {3, 4, 5}) {
+  for (int trial = 6; trial <= answers; ++trial) {
     again.present(now += seconds(1));
     again.end_exploring(now += seconds(1));
-    again.choose(trial == 5 ? 1 : 0);
-    again.confirm(now += std::chrono::milliseconds(2260));
+    again.choose(0);
+    again.confirm(now += seconds(1));
   }
-  again.close(now);
-  // The first two took 3 s, the others 3.26 s.
-  CHECK(store::closed_from_json(sink.stored.events.back().body).answers ==
-        store::AnswerSummary{
-            .n = 5, .different = 3, .largest_share = 0.6, .longest_run = 3, .median_s = 3.3});
+  again.close(now, may_name_one_key);
+  return sink.stored.events.back().body;
 }
 
-TEST_CASE("a session's end tells how many trials were at the force limit, also when resumed") {
-  const auto explore = [](session::Session& session, std::chrono::nanoseconds& now,
-                          bool is_saturated) {
-    session.present(now += seconds(1));
-    session.end_exploring(now += seconds(1));
-    const store::TraceBody body{
-        .trial = session.current()->trial, .rate_hz = 1000.0, .saturated = is_saturated};
-    session.keep_evidence(session.packed(body, {}, {}));
-    session.choose(0);
-    session.confirm(now += seconds(1));
-  };
-  Laboratory lab(4);
-  std::chrono::nanoseconds now = lab.session.last();
-  for (const bool is_saturated : {true, false}) explore(lab.session, now, is_saturated);
-  FickleSink sink;
-  session::Session again(schedule_of(4), {}, store::SessionRecorder(1, SecretKey{}, sink));
-  again.restore(as_recorded(lab.sink.stored.events, SecretKey{}));
-  again.take_up(now, {"program-ended", 1.0, "1"});
-  for (const bool is_saturated : {false, true}) explore(again, now, is_saturated);
-  again.close(now);
-  CHECK(store::closed_from_json(sink.stored.events.back().body).saturated == 2);
-  for (const store::Event& event : lab.sink.stored.events) {
-    CHECK(event.body.find("saturated") == std::string::npos);
-  }
+TEST_CASE("a session's end names somebody who presses one key, and tells nothing else of answers") {
+  CHECK(end_of(20, 1, true) == R"({"answers":20,"complete":true,"one_key":true})");
+  CHECK(end_of(20, 2, true) == R"({"answers":20,"complete":true})");
+  CHECK(end_of(19, 0, true) == R"({"answers":19,"complete":true})");
+  CHECK(end_of(40, 2, true) == R"({"answers":40,"complete":true,"one_key":true})");
+  CHECK(end_of(40, 0, false) == R"({"answers":40,"complete":true})");
 }
 
-TEST_CASE("a session without answers ends without their spread") {
+TEST_CASE("a session without answers ends without their number") {
   Laboratory lab(0);
-  lab.session.close(seconds(4));
-  const store::ClosedBody closed = store::closed_from_json(lab.sink.stored.events.back().body);
-  CHECK(closed.complete);
-  CHECK_FALSE(closed.answers);
+  lab.session.close(seconds(4), true);
+  CHECK(lab.sink.stored.events.back().body == R"({"complete":true})");
 }
 
 TEST_CASE("a session without presentations is finished once the participant is instructed") {

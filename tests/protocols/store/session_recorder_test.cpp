@@ -298,7 +298,7 @@ TEST_CASE("a wrapped safety key opens with its study and session alone, and is n
   REQUIRE_FALSE(unwrap_safety_key(investigator, 3, keys.participant));
 }
 
-TEST_CASE("a trace tells its largest force, which stays sealed until the end of the session") {
+TEST_CASE("the largest force of a trace and of a session are sealed") {
   BufferedEvents events;
   SessionRecorder recorder(1, participant_key(1), events);
   Trace trace = stroking(50, 0.0);
@@ -309,6 +309,10 @@ TEST_CASE("a trace tells its largest force, which stays sealed until the end of 
   const Event stored = events.events.back();
   REQUIRE_FALSE(contains(stored.body, "largest_force"));
   REQUIRE(trace_body_from_json(opened(stored).body).largest_force_n == 5.0);
-  recorder.closed(seconds(2), true, std::nullopt, 0, 3.149);
-  REQUIRE(contains(events.events.back().body, R"("largest_force_n":3.1)"));
+  recorder.closed(seconds(2), true, 1, false, 3.149);
+  const Event end = events.events.back();
+  REQUIRE(end.body == R"({"answers":1,"complete":true})");
+  REQUIRE(closed_from_json(opened(end).body).largest_force_n == 3.1);
+  const auto left = opened_safety_event(end, safety_key(participant_key(1)));
+  REQUIRE(closed_from_json(left.value().event.body).largest_force_n == 3.1);
 }
