@@ -33,7 +33,7 @@ const std::vector<std::pair<std::string, TinyStudyOptions>> kStudies = {
      {.comparison = true, .trials = R"({"repeats": 2, "on_interruption": "restart-block"})"}},
     {"no response", {.trials = R"({"repeats": 2, "on_timeout": "no-response"})"}},
     {"QUEST+", threshold_of(R"("task": "detection", "catch": 4, "control": 5)")},
-    {"staircase", threshold_of(R"("task": "detection", "procedure": "up-down", "tracks": 2,
+    {"staircase", threshold_of(R"("task": "detection", "procedure": "up-down",
                                   "control": 3)")},
     {"constant stimuli", threshold_of(R"("task": "detection", "procedure": "constant-stimuli",
                                          "control": 2)")},
@@ -55,11 +55,11 @@ class Ordeal {
     store::SessionOpening opening;
     opening.participant = "P001";
     opening.enrolment = 1;
-    session_.open(now(), opening, "{}");
-    session_.calibrate(now());
-    session_.instruct(now());
-    while (session_.current() != nullptr && events_.events.size() < 2000) befall();
-    if (session_.accepts(session::SessionInput::close)) session_.close(now());
+    session_->open(now(), opening, "{}");
+    session_->calibrate(now());
+    session_->instruct(now());
+    while (session_->current() != nullptr && events_.events.size() < 2000) befall();
+    if (session_->accepts(session::SessionInput::close)) session_->close(now());
   }
 
   /// \throws VerificationError at the first event that cannot follow
@@ -87,39 +87,39 @@ class Ordeal {
   seconds now() { return seconds(++clock_); }
 
   void befall() {
-    session_.present(now());
-    session_.contact(now());
+    session_->present(now());
+    session_->contact(now());
     if (happens(10)) return be_killed();
-    if (happens(10)) return session_.interrupt(now(), "comfort stop");
+    if (happens(10)) return session_->interrupt(now(), "comfort stop");
     if (happens(10)) return pause_while_exploring();
     const bool may_time_out = !design::adaptive_order(key_.study, draw_);
     if (may_time_out && happens(8)) {
-      session_.time_out(now());
-      if (!session_.in_presentation()) return;
+      session_->time_out(now());
+      if (!session_->in_presentation()) return;
     } else {
-      session_.end_exploring(now());
+      session_->end_exploring(now());
     }
     if (happens(8)) rest();
     if (happens(12)) return be_killed();
-    session_.choose(static_cast<int>(random_.below(session_.layout().size())));
-    session_.confirm(now());
-    if (session_.current() == nullptr) return;
+    session_->choose(static_cast<int>(random_.below(session_->layout().size())));
+    session_->confirm(now());
+    if (session_->current() == nullptr) return;
     if (happens(8)) rest();
     if (happens(12)) be_killed();
   }
   [[nodiscard]] bool happens(std::uint64_t once_in) { return random_.below(once_in) == 0; }
   void rest() {
-    session_.pause(now(), "a break");
-    session_.resume(now());
+    session_->pause(now(), "a break");
+    session_->resume(now());
   }
   void pause_while_exploring() {
-    session_.interrupt(now(), store::kPauseReason);
+    session_->interrupt(now(), store::kPauseReason);
     rest();
   }
   void be_killed() {
-    session_ = fresh();
-    session_.restore(as_recorded(events_.events, SecretKey{}));
-    session_.take_up(now(), {.after = "end", .away_s = 9.0});
+    session_.emplace(fresh());
+    session_->restore(as_recorded(events_.events, SecretKey{}));
+    session_->take_up(now(), {.after = "end", .away_s = 9.0});
   }
 
   const design::StudyKey& key_;
@@ -127,7 +127,7 @@ class Ordeal {
   RandomStream random_;
   store::BufferedEvents events_;
   int clock_ = 0;
-  session::Session session_;
+  std::optional<session::Session> session_;
 };
 
 }  // namespace
