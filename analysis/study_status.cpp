@@ -409,6 +409,7 @@ std::string status_text(const StudyStatus& status, const std::vector<NextCommand
       "{}, {}{} complete{}{}\n", name_of(status.state), counted(status.complete, "participant"),
       status.planned > 0 ? fmt::format(" of {}", status.planned) : "",
       status.state.question ? "; a registered look was made" : "", status.pilot ? "; PILOT" : "");
+  if (!status.head_fault.empty()) text += "NOT AS IT WAS LEFT: " + status.head_fault + "\n";
   text += people_text(status);
   const auto list = [&](const char* title, const std::vector<std::string>& lines) {
     if (!lines.empty()) text += heading(title, status.simulated);
@@ -449,6 +450,7 @@ std::string status_json(const StudyStatus& status, const std::vector<NextCommand
   }
   object["balance"] = status.balance;
   object["left"] = status.left;
+  object["head_fault"] = status.head_fault;
   object["next"] = nlohmann::ordered_json::array();
   for (const NextCommand& one : next) {
     object["next"].push_back({{"what", one.what}, {"command", one.command}});

@@ -92,6 +92,9 @@ struct StudyStatus {
   std::vector<std::string>
       balance{};  ///< sentences on stations and enrolment numbers, filled in by the caller
   std::vector<std::string> left{};  ///< sentences on what is left to do
+  /// What the database lacks and its head files know, or which of them are gone, filled in by the
+  /// caller; empty: nothing.
+  std::string head_fault{};
 };
 
 [[nodiscard]] StudyStatus status_of(const store::StudyStore& store, const StatusSources& sources);

@@ -47,13 +47,70 @@ std::vector<store::Loss> losses_of(const store::StudyStore& store,
   return found;
 }
 
-/// The second head file if the first names its folder and it is not there; empty: nothing is gone.
-fs::path second_that_is_gone(const store::HeadFiles& files,
-                             const std::vector<store::HeadReading>& readings) {
-  const std::vector<fs::path> paths = files.paths();
-  if (paths.size() < 2 || readings.empty() || is_there(paths.back())) return {};
-  const fs::path known = readings.front().record.also;
-  return known / paths.back().filename() == paths.back() ? paths.back() : fs::path();
+/// What a database is held against: the head files that it has on record, and the one in a folder
+/// that is named anew.
+std::vector<store::KnownHead> heads_of(const store::StudyStore& store, const fs::path& database,
+                                       const HeadOptions& options) {
+  std::vector<store::KnownHead> heads = store::known_heads(store, database);
+  if (!options.folder || options.folder->empty()) return heads;
+  const fs::path named =
+      fs::weakly_canonical(*options.folder) / store::head_path_for(database).filename();
+  if (std::ranges::count(heads, named, &store::KnownHead::file) > 0) return heads;
+  auto reading = store::HeadFile(named).reading(store::head_signers(store.commitment()));
+  if (reading) heads.push_back({named, std::move(reading)});
+  return heads;
+}
+
+std::vector<store::HeadReading> readings_of(const std::vector<store::KnownHead>& heads) {
+  std::vector<store::HeadReading> readings;
+  for (const store::KnownHead& head : heads) {
+    if (head.reading) readings.push_back(*head.reading);
+  }
+  return readings;
+}
+
+/// Head files that are gone. The one beside the database is made anew from another one, if whoever
+/// records names that one's folder.
+void add_gone(std::vector<store::Loss>& missing, const std::vector<store::KnownHead>& heads,
+              const fs::path& own, const HeadOptions& options) {
+  const bool is_restored = options.folder && !readings_of(heads).empty();
+  for (const store::KnownHead& head : heads) {
+    if (head.reading || (head.file == own && is_restored)) continue;
+    const std::string name = one_line(head.file.string());
+    missing.push_back(
+        {.session = 0,
+         .what = head.file == own
+                     ? "its head file " + name +
+                           " is gone, so that nobody can tell what else is missing (if there is a "
+                           "second head file, name its folder with run --heads)"
+                     : "its second head file " + name +
+                           " is gone, so that nobody can tell whether the first is the newest "
+                           "(bring it back, or connect its disk)"});
+  }
+}
+
+/// Records which head files there are. A head file that was left learns of it: it gives away a
+/// database of before.
+void record_heads(store::StudyStore& store, const std::vector<store::KnownHead>& before,
+                  const store::HeadFiles& files, const Signer& signer) {
+  if (store.heads_on_record() == files.also()) return;
+  store.record_heads(files.also(), utc_now());
+  const std::vector<fs::path> now = files.paths();
+  for (const store::KnownHead& head : before) {
+    if (!head.reading || std::ranges::count(now, head.file) > 0) continue;
+    if (head.reading->record.database != store::record_of(store).database) continue;
+    try {
+      store::HeadFile(head.file).update(
+          signer,
+          [&](store::HeadRecord& record) {
+            record.know_file(store.file_head());
+            record.also = files.also();
+          },
+          store::head_signers(store.commitment()));
+    } catch (const StoreError& error) {
+      spdlog::warn("{}", error.what());
+    }
+  }
 }
 
 std::string words_on(const std::vector<store::Loss>& losses) {
@@ -113,7 +170,9 @@ void refuse_lost_database(const std::filesystem::path& database,
 void keep_heads(store::StudyStore& store, const fs::path& database, const Signer& signer,
                 const HeadOptions& options, HeadUse use) {
   const fs::path own = store::head_path_for(database);
-  if (use == HeadUse::if_there && !is_there(own)) {
+  std::vector<store::KnownHead> known = heads_of(store, database, options);
+  const std::vector<store::HeadReading> readings = readings_of(known);
+  if (use == HeadUse::if_there && readings.empty()) {
     if (!options.accept_loss.empty()) warn_of_no_loss();
     if (!store.commitment().simulated && store.stations() == 0) {
       spdlog::warn(
@@ -122,29 +181,19 @@ void keep_heads(store::StudyStore& store, const fs::path& database, const Signer
     }
     return;
   }
-  const store::HeadFiles files(database, store::head_signers(store.commitment()), options.folder);
-  const std::vector<store::HeadReading> readings = files.read();
+  if (known.empty() && !store.sessions().empty()) known.push_back({own, std::nullopt});
   std::vector<store::Loss> missing = losses_of(store, readings);
-  if (readings.empty() && !store.sessions().empty()) {
-    missing.push_back(
-        {.session = 0,
-         .what =
-             "its head file " + one_line(own.string()) +
-             " is gone, so that nobody can tell what else is missing (if there is a second head "
-             "file, name its folder with run --heads)"});
-  }
-  if (const fs::path second = second_that_is_gone(files, readings); !second.empty()) {
-    missing.push_back(
-        {.session = 0,
-         .what = "its second head file " + one_line(second.string()) +
-                 " is gone, so that nobody can tell whether the first is the newest"});
-  }
+  add_gone(missing, known, own, options);
   if (!missing.empty() && options.accept_loss.empty()) {
     throw StoreError(one_line(database.string()) + ": is not as it was left: " + words_on(missing) +
                      "; restore the database and its -wal from where they are whole, or go on "
                      "without with --accept-loss REASON, which is recorded");
   }
   if (missing.empty() && !options.accept_loss.empty()) warn_of_no_loss();
+  std::string also = store.heads_on_record().value_or("");
+  if (also.empty() && !readings.empty()) also = readings.front().record.also;
+  const store::HeadFiles files(database, store::head_signers(store.commitment()),
+                               options.folder.value_or(also));
   if (!missing.empty()) {
     accept(store, missing, options.accept_loss);
     files.update(signer, [&](store::HeadRecord& record) {
@@ -156,18 +205,18 @@ void keep_heads(store::StudyStore& store, const fs::path& database, const Signer
   if (use == HeadUse::required) warn_if_on_one_disk(files, store, database);
   store.keep_heads(
       [files, signer](const store::HeadChange& change) { files.update(signer, change); });
+  if (use == HeadUse::required) record_heads(store, known, files, signer);
 }
 
 void require_head_beside(const fs::path& database) {
-  const store::HeadFile file(store::head_path_for(database));
-  if (!is_there(file.path())) return;
   const store::StudyStore store =
       store::StudyStore::open(database, store::StudyStore::Access::read_only);
-  std::vector<store::HeadReading> readings;
-  if (auto reading = file.reading(store::head_signers(store.commitment()))) {
-    readings.push_back(std::move(*reading));
+  const std::vector<store::KnownHead> known = store::known_heads(store, database);
+  if (!known.empty() && !known.front().reading) {
+    spdlog::warn("{}: its head file is not beside it, and was not compared",
+                 one_line(database.string()));
   }
-  const std::vector<store::Loss> missing = losses_of(store, std::move(readings));
+  const std::vector<store::Loss> missing = losses_of(store, readings_of(known));
   if (missing.empty()) return;
   throw VerificationError(
       one_line(database.string()) + ": is not as it was left: " + words_on(missing) +

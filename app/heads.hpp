@@ -12,7 +12,8 @@
 namespace touchtrial::app {
 
 struct HeadOptions {
-  /// Folder of the second head file; nothing: the one of the last time.
+  /// Folder of the second head file from now on; nothing: the one of the last time. The head files
+  /// that are on record are read in any case.
   std::optional<std::filesystem::path> folder{};
   std::string accept_loss{};  ///< why to go on without what is lost; empty: do not
 };
@@ -28,15 +29,17 @@ void refuse_lost_database(const std::filesystem::path& database,
                           const store::StudyCommitment& commitment, const HeadOptions& options);
 
 /// Holds the database against its head files, and lets them know from now on what is recorded. A
-/// loss that the options accept is recorded.
+/// loss that the options accept is recorded, and so is where a head file is required which ones
+/// there are.
 /// \pre store.sign_with(signer)
 /// \throws StoreError, naming what is missing and the remedy, if the database lacks something that
-///   a head file knows, or has sessions and no head file at all where one is required
+///   a head file knows, a head file that is on record is gone, or it has sessions and no head file
+///   at all where one is required
 /// \throws FileError if a head file or its folder cannot be used
 void keep_heads(store::StudyStore& store, const std::filesystem::path& database,
                 const Signer& signer, const HeadOptions& options, HeadUse use);
 
-/// Holds a database that is only read against the head file beside it, if there is one.
+/// Holds a database that is only read against the head files that are in reach.
 /// \throws VerificationError, naming what the database lacks and the remedy
 /// \throws FileError if the head file cannot be read
 void require_head_beside(const std::filesystem::path& database);

@@ -5,6 +5,7 @@
 #include "analysis/planning/level_report.hpp"
 #include "analysis/quality.hpp"
 #include "analysis/results.hpp"
+#include "analysis/verification/head_check.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/force_flag.hpp"
@@ -20,6 +21,9 @@
 #include <memory>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
 namespace touchtrial::app {
 namespace {
 
@@ -34,6 +38,7 @@ struct ReportArguments {
   bool paper_values = false;
   bool json = false;
   bool is_public = false;
+  analysis::HeadCheck heads{};  ///< of the database, when it is open
 };
 
 void write_report(const ReportArguments& arguments, const analysis::ReportFiles& files) {
@@ -41,12 +46,36 @@ void write_report(const ReportArguments& arguments, const analysis::ReportFiles&
   print((arguments.folder / "report.html").string() + "\n");
 }
 
+/// What the head files say. A public report has neither folders nor ids.
+analysis::HeadCheck heads_for(const store::StudyStore& store, const ReportArguments& arguments) {
+  analysis::HeadCheck heads = analysis::check_heads(store, arguments.database);
+  if (!heads.lacks.empty())
+    spdlog::warn("{}: {}", one_line(arguments.database.string()), heads.words());
+  if (!arguments.is_public) return heads;
+  if (!heads.lacks.empty()) heads.lacks = "the database lacks something that its head file knows";
+  if (!heads.gone.empty()) heads.gone = "a head file is gone";
+  return heads;
+}
+
 analysis::Provenance provenance_for(const store::StudyStore& store,
                                     const ReportArguments& arguments) {
   analysis::Provenance provenance =
       analysis::provenance_of(store, arguments.database.filename().string());
+  provenance.vouched = arguments.heads.words();
+  provenance.lacks = !arguments.heads.lacks.empty();
   if (arguments.is_public) provenance.state.unblinding_reason.clear();
   return provenance;
+}
+
+/// Adds to the JSON object of a report up to which head its database's end is vouched for.
+std::string with_vouched(const std::string& text, const analysis::HeadCheck& heads) {
+  auto object = nlohmann::ordered_json::parse(text);
+  object["vouched"] = {{"head", nullptr}, {"head_files", heads.compared}, {"fault", heads.fault()}};
+  if (heads.vouched) {
+    object["vouched"]["head"] = {{"length", heads.vouched->file.length},
+                                 {"hash", to_hex(heads.vouched->file.hash)}};
+  }
+  return json_text(object);
 }
 
 /// Refuses --trial and --cues yes, which show what was presented, and --public.
@@ -64,7 +93,7 @@ void refuse_while_blind(const store::StudyState& state, const ReportArguments& a
 
 int report_quality(const store::StudyStore& store, const ReportArguments& arguments) {
   const analysis::QualityReport quality = analysis::make_quality(store);
-  const std::string json = analysis::quality_json(quality);
+  const std::string json = with_vouched(analysis::quality_json(quality), arguments.heads);
   const analysis::Document document =
       analysis::quality_document(quality, provenance_for(store, arguments));
   if (!arguments.folder.empty()) {
@@ -97,7 +126,8 @@ int write_outcomes(const store::StudyStore& store, const analysis::Outcomes& out
     std::fputs(("touchtrial: warning: without figures: " + figures.missing + "\n").c_str(), stderr);
   }
   analysis::ReportFiles files =
-      analysis::report_files(results.document(provenance, figures.pictures), results.json());
+      analysis::report_files(results.document(provenance, figures.pictures),
+                             with_vouched(results.json(), arguments.heads));
   files.insert(figures.files.begin(), figures.files.end());
   write_report(arguments, files);
   return 0;
@@ -106,7 +136,7 @@ int write_outcomes(const store::StudyStore& store, const analysis::Outcomes& out
 void print_results(const store::StudyStore& store, const analysis::Results& results,
                    const ReportArguments& arguments) {
   print(arguments.json
-            ? results.json()
+            ? with_vouched(results.json(), arguments.heads)
             : analysis::document_text(results.document(provenance_for(store, arguments), {}),
                                       columns_of_output()));
 }
@@ -122,7 +152,7 @@ int report_question(const store::StudyStore& store, const ReportArguments& argum
   } else {
     write_report(arguments,
                  analysis::report_files(answer->document(provenance_for(store, arguments), {}),
-                                        answer->json()));
+                                        with_vouched(answer->json(), arguments.heads)));
   }
   return 0;
 }
@@ -137,9 +167,10 @@ std::unique_ptr<const analysis::Results> with_levels_if_any(
   return planning::with_levels_elsewhere(std::move(results));
 }
 
-int report(const ReportArguments& arguments) {
+int report(ReportArguments arguments) {
   const store::StudyStore store =
       store::StudyStore::open(arguments.database, store::StudyStore::Access::read_only);
+  arguments.heads = heads_for(store, arguments);
   if (!arguments.folder.empty()) {
     analysis::refuse_other_study(arguments.folder, store.commitment().study);
     analysis::refuse_strangers(arguments.folder);

@@ -1,5 +1,6 @@
 // status: how collection stands, and the command line of the next participant.
 #include "analysis/study_status.hpp"
+#include "analysis/verification/head_check.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/participant_ids.hpp"
@@ -326,8 +327,9 @@ int show_status(const StatusArguments& arguments) {
   const FilesBeside beside = files_beside(arguments, store.commitment());
   analysis::StudyStatus status = analysis::status_of(store, sources_for(arguments, beside));
   status.balance = balance_of(store);
+  status.head_fault = analysis::check_heads(store, arguments.database).fault();
   print_status(arguments, beside, database_words(store), status);
-  return 0;
+  return status.head_fault.empty() ? 0 : kNotVerified;
 }
 
 }  // namespace

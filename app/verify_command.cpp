@@ -72,7 +72,8 @@ void add_verify_command(CLI::App& program, Action& action) {
       "A former head of the file's chain, of a day sheet for instance, which the chain must still "
       "contain");
   command->add_option("--head-file", arguments->heads,
-                      "A head file beside DB.head, whose knowledge the database must have");
+                      "A further head file, whose knowledge the database must have; of a merged "
+                      "database, a station's");
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return verify(*arguments); }; });
 }

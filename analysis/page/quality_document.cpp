@@ -135,6 +135,7 @@ Document quality_document(const QualityReport& report, const Provenance& provena
     document.stamp += std::string(document.stamp.empty() ? "" : ", ") + design::kUnverifiedDevice;
     document.banners.push_back(unverified_banner());
   }
+  if (provenance.lacks) document.banners.push_back(provenance.vouched);
   document.header = evidence_header(provenance);
   document.header.entries.insert(document.header.entries.begin(),
                                  {{"protocol", report.protocol},

@@ -50,6 +50,7 @@ std::vector<std::string> banners_of(const StudyHead& report, const Provenance& p
     banners.emplace_back("PILOT: not to be pooled with the study's data, nor reported as it.");
   }
   if (provenance.unverified) banners.push_back(unverified_banner());
+  if (provenance.lacks) banners.push_back(provenance.vouched);
   if (provenance.state.question) {
     banners.emplace_back(
         "INTERIM LOOK at the registered question: it alone is shown, and it alone may decide "
@@ -105,6 +106,9 @@ Definitions evidence_header(const Provenance& provenance) {
        {"head of the file's chain",
         fmt::format("{} (event {})", to_hex(provenance.head.hash), provenance.head.length)},
        {"program", "touchtrial " + provenance.program_version}}};
+  if (!provenance.vouched.empty()) {
+    header.entries.emplace_back("its end is vouched for", provenance.vouched);
+  }
   if (!provenance.texts.empty()) {
     header.entries.emplace_back("what participants read", provenance.texts);
   }

@@ -19,6 +19,8 @@ struct Provenance {
   store::StudyState state;
   std::string texts{};      ///< what has to be said of the participants' texts; may be empty
   bool unverified = false;  ///< as any_ran_unverified
+  std::string vouched{};    ///< HeadCheck::words; empty: the database was not held against heads
+  bool lacks = false;       ///< something that a head file knows
 };
 
 /// \param database  file name to show

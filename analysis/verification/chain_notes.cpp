@@ -6,6 +6,7 @@
 #include "protocols/store/payload_json.hpp"
 
 #include <chrono>
+#include <optional>
 #include <span>
 
 #include <fmt/format.h>
@@ -33,6 +34,22 @@ void add_clock_notes(std::vector<std::string>& notes, std::span<const store::Eve
   }
 }
 
+/// Where the second head file was moved to.
+void add_moves(std::vector<std::string>& notes, std::span<const store::Event> chain,
+               const std::string& name) {
+  std::optional<std::string> before;
+  for (const store::Event& event : chain) {
+    if (event.kind != store::EventKind::heads_kept) continue;
+    const std::string also = store::body_of(event, store::heads_from_json).also;
+    if (before) {
+      notes.push_back(
+          one_line(fmt::format("{}, event {}: the second head file is {} from then on", name,
+                               event.sequence, also.empty() ? "dropped" : "in " + also)));
+    }
+    before = also;
+  }
+}
+
 void add_losses(std::vector<std::string>& notes, std::span<const store::Event> chain,
                 const std::string& name) {
   for (const store::Event& event : chain) {
@@ -51,6 +68,7 @@ std::vector<std::string> chain_notes(const store::StudyStore& store) {
   const auto add = [&](std::span<const store::Event> chain, const std::string& name) {
     if (has_clock) add_clock_notes(notes, chain, name);
     add_losses(notes, chain, name);
+    add_moves(notes, chain, name);
   };
   if (store.stations() == 0) add(store.events(0), "the file's chain");
   for (int station = 1; station <= store.stations(); ++station) {

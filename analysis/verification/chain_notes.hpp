@@ -1,6 +1,6 @@
 /// \file What is worth knowing of a file's chain, and no fault: where a station's wall clock went
-/// back, so that times and orders of sessions that follow from it are uncertain, and which losses
-/// were accepted.
+/// back, so that times and orders of sessions that follow from it are uncertain, which losses were
+/// accepted, and where the second head file was moved to.
 #pragma once
 
 #include "protocols/store/study_store.hpp"

@@ -12,12 +12,13 @@ namespace touchtrial::analysis {
 SessionCourse::SessionCourse(const design::Study& study, const design::ScheduleDraw& draw,
                              bool opened)
     : study_(study),
+      opened_(opened),
       course_(
           design::make_schedule(study, draw), study.trials.on_interruption,
           [&study, draw](int block, int restarts_before, int first_trial) {
             return design::restarted_block(study, draw, block, restarts_before, first_trial);
           },
-          opened ? design::adaptive_order(study, draw) : nullptr) {
+          design::adaptive_order(study, draw)) {
   if (course_.is_adaptive()) places_ = design::make_schedule(study, draw);
 }
 
@@ -117,24 +118,29 @@ void SessionCourse::follow_trial(const store::Event& event) {
 
 void SessionCourse::answer(const store::Event& event) {
   const store::AnswerBody body = store::answer_from_json(event.body);
-  const std::optional<design::ChosenLevel>& due = course_.current()->chosen;
-  std::optional<design::ChosenLevel> shown;
-  if (body.track && body.level && body.target) shown = {*body.track, *body.level, *body.target};
-  if (shown != due) {
-    const auto words = [](const std::optional<design::ChosenLevel>& chosen) {
-      return chosen ? fmt::format("track {}, level {}, target {}", chosen->track, chosen->level,
-                                  chosen->target)
-                    : std::string("no level");
-    };
-    fail(event, body.trial,
-         fmt::format("presented {} where the procedure chooses {}", words(shown), words(due)));
-  }
+  // Blocks follow from the number of answers: in place of one that was erased, any will do.
+  if (!opened_) return course_.finish(0);
+  require_chosen(event, body);
   if (body.position &&
       (*body.position < 0 || *body.position >= std::ssize(course_.schedule().layout))) {
     fail(event, body.trial,
          fmt::format("answered at position {}, which there is not", *body.position));
   }
   course_.finish(body.position);
+}
+
+void SessionCourse::require_chosen(const store::Event& event, const store::AnswerBody& body) const {
+  const std::optional<design::ChosenLevel>& due = course_.current()->chosen;
+  std::optional<design::ChosenLevel> shown;
+  if (body.track && body.level && body.target) shown = {*body.track, *body.level, *body.target};
+  if (shown == due) return;
+  const auto words = [](const std::optional<design::ChosenLevel>& chosen) {
+    return chosen ? fmt::format("track {}, level {}, target {}", chosen->track, chosen->level,
+                                chosen->target)
+                  : std::string("no level");
+  };
+  fail(event, body.trial,
+       fmt::format("presented {} where the procedure chooses {}", words(shown), words(due)));
 }
 
 void SessionCourse::restart_block(const store::Event& event) {

@@ -3,6 +3,7 @@
 
 #include "protocols/design/course.hpp"
 #include "protocols/store/event.hpp"
+#include "protocols/store/payload.hpp"
 
 #include <optional>
 #include <string>
@@ -15,7 +16,8 @@ namespace touchtrial::analysis {
 class SessionCourse {
  public:
   /// \param study  must outlive this object
-  /// \param opened  the answers are opened, and so an adaptive order can be followed
+  /// \param opened  the answers are opened, and so what an adaptive order chose can be checked; of
+  ///   an erased session, only where each presentation stands
   /// \throws StudyError if the study has no order for this enrolment number
   SessionCourse(const design::Study& study, const design::ScheduleDraw& draw, bool opened = true);
 
@@ -39,12 +41,14 @@ class SessionCourse {
   void follow_trial(const store::Event& event);
   void present(const store::Event& event);
   void answer(const store::Event& event);
+  void require_chosen(const store::Event& event, const store::AnswerBody& body) const;
   void require_under_way(const store::Event& event, int trial) const;
   void restart_block(const store::Event& event);
   void take_up(const store::Event& event);
   void close(const store::Event& event) const;
 
   const design::Study& study_;
+  bool opened_;
   design::Course course_;
   std::optional<design::Schedule> places_;  ///< of an adaptive order, as sealed at the opening
   bool is_under_way_ = false;  ///< the course's current presentation waits for its answer

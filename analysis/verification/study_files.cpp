@@ -1,16 +1,17 @@
 #include "analysis/verification/study_files.hpp"
 
+#include "analysis/verification/head_check.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "core/text.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/store/damage.hpp"
-#include "protocols/store/head_file.hpp"
 
 #include <algorithm>
 #include <array>
-#include <span>
+#include <map>
+#include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::analysis {
@@ -112,50 +113,51 @@ void put(Verification& verification, const char* name, const Opened<File>& opene
   if (check != verification.checks.end()) *check = {name, opened.state, opened.why};
 }
 
-/// The second head file that a database's own names; empty: none.
-fs::path second_head(const fs::path& own, std::span<const PublicKey> signers) {
-  const auto known = store::HeadFile(own).read(signers);
-  if (!known || known->also.empty()) return {};
-  return fs::path(known->also) / own.filename();
+/// What the database lacks and its head files know, and head files that are gone. Made only where
+/// there are or were head files.
+/// \param head  that was written down; if it is the end of the chain, no head file is missed
+void add_heads(const store::StudyStore& store, const StudyFiles& files, const std::string& head,
+               Verification& verification) {
+  HeadCheck heads = check_heads(store, files.database, files.heads);
+  const bool is_end = !head.empty() && to_hex(store.file_head().hash).starts_with(head);
+  if (is_end && !heads.gone.empty()) verification.notes.push_back(std::exchange(heads.gone, {}));
+  const std::string fault = heads.fault();
+  verification.notes.insert(verification.notes.end(), heads.notes.begin(), heads.notes.end());
+  if (heads.compared > 0 || !fault.empty()) {
+    verification.checks.push_back({"heads", fault.empty() ? CheckState::passed : CheckState::failed,
+                                   fault.empty() ? heads.words() : fault});
+  } else if (!verification.simulated) {
+    verification.notes.emplace_back("there is no head file beside it");
+  }
 }
 
-/// What the database lacks and its head files know. Made only where there are head files.
-void check_heads(const store::StudyStore& store, const StudyFiles& files,
-                 Verification& verification) {
-  std::vector<fs::path> heads = files.heads;
-  const fs::path own = store::head_path_for(files.database);
-  if (is_there(own)) heads.insert(heads.begin(), own);
-  if (heads.empty()) {
-    if (!verification.simulated) verification.notes.emplace_back("there is no head file beside it");
+/// What a collected study lacks of its stations. Only their head files can tell whether somebody
+/// came to a station that is not there, or after the events that are.
+void add_stations(const store::StudyStore& store, const StudyFiles& files,
+                  const std::optional<design::StudyKey>& key, Verification& verification) {
+  if (!key && files.heads.empty()) {
+    verification.checks.push_back({"stations", CheckState::not_checked, "needs the key"});
     return;
   }
-  Check check{"heads", CheckState::passed, "the database has all that its head files know"};
-  try {
-    const std::vector<PublicKey> signers = store::head_signers(store.commitment());
-    if (const fs::path second = second_head(own, signers); !second.empty()) {
-      if (is_there(second)) {
-        heads.push_back(second);
-      } else {
-        verification.notes.push_back("the second head file " + one_line(second.string()) +
-                                     " is not there, and was not compared");
-      }
-    }
-    for (const fs::path& head : heads) {
-      const auto found = store::HeadFile(head).reading(signers);
-      if (!found) throw VerificationError("there is no " + one_line(head.string()));
-      if (!found->damage.empty()) {
-        verification.notes.push_back(one_line(head.string()) + ": " + found->damage);
-      }
-      const std::vector<store::Loss> missing = store::losses(found->record, store);
-      if (missing.empty()) continue;
-      throw VerificationError(one_line(head.string()) + ": " +
-                              listed(missing, "; ", &store::Loss::what));
-    }
-  } catch (const Error& error) {
-    check.state = CheckState::failed;
-    check.detail = one_line(error.what());
+  if (key && key->stations.size() < 2 && files.heads.empty()) return;  // parts of one station
+  std::map<std::string, PublicKey> signers;
+  for (const design::Station& station : key ? key->stations : std::vector<design::Station>()) {
+    signers[station.name] = design::station_key(*key, station.name).signer().public_half();
   }
-  verification.checks.push_back(check);
+  const StationsCheck stations = check_stations(store, signers, files.heads);
+  Check check{"stations", CheckState::passed, "all that their head files know"};
+  if (!stations.ends.empty()) {
+    check.detail =
+        "all are there; to be compared with their day sheets or by --head-file: " + stations.ends;
+  }
+  if (!stations.absent.empty()) {
+    check = {"stations", CheckState::not_checked,
+             stations.absent +
+                 " is not there, and is missing unless nobody came to it; give its "
+                 "head file with --head-file"};
+  }
+  if (!stations.lacks.empty()) check = {"stations", CheckState::failed, stations.lacks};
+  verification.checks.push_back(std::move(check));
 }
 
 Verification of_damaged(const store::DamagedStore& error) {
@@ -181,7 +183,11 @@ Verification verify_files(const StudyFiles& files, const std::string& head) try 
       verify_study(store, key.file ? &*key.file : nullptr, pack.file ? &*pack.file : nullptr, head);
   put(verification, "key", key);
   put(verification, "pack", pack);
-  check_heads(store, files, verification);
+  if (store.stations() == 0) {
+    add_heads(store, files, head, verification);
+  } else {
+    add_stations(store, files, key.file, verification);
+  }
   return verification;
 } catch (const store::DamagedStore& error) {
   return of_damaged(error);

@@ -16,7 +16,8 @@ struct StudyFiles {
   /// Whether the user named the key, which must then exist. Otherwise `key` is the path beside the
   /// database, where the key may be missing.
   bool key_named = false;
-  /// Head files beside `<database>.head`, which is read if it exists.
+  /// Further head files than those that lie beside the database or are on record; of a collected
+  /// study, those of the stations' databases.
   std::vector<std::filesystem::path> heads{};
   /// Empty: the one of design::pack_in_reach, if it exists and belongs to this study.
   std::filesystem::path pack;

@@ -216,25 +216,7 @@ int check_safety_record(const store::StudyStore& store, const design::StudyKey& 
   return parts;
 }
 
-/// Whether the station can go on with every open session.
-void require_kept_keys(const store::StudyStore& store, const design::StudyKey& key) {
-  const auto& here = store.commitment().station;
-  const auto station = std::ranges::find_if(
-      key.stations, [&](const design::Station& one) { return here && one.name == here->name; });
-  if (station == key.stations.end()) return;
-  for (const store::SessionRow& session : store.sessions()) {
-    const std::optional<Bytes> kept = store.kept_key(session.session);
-    if (!kept) continue;
-    const auto own = store::kept_participant_key(station->secret, session.own_session, *kept);
-    if (own && own == participant_key(store, key, session)) continue;
-    throw VerificationError(fmt::format(
-        "session {}: the station's copy of the key was altered; the session cannot be resumed",
-        session.session));
-  }
-}
-
 std::string check_payloads(const store::StudyStore& store, const design::StudyKey& key) {
-  require_kept_keys(store, key);
   int parts = 0;
   const SessionKeys keys = person_keys(store, key);
   for (const auto& [session, own] : keys) {

@@ -16,7 +16,8 @@ class AdaptiveOrder {
   AdaptiveOrder& operator=(const AdaptiveOrder&) = delete;
 
   /// Chooses what comes next: the same until the next answer.
-  /// \param presentation  its trial and block stay; all else may be set
+  /// \param presentation  its trial stays; all else may be set. Its block is in clear, and so must
+  ///   follow from how many answers there were, never from what they were
   virtual void choose(Presentation& presentation) const = 0;
   /// The answer to what was chosen last.
   /// \param shown  as `choose` made it

@@ -253,19 +253,23 @@ class Inspection {
     inspect_station_keys();
   }
 
-  /// A station keeps the keys of open sessions alone.
+  /// A station keeps the keys of open sessions that began with a copy, and of no others.
   void inspect_station_keys() const {
-    Query query = database_.query("SELECT session FROM station_keys ORDER BY session");
-    while (query.step()) {
-      const std::int64_t session = query.integer(0);
-      const auto on_file = std::ranges::find_if(
-          file_.sessions(), [&](const auto& known) { return known.first == session; });
-      const bool is_open = on_file != file_.sessions().end() && !on_file->second.closed &&
-                           !on_file->second.withdrawn_at;
-      if (is_open) continue;
+    std::map<std::int64_t, Digest> copies;
+    Query query = database_.query("SELECT session, kept FROM station_keys");
+    while (query.step()) copies.emplace(query.integer(0), sha256(query.blob(1)));
+    for (const auto& [session, on_file] : file_.sessions()) {
+      if (!on_file.opened.kept || on_file.closed || on_file.withdrawn_at) continue;
+      const auto copy = copies.extract(session);
+      if (copy && copy.mapped() == *on_file.opened.kept) continue;
       throw EventFault(session, kNoEvent,
-                       "the station holds the key of a session that is not open");
+                       std::string("the station's copy of the key ") +
+                           (copy ? "was altered" : "is missing") +
+                           "; the session cannot be resumed");
     }
+    if (copies.empty()) return;
+    throw EventFault(copies.begin()->first, kNoEvent,
+                     "the station holds the key of a session that is not open");
   }
 
   void inspect_traces() {

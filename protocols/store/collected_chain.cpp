@@ -350,16 +350,22 @@ class Collection {
   bool closed_ = false;
 };
 
+/// The event that opens a file's first session; null: no session was opened.
+const Event* first_opening(std::span<const Event> chain) {
+  const auto found = std::ranges::find(chain, EventKind::session_opened, &Event::kind);
+  return found == chain.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 std::optional<Digest> station_identity(std::span<const Event> chain) {
-  if (chain.size() < 2 || chain[1].kind != EventKind::session_opened) return std::nullopt;
-  return chain[1].hash;
+  const Event* const first = first_opening(chain);
+  return first == nullptr ? std::nullopt : std::optional(first->hash);
 }
 
 bool comes_before(const StationChain& a, const StationChain& b) {
   const auto rank = [](const StationChain& station) {
-    const Event& first = station.events[1];
+    const Event& first = *first_opening(station.events);
     const bool simulated = body_of(station.events.front(), commitment_from_json).simulated;
     const int enrolment = body_of(first, session_opened_from_json).enrolment;
     return std::tuple(simulated ? enrolment : 0, first.at, simulated ? 0 : enrolment, first.hash);

@@ -34,8 +34,8 @@ struct CollectedChain {
   std::vector<SessionPlace> left_out;  ///< sessions that have not ended
 };
 
-/// What tells stations apart: the hash of the event with which the first session was opened, the
-/// second event of the chain. Nothing if no session was ever opened there.
+/// What tells stations apart: the hash of the event with which the first session was opened.
+/// Nothing if no session was ever opened there.
 [[nodiscard]] std::optional<Digest> station_identity(std::span<const Event> chain);
 
 /// The order of stations: by the time at which their first sessions were opened (by those sessions'

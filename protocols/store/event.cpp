@@ -29,6 +29,7 @@ constexpr auto kNames = std::to_array<Named<EventKind>>({
     {"study-unblinded", EventKind::study_unblinded},
     {"participant-replaced", EventKind::participant_replaced},
     {"participant-noted", EventKind::participant_noted},
+    {"heads-kept", EventKind::heads_kept},
     {"loss-accepted", EventKind::loss_accepted},
     {"opened", EventKind::opened},
     {"calibrated", EventKind::calibrated},

@@ -26,6 +26,7 @@ enum class EventKind {
   study_unblinded,
   participant_replaced,  ///< another participant takes this one's place in the order of enrolment
   participant_noted,     ///< a remark or deviation that is recorded after or outside a session
+  heads_kept,            ///< which head files the database has from now on
   loss_accepted,         ///< the database lacks what its head file knows, and goes on without it
 
   opened,

@@ -83,6 +83,9 @@ void FileChain::add(const Event& event) {
       static_cast<void>(body_of(event, note_from_json));
       static_cast<void>(known(event));
       return;
+    case EventKind::heads_kept:
+      static_cast<void>(body_of(event, heads_from_json));
+      return;
     case EventKind::loss_accepted:
       static_cast<void>(body_of(event, loss_from_json));
       return;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <set>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -407,6 +408,23 @@ void HeadFiles::update(const Signer& signer, const HeadChange& change) const {
     refuse_head(second.path(), "belongs to another database; name a folder for each database");
   };
   second.update(signer, change_second, signers_);
+}
+
+std::vector<KnownHead> known_heads(const StudyStore& store, const std::filesystem::path& database) {
+  const std::vector<PublicKey> signers = head_signers(store.commitment());
+  const std::filesystem::path own = head_path_for(database);
+  std::optional<HeadReading> reading = HeadFile(own).reading(signers);
+  const std::optional<std::string> recorded = store.heads_on_record();
+  if (!recorded && !reading) return {};
+  std::set<std::string> folders = {recorded.value_or(""), reading ? reading->record.also : ""};
+  folders.erase("");
+  std::vector<KnownHead> known = {{own, std::move(reading)}};
+  for (const std::filesystem::path folder : folders) {
+    std::filesystem::path second = folder / own.filename();
+    reading = HeadFile(second).reading(signers);
+    known.push_back({std::move(second), std::move(reading)});
+  }
+  return known;
 }
 
 std::vector<Loss> losses(const HeadRecord& known, const StudyStore& store) {

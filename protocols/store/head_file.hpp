@@ -127,6 +127,8 @@ class HeadFiles {
 
   /// One path or two, the one beside the database first.
   [[nodiscard]] std::vector<std::filesystem::path> paths() const;
+  /// The second folder as it is recorded; empty: there is none.
+  [[nodiscard]] const std::string& also() const noexcept { return also_; }
   /// The files that there are, in the order of `paths`. A database that has sessions has all of its
   /// head files, unless they were removed.
   /// \throws FileError as HeadFile::read
@@ -141,6 +143,18 @@ class HeadFiles {
   std::vector<PublicKey> signers_;
   std::string also_;
 };
+
+/// A head file that a database has, or had.
+struct KnownHead {
+  std::filesystem::path file;
+  std::optional<HeadReading> reading;  ///< nothing: it is gone
+};
+
+/// The head files that lie beside a database or are on record: the one beside it first, then those
+/// in the folders that the database and that file name. Empty if there are none.
+/// \throws FileError as HeadFile::read
+[[nodiscard]] std::vector<KnownHead> known_heads(const StudyStore& store,
+                                                 const std::filesystem::path& database);
 
 /// Something that a head file knows and the database lacks.
 struct Loss {

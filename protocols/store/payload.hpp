@@ -53,6 +53,9 @@ struct SessionOpenedBody {
   Digest first{};       ///< hash of the session's `opened`
   Digest key{};         ///< SHA-256 of the wrapped participant key
   Digest safety_key{};  ///< SHA-256 of the wrapped safety key
+  /// SHA-256 of the station's copy of the key, which is there while the session is open; empty: the
+  /// session began without one.
+  std::optional<Digest> kept{};
   PublicKey remarks{};  ///< seals remarks about the participant
   PublicKey reasons{};  ///< seals reasons and deviations
   /// In a collected study: the session's station, from 1, and its number there; 0 elsewhere.
@@ -111,6 +114,11 @@ struct LossBody {
   std::string reason;
   std::string missing;       ///< what the database lacks, in words; names no outcome
   std::int64_t answers = 0;  ///< acknowledged answers that are lost
+};
+
+/// `heads-kept`: the database has a head file beside it from now on, and one in another folder.
+struct HeadsBody {
+  std::string also;  ///< that folder; empty: there is none
 };
 
 /// `study-unblinded`.

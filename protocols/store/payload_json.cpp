@@ -232,6 +232,7 @@ void members(Io& io, In<Io, SessionOpenedBody>& body) {
   io("first", body.first);
   io("key", body.key);
   io("safety_key", body.safety_key);
+  io("kept", body.kept);
   io("remarks", body.remarks);
   io("reasons", body.reasons);
   io.if_any("station", body.station, 1);
@@ -289,6 +290,11 @@ void members(Io& io, In<Io, LossBody>& body) {
   io("reason", body.reason);
   io("missing", body.missing);
   io("answers", body.answers);
+}
+
+template <typename Io>
+void members(Io& io, In<Io, HeadsBody>& body) {
+  io("also", body.also);
 }
 
 // Only read: those who write these leave members out by kind of event.
@@ -356,6 +362,7 @@ template std::string to_json(const ReplacementBody&);
 template std::string to_json(const NoteBody&);
 template std::string to_json(const UnblindingBody&);
 template std::string to_json(const LossBody&);
+template std::string to_json(const HeadsBody&);
 template std::string to_json(const MarksBody&);
 
 template StudyCommitment from_json(const std::string&);
@@ -378,6 +385,7 @@ template ReplacementBody from_json(const std::string&);
 template NoteBody from_json(const std::string&);
 template UnblindingBody from_json(const std::string&);
 template LossBody from_json(const std::string&);
+template HeadsBody from_json(const std::string&);
 template TrialBody from_json(const std::string&);
 template BlockBody from_json(const std::string&);
 

@@ -57,6 +57,7 @@ inline constexpr auto* replacement_from_json = &from_json<ReplacementBody>;
 inline constexpr auto* note_from_json = &from_json<NoteBody>;
 inline constexpr auto* unblinding_from_json = &from_json<UnblindingBody>;
 inline constexpr auto* loss_from_json = &from_json<LossBody>;
+inline constexpr auto* heads_from_json = &from_json<HeadsBody>;
 /// The other members where the body has them.
 inline constexpr auto* trial_from_json = &from_json<TrialBody>;
 inline constexpr auto* block_from_json = &from_json<BlockBody>;

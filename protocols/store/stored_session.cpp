@@ -104,15 +104,17 @@ void StoredStudy::admit(const Event& opened, const SessionKeys& keys, std::chron
   const SessionOpening opening = body_of(opened, opening_from_json);
   check_opening(opening);
   append_to_file(EventKind::session_opened, at,
-                 to_json(SessionOpenedBody{.session = opened.session,
-                                           .participant = opening.participant,
-                                           .enrolment = opening.enrolment,
-                                           .visit = opening.visit,
-                                           .first = opened.hash,
-                                           .key = sha256(keys.wrapped.participant),
-                                           .safety_key = sha256(keys.wrapped.safety),
-                                           .remarks = keys.wrapped.remarks,
-                                           .reasons = keys.wrapped.reasons}));
+                 to_json(SessionOpenedBody{
+                     .session = opened.session,
+                     .participant = opening.participant,
+                     .enrolment = opening.enrolment,
+                     .visit = opening.visit,
+                     .first = opened.hash,
+                     .key = sha256(keys.wrapped.participant),
+                     .safety_key = sha256(keys.wrapped.safety),
+                     .kept = keys.kept.empty() ? std::nullopt : std::optional(sha256(keys.kept)),
+                     .remarks = keys.wrapped.remarks,
+                     .reasons = keys.wrapped.reasons}));
   insert_keys(database_, opened.session,
               {.participant = keys.wrapped.participant, .safety = keys.wrapped.safety});
   if (!keys.kept.empty()) insert_station_key(database_, opened.session, keys.kept);

@@ -3,6 +3,7 @@
 #include "core/draft.hpp"
 #include "core/files.hpp"
 #include "core/outputs.hpp"
+#include "protocols/store/damage.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/rows.hpp"
 #include "protocols/store/schema.hpp"
@@ -119,6 +120,22 @@ void StudyStore::keep_heads(HeadKeeper keeper) {
   HeadRecord now = record_of(*this);
   impl_->study.keep_heads(std::move(keeper), std::move(now));
   impl_->study.tell_heads({});
+}
+
+void StudyStore::record_heads(const std::string& also, std::chrono::nanoseconds at) {
+  impl_->change([&] {
+    impl_->study.append_to_file(EventKind::heads_kept, at, to_json(HeadsBody{.also = also}));
+  });
+}
+
+std::optional<std::string> StudyStore::heads_on_record() const {
+  constexpr EventKind kKind = EventKind::heads_kept;
+  return impl_->run([&] {
+    std::optional<std::string> also;
+    for_each_event(impl_->database(), {.session = 0, .kinds = std::span(&kKind, 1)},
+                   [&](const Event& event) { also = body_of(event, heads_from_json).also; });
+    return also;
+  });
 }
 
 StudyState StudyStore::state() const {

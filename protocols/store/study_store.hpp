@@ -81,6 +81,14 @@ class StudyStore {
   /// \pre sign_with
   void keep_heads(HeadKeeper keeper);
 
+  /// Records that the database has a head file beside it, and one in another folder: what is on
+  /// record is compared from now on, and missed where it is gone.
+  /// \param also  the other folder; empty: none
+  /// \pre keep_heads
+  void record_heads(const std::string& also, std::chrono::nanoseconds at);
+  /// The other folder that is on record; nothing: no head file is.
+  [[nodiscard]] std::optional<std::string> heads_on_record() const;
+
   ~StudyStore();
   StudyStore(StudyStore&&) noexcept;
   StudyStore& operator=(StudyStore&&) noexcept;

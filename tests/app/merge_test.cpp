@@ -28,10 +28,12 @@ struct SimulatedStations : StudyFolder {
   }
 };
 
-/// The report's JSON without stations as strata, which one station does not have.
+/// The report's JSON without stations as strata, which one station does not have, and without head
+/// files, which a merged database does not have.
 json without_strata(const std::string& text) {
   json report = json::parse(text);
   report["primary"].erase("stations");
+  report.erase("vouched");
   return report;
 }
 
@@ -218,4 +220,39 @@ TEST_CASE("a refused merge names the file, and makes none") {
   CHECK_FALSE(fs::exists(study.in("D.db")));
   CHECK(study.merge({"s1.db"}).exit_code == 2);
   CHECK(study.merge({}, {"-o", study.in("C.db")}).exit_code == 2);
+}
+
+TEST_CASE("a merged database that lacks a station, or a station's end, is named by a head file") {
+  const StudyFolder study;
+  study.done("prepare @cloths.json");
+  study.done("plan @cloths.json --participants 6 --names attic,cellar");
+  const auto come = [&](const std::string& participant, const std::string& station) {
+    study.done("run @cloths.json --participant " + participant + " --station " + station +
+               " --db @" + station + ".db --subject @quick.json --headless");
+  };
+  come("P01", "attic");
+  come("P02", "cellar");
+  study.done("merge @attic.db @cellar.db -o @all.db");
+  study.done("merge @attic.db -o @attic-alone.db");
+  const auto stations = [&](const std::string& database, const std::vector<std::string>& heads) {
+    std::vector<std::string> more;
+    for (const std::string& head : heads) more.insert(more.end(), {"--head-file", study.in(head)});
+    const ProgramResult result =
+        study.type("verify @" + database + " --key @cloths.key --json", more);
+    for (const json& check : json::parse(result.output).at("checks")) {
+      if (check.at("name") != "stations") continue;
+      CHECK(result.exit_code == (check.at("state") == "failed" ? 3 : 0));
+      return check.at("state").get<std::string>();
+    }
+    return std::string();
+  };
+  const std::vector<std::string> both = {"attic.db.head", "cellar.db.head"};
+  CHECK(stations("all.db", {}) == "passed");
+  CHECK(stations("all.db", both) == "passed");
+  CHECK(stations("attic-alone.db", {}) == "not-checked");
+  CHECK(stations("attic-alone.db", {"attic.db.head"}) == "not-checked");
+  CHECK(stations("attic-alone.db", both) == "failed");
+  come("P03", "attic");
+  CHECK(stations("all.db", {}) == "passed");
+  CHECK(stations("all.db", both) == "failed");
 }

@@ -50,6 +50,7 @@ AttackedStudy::AttackedStudy(int answered)
   design::save_station_key(station_file(), station_);
   fs::create_directory(folder() / "elsewhere");
   open();
+  store().record_heads(fs::weakly_canonical(second_head().parent_path()).string(), seconds(0));
   add({.participant = "P01", .enrolment = 1, .answers = always_right()});
   store().sign_with(key().signer());
   store().unblind(seconds(1), "planned", /*interim=*/true);

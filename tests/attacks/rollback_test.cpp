@@ -1,12 +1,16 @@
 // Attacks by whoever can write the database's folder: older copies laid in its place, and a
 // write-ahead log that is damaged or gone.
 #include "analysis/text_matching.hpp"
+#include "analysis/verification/study_files.hpp"
+#include "app/heads.hpp"
 #include "app/touchtrial_process.hpp"
 #include "attacks/forger.hpp"
 #include "core/bytes.hpp"
+#include "core/errors.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -100,6 +104,79 @@ TEST_CASE("an older database with its head file is given away by the second head
   fs::remove(study.second_head());
   CHECK(contains(study.refusal(), "its second head file"));
   note("the same, and the second head file removed", Outcome::refused);
+}
+
+TEST_CASE("a head file that is gone is named, whatever the database lacks") {
+  const AttackedStudy untouched;
+  for (const fs::path& file : {untouched.head(), untouched.second_head()}) {
+    const Bytes whole = read_file(file);
+    fs::remove(file);
+    CHECK(contains(untouched.found(), file.string() + " is gone"));
+    CHECK(contains(untouched.found_without_key(), file.string() + " is gone"));
+    replace_file(file, ByteView(whole));
+    CHECK(untouched.found().empty());
+  }
+  note("a head file removed", Outcome::named, 2);
+}
+
+TEST_CASE("another folder for the second head file hides nothing that the one on record knows") {
+  RolledBack study;
+  const fs::path other = study.folder() / "other";
+  fs::create_directory(other);
+  const auto told = [&](const std::string& reason) {
+    store::StudyStore store =
+        store::StudyStore::open(study.database(), store::StudyStore::Access::read_write);
+    const Signer signer = study.station().signer();
+    store.sign_with(signer);
+    return complaint_of<StoreError>([&] {
+      app::keep_heads(store, study.database(), signer, {.folder = other, .accept_loss = reason},
+                      app::HeadUse::required);
+    });
+  };
+  study.roll_back(study.database());
+  study.roll_back(study.head());
+
+  SECTION("it is there") {
+    fs::copy_file(study.old_of(study.second_head()), other / "study.db.head");
+    CHECK(contains(told(""), "as " + study.second_head().string() + " knows it"));
+    note("an older database and another folder for the second head file", Outcome::refused);
+  }
+  SECTION("it is gone") {
+    fs::copy_file(study.old_of(study.second_head()), other / "study.db.head");
+    fs::remove(study.second_head());
+    CHECK(contains(told(""), study.second_head().string() + " is gone"));
+    note("the same, and the second head file removed", Outcome::refused);
+  }
+  CHECK(told("the disk died").empty());
+  CHECK(told("").empty());
+  const analysis::Verification verification =
+      analysis::verify_files({.database = study.database(), .key = {}, .pack = {}}, {});
+  CHECK(verification.holds());
+  CHECK(std::ranges::any_of(verification.notes, [](const std::string& one) {
+    return contains(one, "a loss was accepted (the disk died)");
+  }));
+}
+
+TEST_CASE("a head file that was left for another folder gives a rolled back move away") {
+  RolledBack study;
+  for (const fs::path& file : {study.database(), study.head()}) {
+    fs::copy_file(file, study.old_of(file), fs::copy_options::overwrite_existing);
+  }
+  const fs::path other = study.folder() / "other";
+  fs::create_directory(other);
+  {
+    store::StudyStore store =
+        store::StudyStore::open(study.database(), store::StudyStore::Access::read_write);
+    const Signer signer = study.station().signer();
+    store.sign_with(signer);
+    app::keep_heads(store, study.database(), signer, {.folder = other}, app::HeadUse::required);
+    CHECK(store.heads_on_record() == other.string());
+  }
+  CHECK(study.found().empty());
+  study.roll_back(study.database());
+  study.roll_back(study.head());
+  CHECK(contains(study.found_without_key(), study.second_head().string() + ": "));
+  note("an older database from before the second head file was moved", Outcome::named);
 }
 
 TEST_CASE("an older database with all its head files is found by a head on paper alone") {

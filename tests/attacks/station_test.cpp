@@ -90,7 +90,7 @@ TEST_CASE("a station can erase a look from its own file, and nothing else about 
   Forgery forged(study.database());
 
   SECTION("erased") {
-    forged.file().erase(forged.file().begin() + 3);
+    forged.file().erase(forged.file().begin() + 4);
     forged.relink(&station);
     forged.write();
     CHECK(contains(study.found(), "heads: "));
@@ -102,7 +102,7 @@ TEST_CASE("a station can erase a look from its own file, and nothing else about 
     note("the same, held against a head on paper", Outcome::named);
   }
   SECTION("an exclusion moved before it") {
-    std::swap(forged.file()[3], forged.file()[4]);
+    std::swap(forged.file()[4], forged.file()[5]);
     forged.relink(&station);
     forged.write();
     CHECK(contains(study.found(), kUnsignedLook));
@@ -110,7 +110,7 @@ TEST_CASE("a station can erase a look from its own file, and nothing else about 
     note("an exclusion moved before the look by the station", Outcome::named);
   }
   SECTION("another reason given for it") {
-    set(forged.file()[3], "reason", "\"a technical check\"");
+    set(forged.file()[4], "reason", "\"a technical check\"");
     forged.relink(&station);
     forged.write();
     CHECK(contains(study.found(), kUnsignedLook));
@@ -123,7 +123,7 @@ TEST_CASE("a station can shift its clock") {
   study.close();
   const Signer station = study.station().signer();
   Forgery forged(study.database());
-  forged.file().resize(3);  // a look would have the investigator's signature of the true times
+  forged.file().resize(4);  // a look would have the investigator's signature of the true times
   for (int session = 2; session <= 4; ++session) forged.drop(session);
   for (store::Event& event : forged.file()) event.at += std::chrono::hours(1);
   forged.relink(&station);
@@ -142,7 +142,7 @@ TEST_CASE("a station cannot record a look") {
   study.close();
   const Signer station = study.station().signer();
   Forgery forged(study.database());
-  forged.file().push_back(forged.file()[3]);
+  forged.file().push_back(forged.file()[4]);
   forged.relink(&station);
   forged.write();
   CHECK(contains(study.found(), kUnsignedLook));

@@ -1,0 +1,143 @@
+#include "analysis/verification/head_check.hpp"
+
+#include "core/errors.hpp"
+#include "core/text.hpp"
+#include "protocols/store/damage.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// By the station's name.
+using StationChains = std::multimap<std::string, std::vector<store::Event>>;
+
+void add(std::string& text, const std::string& more) {
+  text += (text.empty() ? "" : "; ") + one_line(more);
+}
+
+/// The head file of one station's database.
+/// \return what the collected study lacks of it; empty: nothing
+std::string lack_of_station(const store::HeadReading& reading, const StationChains& chains) {
+  const store::HeadRecord& known = reading.record;
+  const auto found = std::ranges::find_if(
+      chains, [&](const auto& station) { return station.second.front().hash == known.database; });
+  if (found == chains.end()) {
+    if (known.acknowledged == 0) return {};  // nobody came there yet
+    return fmt::format("the database lacks station {}, whose head file {} knows {}", known.station,
+                       reading.file.string(), counted(known.acknowledged, "acknowledged answer"));
+  }
+  const auto& [name, chain] = *found;
+  const auto length = static_cast<std::size_t>(known.file.length);
+  if (length == 0) return {};
+  if (length <= chain.size() && chain[length - 1].hash == known.file.hash) return {};
+  return fmt::format(
+      "station {}'s chain has {} here, and its head file {} knows {}: merge its database again",
+      name, counted(std::ssize(chain), "event"), reading.file.string(), length);
+}
+
+}  // namespace
+
+std::string HeadCheck::fault() const {
+  return lacks + (lacks.empty() || gone.empty() ? "" : "; ") + gone;
+}
+
+std::string HeadCheck::words() const {
+  if (!lacks.empty()) return "NOT AS IT WAS LEFT: " + lacks;
+  if (!vouched) return gone.empty() ? "no head file was compared" : gone;
+  return fmt::format("up to head {} (event {}, {} acknowledged), by {}{}",
+                     store::spoken_head(*vouched), vouched->file.length,
+                     counted(vouched->acknowledged, "answer"), counted(compared, "head file"),
+                     gone.empty() ? "" : "; " + gone);
+}
+
+HeadCheck check_heads(const store::StudyStore& store, const fs::path& database,
+                      std::span<const fs::path> given) {
+  HeadCheck check;
+  try {
+    std::vector<store::KnownHead> heads = store::known_heads(store, database);
+    std::ptrdiff_t stand_ins = 0;
+    for (const fs::path& named : given) {
+      const fs::path file = fs::weakly_canonical(named);
+      const auto is_same = [&](const store::KnownHead& head) {
+        return fs::weakly_canonical(head.file) == file;
+      };
+      if (std::ranges::any_of(heads, is_same)) continue;
+      heads.push_back({file, store::HeadFile(file).reading(head_signers(store.commitment()))});
+      if (!heads.back().reading) throw FileError("there is no " + named.string());
+      ++stand_ins;
+    }
+    for (const store::KnownHead& head : heads) {
+      if (!head.reading) continue;
+      ++check.compared;
+      const store::HeadRecord& known = head.reading->record;
+      if (!head.reading->damage.empty()) {
+        check.notes.push_back(one_line(head.file.string() + ": " + head.reading->damage));
+      }
+      if (!check.vouched || known.file.length > check.vouched->file.length) check.vouched = known;
+      const std::vector<store::Loss> missing = store::losses(known, store);
+      if (missing.empty()) continue;
+      add(check.lacks, head.file.string() + ": " + listed(missing, "; ", &store::Loss::what));
+    }
+    std::erase_if(heads, [](const store::KnownHead& head) { return head.reading.has_value(); });
+    // A copy of a head file that lies elsewhere now stands in for it.
+    if (std::ssize(heads) <= stand_ins) return check;
+    check.gone = listed(heads, " and ",
+                        [](const store::KnownHead& head) { return one_line(head.file.string()); });
+    check.gone += heads.size() == 1 ? " is gone" : " are gone";
+    check.gone +=
+        ", which the database has on record; bring back what knows its end, or give `touchtrial "
+        "verify` a copy with --head-file, or the last head with --head";
+  } catch (const FileError& error) {
+    add(check.lacks, error.what());
+  }
+  return check;
+}
+
+StationsCheck check_stations(const store::StudyStore& store,
+                             const std::map<std::string, PublicKey>& signers,
+                             std::span<const fs::path> given) {
+  StationsCheck check;
+  StationChains chains;
+  std::vector<PublicKey> trusted = {store.commitment().investigator};
+  for (int station = 1; station <= store.stations(); ++station) {
+    std::vector<store::Event> chain = store.station_chain(station);
+    const auto identity = store::body_of(chain.front(), store::commitment_from_json).station;
+    chains.emplace(identity ? identity->name : std::to_string(station), std::move(chain));
+  }
+  for (const auto& [name, signer] : signers) trusted.push_back(signer);
+  std::set<std::string> vouched;
+  for (const fs::path& file : given) {
+    try {
+      const auto reading = store::HeadFile(file).reading(trusted);
+      if (!reading) throw FileError("there is no " + file.string());
+      vouched.insert(reading->record.station);
+      if (const std::string lack = lack_of_station(*reading, chains); !lack.empty()) {
+        add(check.lacks, lack);
+      }
+    } catch (const FileError& error) {
+      add(check.lacks, error.what());
+    }
+  }
+  for (const auto& [name, signer] : signers) {
+    if (vouched.contains(name)) continue;
+    const auto found = chains.find(name);
+    if (found == chains.end()) {
+      add(check.absent, "station " + name);
+      continue;
+    }
+    add(check.ends, fmt::format("station {} with event {} (head {})", name, found->second.size(),
+                                in_fours(to_hex(found->second.back().hash).substr(0, 16))));
+  }
+  return check;
+}
+
+}  // namespace touchtrial::analysis
