@@ -22,7 +22,7 @@ Digest picture_digest(const fs::path& name, const fs::path& file) {
       .finish();
 }
 
-[[noreturn]] void refuse(const fs::path& path, const std::string& what) {
+[[noreturn]] void refuse_pack(const fs::path& path, const std::string& what) {
   throw FileError(one_line(path.string() + ": " + what));
 }
 
@@ -76,26 +76,30 @@ void require_signed(const engine::Pack& pack, const std::string& study_id, const
                     const PublicKey& investigator) {
   const engine::PackManifest& manifest = pack.manifest();
   if (manifest.study_id != study_id) {
-    refuse(pack.folder(),
-           "is another study's pack; name the pack and the file of secrets that were made together "
-           "(--pack, --station-file, --key)");
+    refuse_pack(
+        pack.folder(),
+        "is another study's pack; name the pack and the file of secrets that were made together "
+        "(--pack, --station-file, --key)");
   }
   if (!is_signed(manifest, investigator)) {
-    refuse(pack.folder() / "pack.json",
-           "is not signed by the study's investigator: it was altered, or the file of secrets is "
-           "another investigator's; copy pack and station's file anew from the investigator's "
-           "machine, or run `touchtrial prepare` there");
+    refuse_pack(
+        pack.folder() / "pack.json",
+        "is not signed by the study's investigator: it was altered, or the file of secrets is "
+        "another investigator's; copy pack and station's file anew from the investigator's "
+        "machine, or run `touchtrial prepare` there");
   }
   if (manifest.seal != seal) {
-    refuse(pack.folder(),
-           "was made for this study before or after a change of its file, or is not complete; run "
-           "`touchtrial prepare`, and copy pack and station's file together");
+    refuse_pack(
+        pack.folder(),
+        "was made for this study before or after a change of its file, or is not complete; run "
+        "`touchtrial prepare`, and copy pack and station's file together");
   }
   for (const engine::PackEntry& entry : manifest.entries) {
     if (is_intact(pack, entry.code)) continue;
-    refuse(pack.folder(), "field " + entry.code +
-                              " is not what was prepared; copy the pack anew, or run `touchtrial "
-                              "prepare`");
+    refuse_pack(pack.folder(),
+                "field " + entry.code +
+                    " is not what was prepared; copy the pack anew, or run `touchtrial "
+                    "prepare`");
   }
 }
 
@@ -109,7 +113,7 @@ std::vector<fs::path> require_pictures(const engine::Pack& pack, const Study& st
       absent.push_back(name);
     } else if (!std::ranges::binary_search(pack.manifest().pictures,
                                            picture_digest(name, *folder / name))) {
-      refuse(
+      refuse_pack(
           *folder / name,
           "participants would see another picture than the one that was there at `touchtrial "
           "prepare`; restore it, or, only if nobody has taken part yet, run `touchtrial prepare` "
@@ -122,15 +126,16 @@ std::vector<fs::path> require_pictures(const engine::Pack& pack, const Study& st
 void require_whole(const engine::Pack& pack, const StudyCodes& codes) {
   require_signed(pack, codes.study_id, codes.seal, codes.investigator_signature);
   if (pack.manifest().investigator_box != codes.investigator_box) {
-    refuse(pack.folder(),
-           "the file of secrets seals for another investigator than the one who signed the pack; "
-           "copy the station's file anew from the investigator's machine");
+    refuse_pack(
+        pack.folder(),
+        "the file of secrets seals for another investigator than the one who signed the pack; "
+        "copy the station's file anew from the investigator's machine");
   }
   const std::array<fs::path, 1> folders = {codes.study.folder};
   const std::vector<fs::path> absent = require_pictures(pack, codes.study, folders);
   if (absent.empty()) return;
-  refuse(codes.study.folder / absent.front(),
-         "does not exist, and participants are to see it; copy it here");
+  refuse_pack(codes.study.folder / absent.front(),
+              "does not exist, and participants are to see it; copy it here");
 }
 
 }  // namespace touchtrial::design
