@@ -193,6 +193,7 @@ TEST_CASE("paper refuses bad pictures and folders in one line, and writes nothin
   CHECK_THAT(refusal({good, "--out", picture("text.png")}, 1), holds_text("is no folder"));
   make_folder(folder.path() / "mine");
   replace_file(folder.path() / "mine" / "paper.md", "my own paper");
-  CHECK_THAT(refusal({good, "--out", picture("mine")}, 1), holds_text("paper.md") && holds_text("--force"));
+  CHECK_THAT(refusal({good, "--out", picture("mine")}, 1),
+             holds_text("paper.md") && holds_text("--force"));
   CHECK(text_in(folder.path() / "mine" / "paper.md") == "my own paper");
 }
