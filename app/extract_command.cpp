@@ -65,9 +65,9 @@ void dump_force(const fs::path& folder, const engine::ForceField<Real>& force) {
 
 /// Before the work: the places of all planes that a method may have.
 void require_dump_places(const fs::path& folder) {
-  for (const char* name : {"image", "subband_LL", "subband_LH", "subband_HL", "subband_HH", "csgv",
-                           "order", "enhanced", "cartoon", "texture", "texture_u8",
-                           "force_tangential"}) {
+  for (const char* name :
+       {"image", "subband_LL", "subband_LH", "subband_HL", "subband_HH", "csgv", "order",
+        "enhanced", "cartoon", "texture", "texture_u8", "force_tangential"}) {
     require_output_place(folder / (std::string(name) + ".npy"));
   }
 }

@@ -8,8 +8,8 @@
 
 namespace touchtrial {
 
-/// Refuses a link in a file's place, which may lead to any other file. Links to folders above it are
-/// the user's own.
+/// Refuses a link in a file's place, which may lead to any other file. Links to folders above it
+/// are the user's own.
 /// \throws FileError naming the link and where it leads
 void refuse_link(const std::filesystem::path& path);
 

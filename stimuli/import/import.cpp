@@ -78,8 +78,8 @@ bool are_ours(const fs::path& folder) {
   return true;
 }
 
-/// Puts a folder of new pictures in the place of earlier ones, which return unless `keep` is called.
-/// Those that somebody added to or changed are kept under another name.
+/// Puts a folder of new pictures in the place of earlier ones, which return unless `keep` is
+/// called. Those that somebody added to or changed are kept under another name.
 class NewPictures {
  public:
   NewPictures(Draft& draft, const fs::path& place) : place_(place) {

@@ -70,9 +70,10 @@ void check_writable(const fs::path& path, const ImportOptions& options, const st
   }
   refuse_link(path);
   if (!is_there(path) || options.replace) return;
-  refuse(one_line(path.string()) + " exists already; give another " + option +
-         ", or --force, which replaces what an earlier import wrote and keeps everything else under "
-         "another name");
+  refuse(
+      one_line(path.string()) + " exists already; give another " + option +
+      ", or --force, which replaces what an earlier import wrote and keeps everything else under "
+      "another name");
 }
 
 void check_places(const ImportOptions& options) {

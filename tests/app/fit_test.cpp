@@ -120,8 +120,7 @@ TEST_CASE("fit replaces subject files only, and nothing that it reads") {
   fs::create_hard_link(study.path() / "s.db", study.path() / "linked.db");
   unharmed("linked.db", {"fit", study.in("s.db"), "-o", study.in("linked.db")},
            "is one of the inputs");
-  unharmed("cloths.json", {"fit", study.in("s.db"), "-o", study.in("cloths.json")},
-           "--force", 1);
+  unharmed("cloths.json", {"fit", study.in("s.db"), "-o", study.in("cloths.json")}, "--force", 1);
   const std::string accuracies = "granite=0.9,linen=0.7,corduroy=0.8";
   unharmed(
       "cloths.json",
