@@ -338,10 +338,16 @@ void record_other_station(EnteredSession& entered, const store::SessionOpening& 
 }
 
 /// Ends the session in its present state.
+/// \throws StoreError if its trials are done: it is complete then, and nobody begins it anew
 void give_up(const RunOptions& options, const RunStudy& study, store::StudyStore& store,
              const KeptSession& kept, const store::SessionRow& row) {
   const std::unique_ptr<store::EventSink> sink = store.continue_session(row.session);
   session::Session session = restored(options, study, kept, row, *sink);
+  if (session.phase() == session::SessionPhase::finished) {
+    throw StoreError(fmt::format(
+        "{}: all trials of session {} (participant {}) are done; end it with --on-existing resume",
+        one_line(options.database.string()), row.session, row.participant));
+  }
   if (session.accepts(session::SessionInput::stop)) session.stop(session.last(), "", "restarted");
   session.close(session.last());
 }
@@ -522,12 +528,14 @@ void RunExperimenter::acknowledged(int trial) {
 namespace {
 
 std::string summary(const RunOptions& options, int session, const session::SessionTally& tally,
-                    bool is_complete, const store::StudyStore& store) {
+                    const store::SessionRow& row, const store::StudyStore& store) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(tally.duration).count();
+  const bool is_complete = row.state == store::SessionState::completed;
   const char* const end = tally.left ? "left open" : is_complete ? "complete" : "stopped";
-  return fmt::format("{}session {} of participant {}: {}, {} trials answered, {} min {} s\n",
-                     options.is_simulated() ? "SIMULATED: " : "", session, options.participant, end,
-                     answered_trials(store, session), seconds / 60, seconds % 60);
+  return fmt::format("{}session {} of participant {}: {}, {} trials answered, {} min {} s{}\n",
+                     row.simulated ? "SIMULATED: " : "", session, options.participant, end,
+                     answered_trials(store, session), seconds / 60, seconds % 60,
+                     row.simulated && !options.is_simulated() ? "; it does not count" : "");
 }
 
 }  // namespace
@@ -542,10 +550,9 @@ int conclude_session(const RunOptions& options, int session, const session::Sess
         fmt::format("{}, and does not hold session {} of participant {} to its end; {}", trouble,
                     session, options.participant, rescue(options.database, store)));
   }
-  const bool is_complete =
-      store.session_of(options.participant)->state == store::SessionState::completed;
+  const store::SessionRow row = store.session_of(options.participant).value();
   // Nobody has a day sheet of simulated participants.
-  print(summary(options, session, tally, is_complete, store) +
+  print(summary(options, session, tally, row, store) +
         (options.is_simulated() ? "" : head_words(store) + "; write it on the day sheet\n"));
   if (tally.left) {
     std::fprintf(stderr,
@@ -554,7 +561,7 @@ int conclude_session(const RunOptions& options, int session, const session::Sess
                  one_line(*tally.left).c_str(), options.participant.c_str());
   }
   if (EndingSignals::which() != 0) return kShellOffset + EndingSignals::which();
-  return is_complete && !tally.left ? 0 : 1;
+  return row.state == store::SessionState::completed && !tally.left ? 0 : 1;
 }
 
 }  // namespace touchtrial::app
