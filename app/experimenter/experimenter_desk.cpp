@@ -38,10 +38,17 @@ std::string words_of(const session::ExperimenterRequest& request) {
       return "deviation " + request.code + text;
     case RequestKind::abort:
       return "end of the session" + text;
+    case RequestKind::delay:
     case RequestKind::leave:
       break;
   }
   return "";
+}
+
+bool is_half_typed(const std::string& code) {
+  return !design::is_deviation_code(code) &&
+         std::ranges::any_of(design::kDeviationCodes,
+                             [&](std::string_view one) { return one.starts_with(code); });
 }
 
 }  // namespace
@@ -111,6 +118,7 @@ void ExperimenterDesk::act(What what) {
     case What::note:
       return begin(Own::note);
     case What::deviation:
+      code_.clear();
       return begin(Own::code);
     case What::abort:
       return begin(Own::sure);
@@ -153,7 +161,9 @@ ExperimenterQuestion ExperimenterDesk::own_question() const {
     case Own::note:
       return {Question::Kind::text, "Note"};
     case Own::code: {
-      Question code{Question::Kind::text, "Code of the deviation"};
+      Question code{Question::Kind::text,
+                    code_.empty() ? "Code of the deviation"
+                                  : fmt::format("'{}' is only the beginning of a code", code_)};
       for (const std::string_view one : design::kDeviationCodes) {
         code.choices.push_back({std::string(one)});
       }
@@ -226,7 +236,7 @@ void ExperimenterDesk::answer_own(const std::string& text) {
       break;
     case Own::code:
       code_ = text;
-      if (!text.empty()) begin(Own::remark);
+      if (!text.empty()) begin(is_half_typed(text) ? Own::code : Own::remark);
       break;
     case Own::remark:
       ask(RequestKind::deviation, text, code_);

@@ -188,7 +188,7 @@ class ExperimenterDesk final : public session::Experimenter, public session::Att
   std::deque<std::string> asked_;
   Own own_ = Own::none;
   std::size_t questions_ = 0;
-  std::string code_;
+  std::string code_;  ///< of the deviation that is being entered; in Own::code one that was refused
   std::optional<Sheet> sheet_;
   std::optional<Spoken> spoken_;
   bool is_pause_asked_ = false;

@@ -262,8 +262,8 @@ class Drawing {
   /// Whether the window needs a picture. The console's wishes do not count.
   [[nodiscard]] bool is_due(const WindowExchange::Work& work) const {
     if (work.surface.width_px <= 0 || work.surface.height_px <= 0) return false;
-    return work.is_new || !waiting_.empty() || !is_shown_ || (screen_ && screen_->is_alive()) ||
-           Clock::now() - drawn_at_ >= kIdle;
+    return work.is_new || has_taken_ || !waiting_.empty() || !is_shown_ ||
+           (screen_ && screen_->is_alive()) || Clock::now() - drawn_at_ >= kIdle;
   }
 
   void draw_console() {
@@ -288,6 +288,7 @@ class Drawing {
       waiting_.pop_front();
       if (!screen_) continue;
       if (event.kind != InputEvent::Kind::moved && event.at < shown_at_) continue;
+      has_taken_ = true;
       if (const auto reply = screen_->take(event)) exchange_.replied(screen_, *reply);
       if (is_transition(event)) return;
       has_letters_ = has_letters_ || event.kind == InputEvent::Kind::letter;
@@ -304,7 +305,7 @@ class Drawing {
     drawn_at_ = Clock::now();
     if (!is_shown_) shown_at_ = drawn_at_;
     is_shown_ = true;
-    has_letters_ = false;
+    has_letters_ = has_taken_ = false;
     exchange_.shown(screen_, !waiting_.empty());
     // In case the system does not pace the pictures.
     if (screen_ && screen_->is_alive()) {
@@ -380,7 +381,8 @@ class Drawing {
   double unit_ = 0.0;
   std::shared_ptr<Screen> screen_;
   bool is_shown_ = false;
-  bool has_letters_ = false;  ///< that the last picture does not show
+  bool has_taken_ = false;    ///< events that the last picture does not show
+  bool has_letters_ = false;  ///< among them
   Clock::time_point shown_at_{};
   Clock::time_point drawn_at_{};
   std::deque<InputEvent> waiting_;

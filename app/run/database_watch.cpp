@@ -4,6 +4,8 @@
 #include "core/files.hpp"
 #include "protocols/store/damage.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <sys/stat.h>
 
@@ -37,11 +39,14 @@ void PatientSink::accept_together(std::span<const store::RecordedEvent> events) 
 }
 
 void PatientSink::patiently(const std::function<void()>& store) {
+  // Longer than any disk takes that serves a session.
+  constexpr std::chrono::milliseconds kNoticed{500};
   const Clock::time_point began = Clock::now();
-  for (bool waited = false;; waited = true) {
+  for (;;) {
     try {
       store();
-      if (waited) waited_ = Clock::now() - began;
+      const auto took = Clock::now() - began;
+      if (took >= kNoticed) waited_ = std::max(waited_.value_or(took), took);
       return;
     } catch (const store::LockedStore& locked) {
       if (!waiting_ || !waiting_(locked.what())) throw;

@@ -26,8 +26,8 @@ class PatientSink final : public store::EventSink {
   explicit PatientSink(std::unique_ptr<store::EventSink> inner) : inner_(std::move(inner)) {}
   /// Without it, nothing waits.
   void set_waiting(Waiting waiting) { waiting_ = std::move(waiting); }
-  /// How long the last events waited, once; empty: they did not.
-  [[nodiscard]] std::optional<std::chrono::nanoseconds> take_waited() {
+  /// How long an event waited at most since the last call; empty: less than anybody notices.
+  [[nodiscard]] std::optional<std::chrono::steady_clock::duration> take_waited() {
     return std::exchange(waited_, std::nullopt);
   }
 
@@ -39,7 +39,7 @@ class PatientSink final : public store::EventSink {
 
   std::unique_ptr<store::EventSink> inner_;
   Waiting waiting_;
-  std::optional<std::chrono::nanoseconds> waited_;
+  std::optional<std::chrono::steady_clock::duration> waited_;
 };
 
 /// Looks whether the files at a database's path are still those that were opened.

@@ -255,6 +255,7 @@ RunOptions with_participant(const RunOptions& options, const design::StationKey&
   known.participant = person.id;
   known.visit = visit_of(options, people, person.id);
   known.remark = remark_on(person);
+  known.no_consent = !person.has_consented;
   return known;
 }
 

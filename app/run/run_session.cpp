@@ -110,14 +110,14 @@ bool waits(const std::string& why, const std::function<void()>& show) {
   return EndingSignals::which() == 0;
 }
 
-/// A deviation, once the database was locked for a while.
+/// What is recorded once the database was locked for a while.
 std::optional<session::ExperimenterRequest> wait_to_record(PatientSink& sink) {
   const auto waited = sink.take_waited();
   if (!waited) return std::nullopt;
   const double seconds = std::chrono::duration<double>(*waited).count();
-  return session::ExperimenterRequest{
-      session::ExperimenterRequest::Kind::deviation,
-      fmt::format("locked for {:.0f} s by another program", seconds), "database-locked"};
+  return session::ExperimenterRequest{session::ExperimenterRequest::Kind::delay,
+                                      fmt::format("waited {:.1f} s for the database", seconds),
+                                      "database-locked"};
 }
 
 /// Pauses the session while a plane is on and the participant's keys do not reach it, and goes on
@@ -230,6 +230,12 @@ std::vector<session::ExperimenterRequest> known_deviations(const RunOptions& opt
   std::vector<session::ExperimenterRequest> known = device.to_record();
   if (!options.remark.empty()) {
     known.push_back({session::ExperimenterRequest::Kind::note, options.remark, ""});
+  }
+  if (options.no_consent) {
+    spdlog::warn("participant {} has not signed the consent form; the record says so",
+                 options.participant);
+    known.push_back({session::ExperimenterRequest::Kind::deviation,
+                     "answered so in the dialogue at the start", "no-consent"});
   }
   if (!study.key_in_reach.empty()) {
     known.push_back({session::ExperimenterRequest::Kind::deviation,

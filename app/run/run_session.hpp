@@ -21,6 +21,7 @@ struct RunOptions {
   std::filesystem::path study;
   std::string participant;  ///< empty: the experimenter is asked
   std::string remark;       ///< on the participant; becomes a note of the session
+  bool no_consent = false;  ///< said in the dialogue about the participant
   std::filesystem::path database;
   std::filesystem::path pack;          ///< empty: where `prepare` puts it
   std::filesystem::path station_file;  ///< empty: beside the pack

@@ -35,8 +35,9 @@ int answered_trials(const store::StudyStore& store, int session) {
   }));
 }
 
-design::Draws draws_of(const RunOptions& options) {
-  return options.pilot || options.is_simulated() ? design::Draws::rehearsal : design::Draws::people;
+/// As verification and outcomes draw a session.
+design::Draws draws_of(bool pilot, bool simulated) {
+  return pilot || simulated ? design::Draws::rehearsal : design::Draws::people;
 }
 
 /// Includes numbers that are reserved for a replacement: their first session is still stored.
@@ -86,10 +87,10 @@ session::BlockDrawing block_restart_of(const design::StationKey& key,
 }
 
 /// The participant's group, if the study's groups are open; else empty.
-std::string open_group(const RunOptions& options, const design::StationKey& key, int enrolment) {
+std::string open_group(const design::StationKey& key, int enrolment, design::Draws draws) {
   const design::GroupPlan& groups = key.study.groups;
   if (!groups.open) return "";
-  const auto group = design::group_for(key.study, key.station, enrolment, draws_of(options));
+  const auto group = design::group_for(key.study, key.station, enrolment, draws);
   return group ? groups.labels[static_cast<std::size_t>(*group)] : "";
 }
 
@@ -101,7 +102,10 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study, Run
   }
   EnteredSession entered;
   entered.enrolment = enrolment;
-  entered.draw = study.key.draw_of(enrolment, draws_of(options), options.visit);
+  store::SessionOpening opening;
+  describe(opening);
+  const design::Draws draws = draws_of(options.pilot, opening.simulated);
+  entered.draw = study.key.draw_of(enrolment, draws, options.visit);
   const design::Schedule schedule = design::make_schedule(study.key.study, entered.draw);
   store::StudyStore& store = database.made();
   entered.number = store.next_session();
@@ -114,15 +118,13 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study, Run
       schedule, study.key.study.trials, store::SessionRecorder(entered.number, key, *entered.sink),
       block_restart_of(study.key, entered.draw),
       design::adaptive_order(study.key.study, entered.draw));
-  store::SessionOpening opening;
   opening.participant = options.participant;
   opening.enrolment = enrolment;
   opening.visit = options.visit;
-  opening.group = open_group(options, study.key, enrolment);
+  opening.group = open_group(study.key, enrolment, draws);
   opening.study_id = study.key.study_id;
   opening.seal = study.key.seal;
   opening.pilot = options.pilot;
-  describe(opening);
   if (!opening.simulated) opening.opened_utc = utc_text(utc_now());
   entered.session->open({}, opening, design::schedule_to_json(schedule, study.key));
   if (!opening.group.empty()) {
@@ -242,9 +244,10 @@ std::string standing(const store::StudyStore& store, const store::SessionRow& ro
                      minutes / 60, minutes % 60);
 }
 
-session::Session restored(const RunOptions& options, const RunStudy& study, const KeptSession& kept,
+session::Session restored(const RunStudy& study, const KeptSession& kept,
                           const store::SessionRow& row, store::EventSink& sink) {
-  const design::ScheduleDraw draw = study.key.draw_of(row.enrolment, draws_of(options), row.visit);
+  const design::ScheduleDraw draw =
+      study.key.draw_of(row.enrolment, draws_of(row.pilot, row.simulated), row.visit);
   session::Session session(
       design::schedule_from_json(kept.schedule, study.key), study.key.study.trials,
       store::SessionRecorder(row.session, kept.key, sink), block_restart_of(study.key, draw),
@@ -278,10 +281,9 @@ EnteredSession resumed_session(const RunOptions& options, const RunStudy& study,
   EnteredSession entered;
   entered.number = row.session;
   entered.enrolment = row.enrolment;
-  entered.draw = study.key.draw_of(row.enrolment, draws_of(options), row.visit);
+  entered.draw = study.key.draw_of(row.enrolment, draws_of(row.pilot, row.simulated), row.visit);
   entered.sink = std::make_unique<PatientSink>(store.continue_session(row.session));
-  entered.session =
-      std::make_unique<session::Session>(restored(options, study, kept, row, *entered.sink));
+  entered.session = std::make_unique<session::Session>(restored(study, kept, row, *entered.sink));
   session::Session& session = *entered.session;
   const nanoseconds away = std::max(nanoseconds{}, kept.away);
   entered.clock = time_after(options, session.last(), away);
@@ -303,14 +305,17 @@ void require_young(const RunOptions& options, const RunStudy& study, const std::
                   options.database.string(), standing, utc_words(utc_now()), limit_h));
 }
 
-/// Refuses to resume a session on another kind of device: a session that is seen is not blind.
+/// Refuses to resume a session on another kind of device: a session that is seen is not blind, and
+/// where nobody feels anything no trial counts.
 void require_same_kind(const RunOptions& options, const store::SessionRow& row,
                        const store::SessionOpening& then, const store::SessionOpening& now) {
-  if (now.is_visual() == then.is_visual()) return;
+  if (now.is_visual() == then.is_visual() && now.simulated == then.simulated) return;
   throw StoreError(fmt::format(
       "{}: session {} was begun with device '{}', and '{}' is {}: continue with the former",
       options.database.string(), row.session, then.device, now.device,
-      now.is_visual() ? "seen on a screen and not felt" : "felt and not seen"));
+      now.simulated     ? "simulated"
+      : now.is_visual() ? "seen on a screen and not felt"
+                        : "felt and not seen"));
 }
 
 /// Records that the resumed session uses another device or certificate.
@@ -329,10 +334,16 @@ void record_other_station(EnteredSession& entered, const store::SessionOpening& 
 }
 
 /// Ends the session in its present state.
+/// \throws StoreError if its trials are done: it is complete then, and nobody begins it anew
 void give_up(const RunOptions& options, const RunStudy& study, store::StudyStore& store,
              const KeptSession& kept, const store::SessionRow& row) {
   const std::unique_ptr<store::EventSink> sink = store.continue_session(row.session);
-  session::Session session = restored(options, study, kept, row, *sink);
+  session::Session session = restored(study, kept, row, *sink);
+  if (session.phase() == session::SessionPhase::finished) {
+    throw StoreError(fmt::format(
+        "{}: all trials of session {} (participant {}) are done; end it with --on-existing resume",
+        one_line(options.database.string()), row.session, row.participant));
+  }
   if (session.accepts(session::SessionInput::stop)) session.stop(session.last(), "", "restarted");
   session.close(session.last(), study.key.study.protocol->may_name_one_key(study.key.study));
 }
@@ -521,12 +532,14 @@ void RunExperimenter::acknowledged(int trial) {
 namespace {
 
 std::string summary(const RunOptions& options, int session, const session::SessionTally& tally,
-                    bool is_complete, const store::StudyStore& store) {
+                    const store::SessionRow& row, const store::StudyStore& store) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(tally.duration).count();
+  const bool is_complete = row.state == store::SessionState::completed;
   const char* const end = tally.left ? "left open" : is_complete ? "complete" : "stopped";
-  return fmt::format("{}session {} of participant {}: {}, {} trials answered, {} min {} s\n",
-                     options.is_simulated() ? "SIMULATED: " : "", session, options.participant, end,
-                     answered_trials(store, session), seconds / 60, seconds % 60);
+  return fmt::format("{}session {} of participant {}: {}, {} trials answered, {} min {} s{}\n",
+                     row.simulated ? "SIMULATED: " : "", session, options.participant, end,
+                     answered_trials(store, session), seconds / 60, seconds % 60,
+                     row.simulated && !options.is_simulated() ? "; it does not count" : "");
 }
 
 /// A session's end erases the station's copy of its key, which stays in the database's log as long
@@ -555,10 +568,9 @@ int conclude_session(const RunOptions& options, int session, const session::Sess
                     session, options.participant, rescue(options.database, store)));
   }
   if (!tally.left) require_key_erased(options, session, store);
-  const bool is_complete =
-      store.session_of(options.participant)->state == store::SessionState::completed;
+  const store::SessionRow row = store.session_of(options.participant).value();
   // Nobody has a day sheet of simulated participants.
-  print(summary(options, session, tally, is_complete, store) +
+  print(summary(options, session, tally, row, store) +
         (options.is_simulated() ? "" : head_words(store) + "; write it on the day sheet\n"));
   if (tally.left) {
     std::fprintf(stderr,
@@ -567,7 +579,7 @@ int conclude_session(const RunOptions& options, int session, const session::Sess
                  one_line(*tally.left).c_str(), options.participant.c_str());
   }
   if (EndingSignals::which() != 0) return kShellOffset + EndingSignals::which();
-  return is_complete && !tally.left ? 0 : 1;
+  return row.state == store::SessionState::completed && !tally.left ? 0 : 1;
 }
 
 }  // namespace touchtrial::app

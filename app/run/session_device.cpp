@@ -86,6 +86,11 @@ SessionDevice::SessionDevice(const RunOptions& options, const PlaneGeometry& pla
   info_ = first_->info();
   const auto placement = device::placement_of(plane, info_, settings_.use_of(driver_));
   check_certificate(options);
+  if (info_.simulated) {
+    const std::string what = "device 'simulated' is no device: nobody feels anything";
+    spdlog::warn("{}, and the session does not count", what);
+    to_record_.push_back({session::ExperimenterRequest::Kind::deviation, what, "simulated-device"});
+  }
   if (const auto late =
           lateness_to_record(info_, device::ServoThread().scheduling(), options.allow_late)) {
     spdlog::warn("{}; the record says so", late->text);
@@ -119,6 +124,7 @@ void SessionDevice::require_stable_wall(double stiffness_n_per_mm) const {
 }
 
 std::string SessionDevice::shown_name() const {
+  if (info_.simulated) return driver_ + ", does not count";
   return certificate_ == design::kUnverifiedDevice ? driver_ + " " + certificate_ : driver_;
 }
 

@@ -44,17 +44,15 @@ Values values_for(const design::Study& study) {
   return values;
 }
 
-/// The parts about practice: what is practised, and whether answers are told afterwards too.
-std::vector<std::string> practice_parts(const design::Study& study) {
+/// The part about practice: what is practised, and whether answers are told afterwards too.
+/// \return empty if the study has no practice
+std::string practice_part(const design::Study& study) {
   const auto intervals = intervals_of(study);
-  if (!intervals) {
-    return study.trials.practice > 0 ? std::vector<std::string>{"practice"}
-                                     : std::vector<std::string>{};
-  }
+  if (!intervals) return study.trials.practice > 0 ? "practice" : "";
   if (intervals->practice_rounds == 0 || study.protocol->practice_trials(study, {}, 1).empty()) {
-    return {};
+    return "";
   }
-  return {intervals->feedback ? "practice_intervals_feedback" : "practice_intervals"};
+  return intervals->feedback ? "practice_intervals_feedback" : "practice_intervals";
 }
 
 std::string sight_part(const design::Study& study) {
@@ -75,7 +73,10 @@ std::vector<std::vector<std::string>> pages_for(const design::Study& study) {
   if (study.session.masking.wanted) rules.push_back("masking");
   std::vector<std::vector<std::string>> pages{
       {"welcome"}, {study.protocol_name()}, {"hand"}, {sight_part(study)}, rules};
-  if (const auto parts = practice_parts(study); !parts.empty()) pages.push_back(parts);
+  if (const std::string practice = practice_part(study); !practice.empty()) {
+    pages.push_back({practice});
+    if (study.session.sight != design::Sight::blindfold) pages.back().push_back("practice_bars");
+  }
   pages.push_back({"comfort"});
   return pages;
 }

@@ -42,6 +42,7 @@ inline constexpr auto kDeviationCodes = std::to_array<std::string_view>({"answer
                                                                          "other-certificate",
                                                                          "other-device",
                                                                          "practice-not-passed",
+                                                                         "simulated-device",
                                                                          kUnverifiedDeviceCode,
                                                                          "visit-late",
                                                                          "wrong-clock"});

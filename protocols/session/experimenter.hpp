@@ -53,6 +53,8 @@ struct ExperimenterRequest {
                    ///< in `text` as the deviation kComfortStopCode
     note,          ///< `text`
     deviation,     ///< `code`, and `text` which may be empty
+    delay,         ///< a deviation that kept the session waiting: a presentation that is under way
+                   ///< counts as after a pause
     abort,         ///< `text` is the reason; the session is stopped and closed
     leave,         ///< the program has to end, and `text` says why; the session stays open and can
                    ///< be taken up again

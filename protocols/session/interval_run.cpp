@@ -59,8 +59,9 @@ IntervalsEnd run_intervals(SessionDesk& desk, const design::Presentation& shown,
     IntervalForce felt(model, stiffness_n_per_mm, plan.windows, ticks);
     PlayedForce played(model, parts.source.plane(), stiffness_n_per_mm, ticks, servo.rate_hz);
     device::ForceSource& force = shown.hand_off ? static_cast<device::ForceSource&>(played) : felt;
-    store::Trace& trace = listener.plane_on();
-    const Exploration done = desk.explore(force, parts.source.plane(), servo, trace);
+    store::Trace* const trace = listener.plane_on();
+    if (trace == nullptr) return IntervalsEnd::paused;
+    const Exploration done = desk.explore(force, parts.source.plane(), servo, *trace);
     listener.explored(done);
     if (is_interrupted(done.servo)) return IntervalsEnd::interrupted;
     if (desk.was_cut_short()) return IntervalsEnd::paused;

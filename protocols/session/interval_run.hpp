@@ -71,8 +71,9 @@ enum class IntervalsEnd {
 
 /// What is told of each exploration.
 struct IntervalListener {
-  /// Before a plane comes on; gives the trace that the exploration fills.
-  std::function<store::Trace&()> plane_on;
+  /// Before a plane comes on; gives the trace that the exploration fills. Null: the plane comes too
+  /// late, and the trial begins again.
+  std::function<store::Trace*()> plane_on;
   std::function<void(const Exploration&)> explored;
 };
 

@@ -234,6 +234,8 @@ bool SessionDesk::obey(const Request& request) {
     case Request::Kind::deviation:
       session_.deviate(now(), {request.code, request.text});
       return true;
+    case Request::Kind::delay:
+      return obey_delay(request);
     case Request::Kind::pause:
       return obey_pause(request);
     case Request::Kind::resume:
@@ -273,6 +275,20 @@ bool SessionDesk::obey_pause(const Request& request) {
     show_now_and_then();
     breathe();
   }
+}
+
+/// The time of an answer would contain the wait: it is recorded as a pause that is over.
+bool SessionDesk::obey_delay(const Request& request) {
+  session_.deviate(now(), {request.code, request.text});
+  if (!session_.in_presentation()) return true;
+  if (session_.phase() == SessionPhase::exploring) {
+    session_.interrupt(now(), store::kPauseReason);
+    return false;
+  }
+  if (!session_.accepts(SessionInput::pause)) return true;  // paused already
+  session_.pause(now(), request.code);
+  session_.resume(now());
+  return true;
 }
 
 /// No force is on. Interrupts the current presentation, and has the device ask for consent before

@@ -85,6 +85,7 @@ class SessionDesk {
   [[nodiscard]] std::optional<Request> next_request();
   [[nodiscard]] bool obey(const Request& request);
   [[nodiscard]] bool obey_pause(const Request& request);
+  [[nodiscard]] bool obey_delay(const Request& request);
   [[nodiscard]] bool obey_comfort_stop(const Request& request);
   [[nodiscard]] bool obey_abort(const Request& request);
   [[nodiscard]] bool leave(const std::string& why);

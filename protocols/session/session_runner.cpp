@@ -176,16 +176,17 @@ void TrialRun::run_intervals() {
   device::ServoReport last;
   std::optional<store::InterruptionDetail> detail;
   IntervalListener listener;
-  listener.plane_on = [&]() -> store::Trace& {
+  listener.plane_on = [&]() -> store::Trace* {
     plane_on = desk_.now();
     if (!is_presented) {
       session_.present(plane_on);
       presented_at_ = plane_on;
       ++tally_.presentations;
       is_presented = true;
+      if (came_late()) return nullptr;
     }
     desk_.enter("exploring");
-    return trace_.next_part();
+    return &trace_.next_part();
   };
   listener.explored = [&](const Exploration& done) {
     const Span span = note_exploration(done, plane_on);

@@ -252,7 +252,7 @@ std::optional<device::ServoEnd> PracticeRun::explore(const PracticeProgress& at,
 
 std::optional<device::ServoEnd> PracticeRun::explore_intervals(const design::Presentation& shown) {
   device::ServoReport last;
-  const IntervalListener listener{[this]() -> store::Trace& { return trace_; },
+  const IntervalListener listener{[this] { return &trace_; },
                                   [&last](const Exploration& done) { last = done.servo; }};
   switch (run_intervals(desk_, shown, true, listener)) {
     case IntervalsEnd::explored:

@@ -80,6 +80,10 @@ TEST_CASE("what is typed becomes requests") {
       {"dno-c\t\t\n\n", {{Kind::deviation, "", "no-certificate"}}},
       {"d\t\n\n", {{Kind::deviation, "", "answers-lost"}}},
       {"dmy own\t\n\n", {{Kind::deviation, "", "my own"}}},
+      {"dno-cu\n\n", {}},
+      {"dno-cu\nno-curtain\nfell\n", {{Kind::deviation, "fell", "no-curtain"}}},
+      {"dno-curtain", {}},
+      {"dno-curtain\nfel\x1b", {}},
       {"ay\naunwell\n\x1b", {}},
       {"ayes\nunwell\n", {{Kind::abort, "unwell", ""}}},
   }));

@@ -138,6 +138,7 @@ class Pilot {
     const std::string line = status();
     if (line.empty()) return;
     const std::size_t at = line.find("  trial ");
+    if (line.find("  exploring  trial 3 ") != std::string::npos) return lose_keyboard();
     if (line.find("  answering  ") != std::string::npos && at != std::string::npos) {
       const int presentation = std::atoi(line.c_str() + at + 8);
       meant_[presentation] = presentation % 5;
@@ -146,6 +147,15 @@ class Pilot {
     screen_.type("Return");
     // The last one closes the window.
     screen_.wait_until_heard("Touchtrial");
+  }
+
+  /// Another window takes the keyboard again and again, until the session pauses.
+  void lose_keyboard() {
+    while (status().find("  paused  ") == std::string::npos) {
+      screen_.take_focus();
+      if (!program_.listen(std::chrono::milliseconds(5))) return;
+    }
+    screen_.focus_window("Touchtrial");
   }
 
   /// The last that was written to its end; "" if there is none.
@@ -162,7 +172,10 @@ class Pilot {
   std::map<int, int> meant_;  ///< position by presentation that was answered
 };
 
-TEST_CASE("a person pilots a whole session of 25 trials from the keyboard, without a sound card") {
+TEST_CASE(
+    "a person pilots a whole session of 25 trials from the keyboard, which another window takes "
+    "once, "
+    "without a sound card") {
   const auto screen = VirtualScreen::open("1280x720");
   const Laboratory lab;
   Pilot pilot(lab, *screen);
@@ -176,6 +189,8 @@ TEST_CASE("a person pilots a whole session of 25 trials from the keyboard, witho
       analysis::load_collection(
           store::StudyStore::open(lab.in("pilot.db"), store::StudyStore::Access::read_only))
           .sessions.at(0);
+  CHECK(std::ranges::count(session.deviations, "focus-lost", &analysis::Deviation::code) >= 1);
+  CHECK(session.pauses >= 1);
   CHECK(session.opened_utc.size() == std::string("2026-01-31T14:05:09Z").size());
   REQUIRE(session.station);
   REQUIRE(session.station->screen);

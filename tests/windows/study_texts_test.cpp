@@ -8,6 +8,7 @@
 #include "support/catch.hpp"
 
 #include <filesystem>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -118,6 +119,37 @@ std::string read_in(const std::string& language, const std::vector<design::Quest
     }
   }
   return text;
+}
+
+TEST_CASE("who wears a blindfold reads of no picture and nothing else to look at") {
+  const std::map<std::string, std::vector<std::string>> to_see = {
+      {"en", {"picture", "bars", "curtain"}}, {"de", {"Bild", "Balken", "Vorhang"}},
+      {"fr", {"image", "barres", "rideau"}},  {"es", {"imagen", "imágenes", "barras", "cortina"}},
+      {"zh", {"图", "横条", "帘"}},           {"ja", {"写真", "画像", "棒", "カーテン"}}};
+  for (const std::string_view code : design::language_codes()) {
+    const std::string language(code);
+    CAPTURE(language);
+    std::vector<design::Study> studies = every_kind(language);
+    for (const design::Study& study : every_kind_with_intervals(language)) studies.push_back(study);
+    for (const design::Study& study : studies) {
+      const app::Words words = app::words_of(design::texts_of(study.session));
+      std::string text = all_of(app::session_texts(study).instructions);
+      const bool sees = study.session.sight != design::Sight::blindfold;
+      if (!sees) text += words.practice_text_blindfold + words.practice_text_intervals;
+      for (const std::string* const card :
+           {&words.practice_over_text, &words.practice_over_text_feedback, &words.ready_text,
+            &words.ready_text_intervals, &words.interval_text, &words.not_explored_text,
+            &words.answer_spoken_title, &words.answer_spoken_text, &words.answer_spoken_choice,
+            &words.time_is_up, &words.no_response_text, &words.it_was, &words.break_text}) {
+        if (!sees) text += *card;
+      }
+      bool speaks = false;
+      for (const std::string& word : to_see.at(language)) {
+        speaks = speaks || text.find(word) != std::string::npos;
+      }
+      CHECK(speaks == sees);
+    }
+  }
 }
 
 TEST_CASE("a study's questionnaires alone are those of its session, in its language") {

@@ -60,7 +60,8 @@ WholeSession::WholeSession(int repeats, double explore_s)
 
 session::SessionTally WholeSession::run(session::DeviceStation& station,
                                         session::Participant& person,
-                                        session::RealTimeExplorer& explorer) {
+                                        session::RealTimeExplorer& explorer,
+                                        session::Experimenter& experimenter) {
   while (station.make_ready() != session::SupplyState::ready) {
   }
   const std::unique_ptr<store::EventSink> sink = store.begin_session(
@@ -86,6 +87,7 @@ session::SessionTally WholeSession::run(session::DeviceStation& station,
                                         .clock = clock,
                                         .explorer = explorer,
                                         .devices = station,
+                                        .experimenter = experimenter,
                                         .instruments = &line});
 }
 

@@ -27,7 +27,8 @@ struct WholeSession {
 
   /// Runs the session until it is closed.
   session::SessionTally run(session::DeviceStation& station, session::Participant& person,
-                            session::RealTimeExplorer& explorer);
+                            session::RealTimeExplorer& explorer,
+                            session::Experimenter& experimenter = session::no_experimenter());
 
   [[nodiscard]] std::vector<store::Event> all(store::EventKind kind) const;
 

@@ -194,5 +194,55 @@ TEST_CASE("a whole session on the emulated Falcon loses no response, though it i
   CHECK(report.methods.at(0).overall.correct >= 15);
 }
 
+/// Pauses once while the third plane pushes, as the program does when the participant's keys no
+/// longer reach it, and goes on at once.
+class Pausing final : public session::Experimenter {
+ public:
+  explicit Pausing(Laboratory& lab) : lab_(lab) {}
+
+  void show(const session::SessionStatus& status) override {
+    if (status.stage != "paused") return;
+    lab_.device->steps(2);  // the last force is on its way
+    force_n.push_back(norm(lab_.falcon.emulator.force_n()));
+    resumes_ = true;
+  }
+  [[nodiscard]] std::optional<session::ExperimenterRequest> request() override {
+    using Kind = session::ExperimenterRequest::Kind;
+    if (std::exchange(resumes_, false)) return session::ExperimenterRequest{Kind::resume, "", ""};
+    if (lab_.person.begun != 3 || norm(lab_.falcon.emulator.force_n()) < 0.3) return std::nullopt;
+    if (std::exchange(has_paused_, true)) return std::nullopt;
+    return session::ExperimenterRequest{Kind::pause, "the keyboard was lost", ""};
+  }
+
+  std::vector<double> force_n;  ///< in the pause
+
+ private:
+  Laboratory& lab_;
+  bool has_paused_ = false;
+  bool resumes_ = false;
+};
+
+TEST_CASE("a pause on the emulated Falcon leaves no force, and its trial comes again") {
+  Laboratory lab;
+  Pausing experimenter(lab);
+  const session::SessionTally tally =
+      lab.whole.run(lab.station, lab.person, lab.explorer, experimenter);
+  CHECK(tally.presentations == 26);
+  CHECK(lab.person.named.size() == 25);
+  REQUIRE(!experimenter.force_n.empty());
+  CHECK(std::ranges::max(experimenter.force_n) == 0.0);
+  const std::vector<store::Event> interrupted = lab.whole.all(store::EventKind::interrupted);
+  REQUIRE(interrupted.size() == 1);
+  const store::TrialBody body = store::trial_from_json(interrupted.front().body);
+  CHECK(body.reason == store::kPauseReason);
+  CHECK(lab.whole.all(store::EventKind::answered).size() == 25);
+  // The trial that was paused is the next one.
+  const std::vector<store::Event> presented = lab.whole.all(store::EventKind::presented);
+  CHECK(store::trial_from_json(presented.at(2).body).trial == body.trial);
+  CHECK(store::trial_from_json(presented.at(3).body).trial == body.trial);
+  CHECK(lab.experimenter.consents == 1);
+  CHECK(lab.falcon.emulator.complaints().empty());
+}
+
 }  // namespace
 }  // namespace touchtrial::device::falcon
