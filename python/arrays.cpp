@@ -55,7 +55,8 @@ GreyImage grey_image_from(const py::array& given, int channels) {
       return image;
     }
   }
-  engine::make_grey(samples.data(), channels, engine::Alpha::straight, image.samples());
+  engine::GreyScale scale{{}};
+  scale.make_grey(samples.data(), channels, engine::Alpha::straight, image.samples());
   return image;
 }
 
