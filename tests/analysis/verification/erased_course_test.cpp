@@ -41,7 +41,8 @@ const std::vector<std::pair<std::string, TinyStudyOptions>> kStudies = {
      threshold_of(R"("task": "detection", "question": "odd-one-out", "intervals": 3, "control": 1,
                      "catch": 2)")},
     {"same or different",
-     threshold_of(R"("task": "detection", "question": "same-different", "control": 4)")},
+     threshold_of(
+         R"("task": "detection", "question": "same-different", "procedure": "constant-stimuli", "control": 4)")},
 };
 
 /// A session that goes through whatever is drawn, as its program records it.
