@@ -320,7 +320,7 @@ TEST_CASE("a session that ends while others read says and records that its key i
     SQLite::Database reader(study.in("study.db"), SQLite::OPEN_READONLY);
     reader.exec("BEGIN");
     static_cast<void>(reader.execAndGet("SELECT count(*) FROM station_keys").getInt());
-    const ProgramResult ended = succeeded(study.session_of("P009"));
+    const ProgramResult ended = succeeded(study.session("P009"));
     CHECK_THAT(ended.errors,
                holds_text("another program reads it") && holds_text("touchtrial status"));
     const StudyStore store = study.store();
@@ -332,7 +332,7 @@ TEST_CASE("a session that ends while others read says and records that its key i
   succeeded(study.type("status @study.db"));
   CHECK_FALSE(fs::exists(study.in("study.db-wal")));
   check_verified(study);
-  const ProgramResult alone = succeeded(study.session_of("P010"));
+  const ProgramResult alone = succeeded(study.session("P010"));
   CHECK(alone.errors.find("another program") == std::string::npos);
   CHECK(study.store().events(0).back().kind == EventKind::session_closed);
 }
