@@ -173,6 +173,9 @@ Meanings of_collection() {
       {"interruptions", {"Presentations that were interrupted, repeated or not"}},
       {"pauses", {"Times that the session was paused"}},
       {"notes", {"Notes that were taken during the session"}},
+      {"answers", {"Answers of a session that has ended"}},
+      {"one_key",
+       yes_or_no("Whether 95 % of 20 answers or more came from one key, where that is no outcome")},
   };
 }
 

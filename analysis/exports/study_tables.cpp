@@ -110,6 +110,16 @@ constexpr RecordColumn kRecordColumns[] = {
     {"interruptions", counted_in<&SessionRecord::interruptions>},
     {"pauses", counted_in<&SessionRecord::pauses>},
     {"notes", counted_in<&SessionRecord::notes>},
+    {"answers",
+     [](const SessionRecord& record) -> DataCell {
+       if (!record.answers) return std::monostate{};
+       return std::int64_t{*record.answers};
+     }},
+    {"one_key",
+     [](const SessionRecord& record) -> DataCell {
+       if (!record.answers) return std::monostate{};
+       return flag(record.one_key);
+     }},
     {"handedness_score",
      [](const SessionRecord& record) -> DataCell {
        if (!record.handedness_score) return std::monostate{};

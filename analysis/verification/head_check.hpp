@@ -16,7 +16,7 @@ namespace touchtrial::analysis {
 
 /// What a database's head files say of it.
 struct HeadCheck {
-  /// What the database lacks, or why a head file cannot be read; empty: nothing is missing.
+  /// What the database lacks, or why it or a head file cannot be read; empty: nothing is missing.
   std::string lacks;
   /// Head files that the database has on record and that are gone, in words; empty: none.
   std::string gone;
@@ -33,7 +33,6 @@ struct HeadCheck {
 
 /// Holds a database against the head files that lie beside it or are on record.
 /// \param given  further head files, which may stand in for those that are gone
-/// \throws StoreError if the database cannot be read
 [[nodiscard]] HeadCheck check_heads(const store::StudyStore& store,
                                     const std::filesystem::path& database,
                                     std::span<const std::filesystem::path> given = {});

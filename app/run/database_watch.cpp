@@ -96,6 +96,9 @@ std::string rescue(const fs::path& database, const store::StudyStore& store) {
     if (is_there(name)) continue;
     try {
       store.copy_to(name);
+      // The copy is held against a head of its own.
+      std::error_code ignored;
+      fs::copy_file(beside_database(database, ".head"), beside_database(name, ".head"), ignored);
       return fmt::format(
           "what was recorded is in {}; find out which file is the study's before "
           "the next session",

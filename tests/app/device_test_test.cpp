@@ -251,7 +251,7 @@ TEST_CASE("device accept refuses files that it could not write before it opens t
   check_refused(accept("c.html"), 2, {"ends in .json"});
   check_refused(accept("no/such/c.json"), 1, {"cannot be written"});
   make_folder(folder.path() / "c.html");
-  check_refused(accept("c.json"), 1, {"c.html", "--certificate"});
+  check_refused(accept("c.json"), 1, {"c.html", "--force"});
   check_refused(accept("devices.json"), 2, {"is read by this acceptance"});
   CHECK_FALSE(fs::exists(folder.in("c.json.trial")));
 }

@@ -128,6 +128,8 @@ TEST_CASE("fit replaces subject files only, and nothing that it reads") {
       "is one of the inputs");
   unharmed("s.db", {"fit", study.in("s.db"), "--accuracies", accuracies}, "study file");
   fs::copy_file(study.path() / "quick.json", study.path() / "old.json");
-  succeeded(fit(study, {"-o", study.in("old.json")}));
+  check_refused(fit(study, {"-o", study.in("old.json")}), 1, {"old.json", "--force"});
+  succeeded(fit(study, {"-o", study.in("old.json"), "--force"}));
+  CHECK(content(study.path() / "old.json.1") == content(study.path() / "quick.json"));
   CHECK(content(study.path() / "old.json") != content(study.path() / "quick.json"));
 }

@@ -70,6 +70,8 @@ analysis::SessionRecord record_of(const CsvRow& row) {
   record.interruptions = number_of<int>(row.at("interruptions"));
   record.pauses = number_of<int>(row.at("pauses"));
   record.notes = number_of<int>(row.at("notes"));
+  record.answers = maybe<int>(row.at("answers"));
+  record.one_key = row.at("one_key") == "1";
   if (row.contains("handedness_score")) {
     record.handedness_score = maybe<double>(row.at("handedness_score"));
   }

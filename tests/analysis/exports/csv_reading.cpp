@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <ctime>
 #include <iomanip>
+#include <map>
 #include <optional>
 #include <sstream>
 
@@ -249,6 +250,13 @@ analysis::Outcomes outcomes_from_csv(const std::filesystem::path& folder) {
             [](const analysis::TrialOutcome& a, const analysis::TrialOutcome& b) {
               return std::pair(a.row.session, a.row.trial) < std::pair(b.row.session, b.row.trial);
             });
+  std::map<int, std::vector<store::TrialRow>> of_session;
+  for (const analysis::TrialOutcome& trial : outcomes.trials) {
+    of_session[trial.row.session].push_back(trial.row);
+  }
+  for (analysis::SessionRecord& record : outcomes.collection.sessions) {
+    record.spread = analysis::spread_of(of_session[record.row.session]);
+  }
   return outcomes;
 }
 

@@ -279,6 +279,7 @@ TEST_CASE("a prepare that fails leaves the pack as it was, and its work to the n
   for (const auto& [name, content] : whole) CHECK(read_file(laboratory.pack() / name) == content);
   CHECK_THROWS_AS(design::require_whole(engine::Pack(drafts), laboratory.key()), FileError);
 
+  std::filesystem::remove(laboratory.image(2));
   write_noise(laboratory.image(2), 2);
   CHECK(reused(laboratory.prepare()) == 3);
   for (std::uint64_t c = 0; c < 2; ++c) write_noise(laboratory.image(c), c);

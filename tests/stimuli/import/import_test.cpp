@@ -372,8 +372,9 @@ TEST_CASE("nothing is replaced unasked, and never a folder that no import wrote"
   CHECK_FALSE(is_there(album.folder.path() / "study.pictures/D9-3.png"));
   options.pictures = album.folder.path() / "precious";
   fs::create_directory(options.pictures);
+  replace_file(options.pictures / "notes.txt", "mine");
   CHECK_THAT(album.refusal(options), holds_text("precious"));
-  CHECK(is_there(options.pictures));
+  CHECK(is_there(options.pictures / "notes.txt"));
 }
 
 TEST_CASE("a failed replacement leaves the earlier import as it was") {
