@@ -4,6 +4,7 @@
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/outcomes.hpp"
 #include "analysis/results.hpp"
+#include "analysis/verification/head_check.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/force_flag.hpp"
@@ -153,6 +154,9 @@ int export_study(const ExportArguments& arguments) {
   require_fitting(arguments);
   const store::StudyStore store =
       store::StudyStore::open(arguments.database, store::StudyStore::Access::read_only);
+  const analysis::HeadCheck heads = analysis::check_heads(store, arguments.database);
+  if (!heads.fault().empty())
+    spdlog::warn("{}: {}", one_line(arguments.database.string()), heads.fault());
   const std::vector<fs::path> files = arguments.safety ? export_safety_record(arguments, store)
                                       : arguments.participant.empty()
                                           ? export_all(arguments, store)

@@ -24,6 +24,10 @@ std::string skeleton_of(const std::string& name) {
   return folded;
 }
 
+bool begins_like_formula(std::string_view text) noexcept {
+  return !text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
+}
+
 bool is_read_as_missing(const std::string& text) {
   static constexpr std::array<std::string_view, 13> kWords = {
       "na",   "n/a",  "<na>", "#n/a",  "#na",    "nan",    "-nan",

@@ -34,6 +34,10 @@ template <typename Number>
 /// are told otherwise: NA, NaN, NULL, None, TRUE and the like, in any capitals.
 [[nodiscard]] bool is_read_as_missing(const std::string& text);
 
+/// Whether a spreadsheet takes a text for a formula, so that exports put an apostrophe before it:
+/// whether it begins with =, +, -, @, a tab or a carriage return. Source: OWASP, "CSV Injection".
+[[nodiscard]] bool begins_like_formula(std::string_view text) noexcept;
+
 /// "1 session", "3 sessions"
 [[nodiscard]] inline std::string counted(std::int64_t n, const std::string& noun) {
   return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");

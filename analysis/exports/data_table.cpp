@@ -88,9 +88,7 @@ std::string seconds_text(std::chrono::nanoseconds time) {
 
 std::string harmless_cell(const std::string& text) {
   const std::string shown = printable(text);
-  const bool is_formula =
-      !text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
-  return is_formula && !number_in<double>(text) ? "'" + shown : shown;
+  return begins_like_formula(text) && !number_in<double>(text) ? "'" + shown : shown;
 }
 
 std::string csv_text(const DataTable& table) {

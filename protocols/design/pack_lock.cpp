@@ -52,7 +52,7 @@ int locked(const std::filesystem::path& file, const std::filesystem::path& what,
   constexpr int kMaxAttempts = 100;  // a folder goes once for each process that found nothing to do
   for (int attempt = 0;; ++attempt) {
     make_folder_again();
-    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     const int reason = descriptor < 0 ? errno : lock(descriptor, operation);
     if (reason == 0 && has_name(descriptor, file)) return descriptor;
     if (descriptor >= 0) ::close(descriptor);
@@ -73,7 +73,7 @@ PackLock::PackLock(std::filesystem::path folder, Use use, Wait wait) : folder_(s
     });
     return;
   }
-  descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   if (descriptor_ < 0) return;
   const int reason = lock(descriptor_, LOCK_SH | waiting);
   if (reason == 0) return;

@@ -12,11 +12,6 @@ namespace {
 
 constexpr std::string_view kManifestName = "pack.json";
 constexpr std::string_view kFieldEnding = ".field";
-constexpr std::string_view kDraftMark = ".tmp";
-
-bool is_number(std::string_view text) {
-  return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
-}
 
 /// \return the code in the file name of a field, or nothing for any other file name
 std::optional<std::string> code_of_file(std::string_view name) {
@@ -24,16 +19,6 @@ std::optional<std::string> code_of_file(std::string_view name) {
   name.remove_suffix(kFieldEnding.size());
   if (!engine::is_pack_code(name)) return std::nullopt;
   return std::string(name);
-}
-
-/// Whether `name` is the name of a pack's file while it is being written.
-bool is_draft(std::string_view name) {
-  const std::size_t mark = name.rfind(kDraftMark);
-  if (mark == std::string_view::npos || !is_number(name.substr(mark + kDraftMark.size()))) {
-    return false;
-  }
-  const std::string_view target = name.substr(0, mark);
-  return target == kManifestName || code_of_file(target).has_value();
 }
 
 bool names_code(const engine::PackManifest& manifest, const std::string& code) {
@@ -126,8 +111,7 @@ void remove_leftovers(const std::filesystem::path& folder, const engine::PackMan
   for (const auto& file : std::filesystem::directory_iterator(folder)) {
     const std::string name = file.path().filename().string();
     const auto code = code_of_file(name);
-    const bool stale = code && !names_code(manifest, *code);
-    if (stale || is_draft(name)) leftovers.push_back(file.path());
+    if (code && !names_code(manifest, *code)) leftovers.push_back(file.path());
   }
   for (const auto& path : leftovers) std::filesystem::remove(path, ignored);
 }

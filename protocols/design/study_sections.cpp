@@ -27,6 +27,10 @@ std::string read_label(const JsonValue& place) {
     place.refuse(in_quotes(label) +
                  " is what other programs take for a missing value; give another " + "name");
   }
+  if (begins_like_formula(label)) {
+    place.refuse(in_quotes(label) +
+                 " begins like a formula; let it begin with a letter or a digit");
+  }
   return label;
 }
 

@@ -75,7 +75,7 @@ bool is_participant_id(const std::string& id) {
            c == '-' || c == '_';
   };
   return !id.empty() && id.size() <= kLongestParticipant && !is_read_as_missing(id) &&
-         std::all_of(id.begin(), id.end(), allowed);
+         !begins_like_formula(id) && std::all_of(id.begin(), id.end(), allowed);
 }
 
 void StoredStudy::refuse_if_over() const {

@@ -34,9 +34,8 @@ using SessionReader = std::function<void(int session, std::vector<Event> events)
 [[nodiscard]] bool is_participant_id(const std::string& id);
 /// What a message says of an id that is none.
 inline constexpr std::string_view kParticipantIdRule =
-    "use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_', and no word that other programs take for a "
-    "missing "
-    "value, such as NA or TRUE";
+    "use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_', not + or - in front, and no word that other "
+    "programs take for a missing value, such as NA or TRUE";
 
 /// A fault of the evidence, and its place.
 struct ChainFault {

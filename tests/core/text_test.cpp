@@ -15,6 +15,11 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("what a spreadsheet takes for a formula is known by its first character") {
+  for (const char* text : {"=1", "+1", "-a", "@a", "\ta", "\ra"}) CHECK(begins_like_formula(text));
+  for (const char* text : {"", "a=1", "1-2", "_a", "'=1"}) CHECK_FALSE(begins_like_formula(text));
+}
+
 TEST_CASE("names that look alike have one skeleton, others do not") {
   const std::string no_el = "No\xc3\xabl";    // one letter with a diaeresis
   const std::string no_e_l = "Noe\xcc\x88l";  // a letter and a diaeresis
