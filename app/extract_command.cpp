@@ -192,6 +192,10 @@ int extract(const CLI::App& command, const ExtractArguments& arguments) {
   check_output(arguments.image, arguments.arrows, "--arrows");
   if (!arguments.dump.empty()) require_dump_places(arguments.dump);
   const engine::ExtractionOptions options = extraction_options(command, arguments.method);
+  if (!arguments.arrows.empty() &&
+      arguments.arrows.lexically_normal() == arguments.output.lexically_normal()) {
+    throw UsageError("extract: --output and --arrows name one file; give two");
+  }
   if (arguments.neighbourhood % 2 == 0) {
     throw UsageError("extract: --neighbourhood is a side length and must be odd, 3 or more");
   }

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iterator>
 #include <memory>
@@ -28,6 +29,7 @@
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 namespace touchtrial::app {
 namespace {
@@ -150,10 +152,32 @@ bool lacks_a_thread(const std::exception& error) {
          std::string_view(error.what()).starts_with("pthread_create has failed");
 }
 
+/// oneTBB lets an exception leave its own threads when memory or threads run out, which ends the
+/// program: with one line. The next run removes the drafts that are left.
+[[noreturn]] void end_for_lack_of_memory() noexcept {
+  bool is_lack = false;
+  try {
+    if (const std::exception_ptr failure = std::current_exception()) {
+      std::rethrow_exception(failure);
+    }
+  } catch (const std::bad_alloc&) {
+    is_lack = true;
+  } catch (const std::exception& error) {
+    is_lack = lacks_a_thread(error);
+  } catch (...) {
+  }
+  if (!is_lack) std::abort();
+  static constexpr std::string_view kLine =
+      "touchtrial: there is too little memory; close other programs, or give fewer --jobs\n";
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kLine.data(), kLine.size());
+  ::_exit(kFailed);
+}
+
 /// Runs one command, and reports any error as one line on standard error.
 /// \return 0 done, 1 failed, 2 bad arguments or bad study file, 3 verification failed, kClosedPipe
 ///   (without a line) if nobody reads the output any more
 int run_program(int argc, char** argv) noexcept {
+  std::set_terminate(end_for_lack_of_memory);
   try {
     return parse_and_run(argc, argv);
   } catch (const ClosedPipe&) {

@@ -68,6 +68,8 @@ Picture decode_file(ByteView file, const SampleScale& samples) {
   picture.notes = notes_of_image(file);
   picture.notes.pictures = found.pictures;
   picture.notes.heights = found.heights;
+  picture.notes.has_given_heights = found.has_given_heights;
+  picture.notes.cut_share = found.cut_share;
   picture.notes.lacks_end = found.lacks_end;
   picture.notes.transparent_share =
       static_cast<double>(scale.transparent_pixels()) / static_cast<double>(picture.grey.size());

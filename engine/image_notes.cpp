@@ -44,8 +44,10 @@ bool has_exposure(ByteView file, const TiffDirectory& directory) {
   const std::uint32_t at = directory.value(TiffTag::exif_directory, 0);
   if (at == 0) return false;
   const TiffDirectory exif(file, at);
-  return exif.has(TiffTag::exposure_time) || exif.has(TiffTag::f_number) ||
-         exif.has(TiffTag::focal_length);
+  return std::ranges::any_of(
+      std::array{TiffTag::exposure_time, TiffTag::f_number, TiffTag::sensitivity,
+                 TiffTag::time_of_exposure, TiffTag::focal_length, TiffTag::lens_model},
+      [&](TiffTag tag) { return exif.has(tag); });
 }
 
 /// Who made a picture file, as far as it decides what its resolution means.
@@ -168,6 +170,18 @@ ImageNotes notes_of_image(ByteView file) {
   return notes;
 }
 
+namespace {
+
+/// "12 %", "0.3 %"
+std::string percent_of(double share) {
+  std::array<char, 32> text{};
+  const double percent = 100.0 * share;
+  std::snprintf(text.data(), text.size(), percent < 10.0 ? "%.2g %%" : "%.0f %%", percent);
+  return text.data();
+}
+
+}  // namespace
+
 std::vector<std::string> remarks_on(const ImageNotes& notes) {
   std::vector<std::string> remarks;
   if (notes.pictures > 1) {
@@ -176,16 +190,20 @@ std::vector<std::string> remarks_on(const ImageNotes& notes) {
         " pictures, and the first is used; save the one you want in a file of its own");
   }
   if (notes.transparent_share > 0.0) {
-    std::array<char, 32> percent{};
-    std::snprintf(percent.data(), percent.size(), "%.2g", 100.0 * notes.transparent_share);
-    remarks.push_back(std::string(percent.data()) +
-                      " % of its pixels are transparent and become black, whose edge can be felt; "
-                      "crop it to where it is opaque");
+    remarks.push_back(percent_of(notes.transparent_share) +
+                      " of its pixels are transparent to some degree and are darkened, whose edge "
+                      "can be felt; crop it to where it is opaque");
   }
-  if (notes.heights) {
+  if (notes.heights && !notes.has_given_heights) {
     remarks.push_back("holds heights from " + number_text(notes.heights->first) + " to " +
                       number_text(notes.heights->second) +
                       "; import all pictures of a set with the same --heights");
+  }
+  if (notes.cut_share > 0.0) {
+    remarks.push_back(percent_of(notes.cut_share) +
+                      " of its heights lie outside --heights and are cut off, down to " +
+                      number_text(notes.heights->first) + " and up to " +
+                      number_text(notes.heights->second));
   }
   if (notes.lacks_end) {
     remarks.emplace_back(

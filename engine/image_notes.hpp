@@ -29,6 +29,8 @@ struct ImageNotes {
   bool lacks_end = false;          ///< no end marker follows the last pixel
   /// The lowest and the highest of a picture of heights, in its own unit.
   std::optional<std::pair<double, double>> heights;
+  bool has_given_heights = false;  ///< whether the range was given
+  double cut_share = 0.0;          ///< of the heights that lie outside the range
 };
 
 /// Reads the metadata. Damaged metadata counts as absent, so that the picture stays readable.

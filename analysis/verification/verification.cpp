@@ -98,6 +98,14 @@ SessionCourse course_of(const store::StudyStore& store, const design::StudyKey& 
   }
 }
 
+/// Whether a session records that its clock, or the one of the visit before, was wrong.
+bool has_wrong_clock(const store::StudyStore& store, int session) {
+  return std::ranges::any_of(store.events(session), [](const store::Event& event) {
+    return event.kind == store::EventKind::deviated &&
+           store::note_from_json(event.body).code == "wrong-clock";
+  });
+}
+
 /// The days between a participant's visits on the file's chain. In virtual time they mean nothing.
 void require_days_between(const store::StudyStore& store, const design::StudyKey& key) {
   if (key.study.visits.count < 2 || store.commitment().simulated) return;
@@ -110,6 +118,7 @@ void require_days_between(const store::StudyStore& store, const design::StudyKey
     if (before == opened.end()) continue;
     const double days = design::days_between(before->second, event.at);
     if (days >= key.study.visits.least_days) continue;
+    if (days < 0.0 && has_wrong_clock(store, body.session)) continue;
     throw VerificationError(
         fmt::format("session {}: was opened {:.2f} days after the visit before, and the study has "
                     "at least {} between visits",

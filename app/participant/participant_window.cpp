@@ -686,6 +686,10 @@ bool ParticipantWindow::is_exploring() const noexcept {
   return state_->exploring;
 }
 
+bool ParticipantWindow::is_answering() const noexcept {
+  return state_->step && std::holds_alternative<session::AnswerStep>(*state_->step);
+}
+
 void ParticipantWindow::close() noexcept {
   state_->leave(WindowGone::closed);
 }

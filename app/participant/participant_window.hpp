@@ -137,6 +137,8 @@ class ParticipantWindow final : public session::Participant {
   [[nodiscard]] bool take_out_of_reach() noexcept;
   /// Whether a plane is on.
   [[nodiscard]] bool is_exploring() const noexcept;
+  /// Whether the participant chooses an answer. On the thread of `attend`.
+  [[nodiscard]] bool is_answering() const noexcept;
   /// Acts as if the window manager had closed the window.
   void close() noexcept;
   /// Acts as if the event had just arrived.

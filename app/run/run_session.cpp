@@ -133,7 +133,8 @@ class FocusWatch {
     if (window_.take_out_of_reach() && !std::exchange(is_noted_, true)) {
       return session::ExperimenterRequest{Kind::deviation, kWhat, "focus-lost"};
     }
-    if (lost >= kPatience && window_.is_exploring() && !std::exchange(has_paused_, true)) {
+    const bool is_in_trial = window_.is_exploring() || window_.is_answering();
+    if (lost >= kPatience && is_in_trial && !std::exchange(has_paused_, true)) {
       return session::ExperimenterRequest{Kind::pause, kWhat, ""};
     }
     if (lost > std::chrono::milliseconds{}) return std::nullopt;
@@ -150,7 +151,7 @@ class FocusWatch {
   }
 
  private:
-  static constexpr const char* kWhat = "another window had the keyboard while a plane was on";
+  static constexpr const char* kWhat = "another window had the keyboard during a trial";
 
   ParticipantWindow& window_;
   bool is_noted_ = false;

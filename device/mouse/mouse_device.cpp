@@ -19,6 +19,8 @@ constexpr double kHoverStiffness_n_per_mm = 0.4;
 /// Prevents a servo that stood still from throwing the hand when it continues.
 constexpr ServoClock::Time kLongestStep = std::chrono::milliseconds(20);
 constexpr double kFinestStepS = 0.001;
+/// Between planes nobody reads the device. Where the hand was then says nothing about the next one.
+constexpr ServoClock::Time kUnread = std::chrono::milliseconds(200);
 
 double seconds(ServoClock::Time time) noexcept {
   return std::chrono::duration<double>(time).count();
@@ -98,6 +100,7 @@ DeviceStatus MouseDevice::read(DeviceSample& sample) noexcept {
   const ServoClock::Time now = clock_.now();
   const double step_s =
       readings_ == 0 ? 0.0 : seconds(std::clamp(now - last_read_, {}, kLongestStep));
+  if (readings_ > 0 && now - last_read_ > kUnread) lift();
   last_read_ = now;
   look_at(pointer_.newest(), now);
   move(step_s);
@@ -129,6 +132,12 @@ void MouseDevice::look_at(const PointerState& pointer, ServoClock::Time now) noe
   if (pointer.closed) closed_.store(true, std::memory_order_release);
   pressed_ = pointer.pressed && !pointer.closed && now - news_at_ < kPatience &&
              !halted_.load(std::memory_order_acquire);
+}
+
+void MouseDevice::lift() noexcept {
+  push_share_ = 0.0;
+  height_mm_ = options_.hover_mm;
+  rise_mm_s_ = 0.0;
 }
 
 void MouseDevice::move(double step_s) noexcept {

@@ -96,6 +96,8 @@ class MouseDevice final : public HapticDevice {
 
  private:
   void look_at(const PointerState& pointer, ServoClock::Time now) noexcept;
+  /// The hand leaves the plane at once.
+  void lift() noexcept;
   void move(double step_s) noexcept;
   void move_across(double step_s, double normal_force_n) noexcept;
 

@@ -81,6 +81,7 @@ class GifBlocks {
 
   [[nodiscard]] int pictures() const noexcept { return pictures_; }
   [[nodiscard]] std::uint64_t packed_bytes() const noexcept { return packed_bytes_; }
+  [[nodiscard]] bool lacks_end() const noexcept { return lacks_end_; }
 
  private:
   enum Block : std::uint8_t { kExtension = 0x21, kPicture = 0x2C, kEnd = 0x3B };
@@ -94,6 +95,10 @@ class GifBlocks {
 
   /// \return false after the end
   bool step() {
+    if (at_ == file_.size() && pictures_ > 0) {
+      lacks_end_ = true;
+      return false;
+    }
     switch (byte(at_)) {
       case kEnd:
         return false;
@@ -121,6 +126,7 @@ class GifBlocks {
   ByteView file_;
   std::size_t at_ = 0;
   int pictures_ = 0;
+  bool lacks_end_ = false;
   std::uint64_t packed_bytes_ = 0;  ///< of the first picture
   std::uint64_t data_bytes_ = 0;
 };
@@ -130,6 +136,7 @@ class GifBlocks {
 GreyImage read_gif(ByteView file, GreyScale& scale, ImageNotes& notes) {
   const GifBlocks blocks(file);
   notes.pictures = blocks.pictures();
+  notes.lacks_end = blocks.lacks_end();
   const std::uint64_t width = little16(file, 6);
   const std::uint64_t height = little16(file, 8);
   check_image_size(static_cast<std::int64_t>(width), static_cast<std::int64_t>(height));

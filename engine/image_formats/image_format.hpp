@@ -132,7 +132,9 @@ class GreyScale {
   template <typename Sample>
   [[nodiscard]] std::uint8_t grey_of(const Sample* pixel, int channels, Alpha alpha) noexcept {
     const bool has_alpha = channels % 2 == 0 && alpha != Alpha::none;
-    std::uint32_t opacity = has_alpha ? level_of(pixel[channels - 1]) : 255U;
+    // Files of few bits have an opacity of 16 bits all the same, which tells nothing of the
+    // colours.
+    std::uint32_t opacity = has_alpha ? to_8_bit(pixel[channels - 1]) : 255U;
     if (opacity < 255U) ++transparent_;
     if (alpha == Alpha::multiplied) opacity = 255U;
     const auto visible = [&](int channel) { return over_black(level_of(pixel[channel]), opacity); };
@@ -152,6 +154,9 @@ class GreyScale {
 
   /// Notes a sample of a scale of 0 to 65535.
   void note_wide(std::uint32_t sample) noexcept { max_wide_ = std::max(max_wide_, sample); }
+
+  /// In place of what was noted, where the samples were inverted first.
+  void set_max_wide(std::uint32_t sample) noexcept { max_wide_ = sample; }
 
   [[nodiscard]] int bits() const noexcept { return bits_; }
   [[nodiscard]] const std::optional<std::pair<double, double>>& heights() const noexcept {

@@ -90,7 +90,7 @@ std::size_t end_of_scan_data(ByteView file, std::size_t at) {
   while (true) {
     const auto found = std::find(file.begin() + static_cast<std::ptrdiff_t>(at), file.end(), 0xFF);
     at = static_cast<std::size_t>(found - file.begin());
-    if (at == file.size()) return at;
+    if (at + 1 >= file.size()) return at;  // with half of a marker, or none
     const std::uint32_t next = number_at(file, at + 1, 1, ByteOrder::big);
     const bool inside = next == kStuffed || (next >= kRestart0 && next <= kRestart7);
     if (!inside && next != 0xFF) return at;
@@ -105,7 +105,7 @@ class Walk {
 
   /// \return false after the end marker
   bool step() {
-    if (at_ == file_.size() && is_whole_without_end()) {
+    if (at_ + 1 >= file_.size() && is_whole_without_end()) {
       lacks_end_ = true;
       return false;
     }
@@ -164,7 +164,7 @@ class Walk {
     }
     const std::size_t end = end_of_scan_data(file_, at_);
     // Refused before it is copied: a huge file may follow.
-    if (end == file_.size() && end - at_ > kMaxBytesOfSample * frame_.samples()) {
+    if (end + 1 >= file_.size() && end - at_ > kMaxBytesOfSample * frame_.samples()) {
       throw_truncated_image();
     }
     copy(at_, end - at_);

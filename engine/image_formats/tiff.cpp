@@ -386,17 +386,25 @@ template <typename Sample>
 GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
                        Alpha alpha, GreyScale& scale) {
   GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
+  Sample lightest = 0;  // as stored, where white is 0
   read_rows<Sample>(tiff, source, layout, pieces, [&](std::span<Sample> row, int y, int x) {
     if (layout.photometric == PHOTOMETRIC_MINISWHITE) {
       // Before alpha is composited: the inversion concerns the colour only.
+      const auto white = static_cast<Sample>(sizeof(Sample) == 2 && scale.bits() != 0
+                                                 ? (1U << static_cast<unsigned>(scale.bits())) - 1U
+                                                 : ~0U);
       for (std::size_t at = 0; at < row.size(); at += layout.channels) {
-        row[at] = static_cast<Sample>(~row[at]);
+        lightest = std::max(lightest, row[at]);
+        row[at] = static_cast<Sample>(white - std::min(row[at], white));
       }
     }
     scale.make_grey(
         row.data(), static_cast<int>(layout.channels), alpha,
         image.row(y).subspan(static_cast<std::size_t>(x), row.size() / layout.channels));
   });
+  if (sizeof(Sample) == 2 && layout.photometric == PHOTOMETRIC_MINISWHITE) {
+    scale.set_max_wide(lightest);
+  }
   return image;
 }
 
@@ -416,6 +424,10 @@ GreyImage read_heights(TIFF* tiff, const Source& source, const Layout& layout, c
       std::minmax_element(heights.samples().begin(), heights.samples().end());
   notes.heights = {*lowest, *highest};
   const auto [low, high] = scale.heights().value_or(*notes.heights);
+  notes.has_given_heights = scale.heights().has_value();
+  notes.cut_share = static_cast<double>(std::ranges::count_if(
+                        heights.samples(), [&](Real h) { return h < low || h > high; })) /
+                    static_cast<double>(heights.size());
   GreyImage image(heights.height(), heights.width());
   for (std::size_t i = 0; i < image.size(); ++i) {
     // A flat picture has no range.

@@ -43,7 +43,10 @@ enum class TiffTag : std::uint32_t {
   exposure_time = 33434,
   f_number = 33437,
   exif_directory = 34665,
+  sensitivity = 34855,
+  time_of_exposure = 36867,
   focal_length = 37386,
+  lens_model = 42036,
 };
 
 /// The entries of one directory of a TIFF file.

@@ -74,10 +74,25 @@ std::vector<ImageOfStudy> images_of(const Study& study) {
   return images;
 }
 
+std::string fault_of(const Study& study, const ImageOfStudy& image, const std::string& what) {
+  return study.source + ": /classes/" + std::to_string(image.class_index) + "/images/" +
+         std::to_string(image.exemplar) + ": " + what;
+}
+
 [[noreturn]] void refuse_image(const Study& study, const ImageOfStudy& image,
                                const std::string& what) {
-  throw StudyError(study.source + ": /classes/" + std::to_string(image.class_index) + "/images/" +
-                   std::to_string(image.exemplar) + ": " + what);
+  throw StudyError(fault_of(study, image, what));
+}
+
+/// Names all pictures that cannot be read, so that a set of many is mended in one go.
+/// \param faults  with their places; nothing happens if there are none
+void refuse_images(std::vector<std::string> faults) {
+  constexpr std::size_t kMaxNamed = 20;
+  if (faults.empty()) return;
+  const std::size_t count = faults.size();
+  faults.resize(std::min(count, kMaxNamed));
+  const std::string all = listed(faults, "; ");
+  throw StudyError(count == 1 ? all : all + " (" + std::to_string(count) + " pictures in all)");
 }
 
 /// One run of prepare_pack. Stimuli are processed in parallel. Each result is stored at the index
@@ -126,9 +141,20 @@ class Preparation {
       if (!image->is_done && !image->failure) provide(*image, true);
     }
     if (building_) write_drafts();
+    refuse_failed_images();
+  }
+
+  void refuse_failed_images() const {
+    std::vector<std::string> faults;
     for (const ImageOfStudy& image : images_) {
-      if (image.failure) std::rethrow_exception(image.failure);
+      if (!image.failure) continue;
+      try {
+        std::rethrow_exception(image.failure);
+      } catch (const StudyError& error) {
+        faults.emplace_back(error.what());
+      }
     }
+    refuse_images(std::move(faults));
   }
 
   /// The images sorted by code, which is the order of work. The times of the files therefore reveal
@@ -409,8 +435,13 @@ PackPlace simulated_pack_place(const std::filesystem::path& study_file) {
 }
 
 PackPlace pack_place_at(const std::filesystem::path& pack_folder) {
-  // "name.pack/" ends in an empty file name, so the folder is its parent path.
-  const auto pack = pack_folder.has_filename() ? pack_folder : pack_folder.parent_path();
+  // The key lies beside the folder whatever it is called by: "name.pack/", "name.pack/.", ".".
+  auto pack = pack_folder.lexically_normal();
+  if (!pack.has_filename()) pack = pack.parent_path();
+  if (pack == "." || pack.filename() == "..") {
+    pack = (std::filesystem::current_path() / pack).lexically_normal();
+    if (!pack.has_filename()) pack = pack.parent_path();
+  }
   std::filesystem::path key = pack;
   if (key.extension() == ".pack") key.replace_extension();
   key += ".key";
@@ -500,7 +531,11 @@ PlaneGeometry plane_of(const Study& study) {
     return std::to_string(size.first) + " x " + std::to_string(size.second) + " pixels";
   };
   for (std::size_t i = 0; i < images.size(); ++i) {
-    if (!faults[i].empty()) refuse_image(study, images[i], faults[i]);
+    if (!faults[i].empty()) faults[i] = fault_of(study, images[i], faults[i]);
+  }
+  std::erase(faults, "");
+  refuse_images(std::move(faults));
+  for (std::size_t i = 0; i < images.size(); ++i) {
     if (sizes[i] == sizes[0]) continue;
     refuse_image(study, images[i],
                  one_line(images[i].path.string()) + ": has " + words(sizes[i]) + ", and " +

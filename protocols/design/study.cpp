@@ -32,7 +32,8 @@ std::string read_plain_name(const JsonValue& place) {
   }
   if (is_read_as_missing(name)) {
     place.refuse(in_quotes(name) +
-                 " is what other programs take for a missing value; give another " + "name");
+                 " is what other programs take for a missing or truth value; give another " +
+                 "name");
   }
   return name;
 }

@@ -25,7 +25,8 @@ std::string read_label(const JsonValue& place) {
   }
   if (is_read_as_missing(label)) {
     place.refuse(in_quotes(label) +
-                 " is what other programs take for a missing value; give another " + "name");
+                 " is what other programs take for a missing or truth value; give another " +
+                 "name");
   }
   if (begins_like_formula(label)) {
     place.refuse(in_quotes(label) +

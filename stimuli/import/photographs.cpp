@@ -102,6 +102,11 @@ void check_label(const std::string& label, const fs::path& origin) {
   if (label.front() == ' ' || label.back() == ' ') {
     refuse(origin, "its name begins or ends with a blank and cannot be a label; rename it");
   }
+  if (is_read_as_missing(label) || begins_like_formula(label)) {
+    refuse(origin,
+           "its name is what other programs take for a missing value or a formula, and "
+           "cannot be a label; rename it");
+  }
   if (label.size() > kLongestLabel) {
     refuse(origin, "its name has more than " + std::to_string(kLongestLabel) +
                        " bytes and cannot be a label; shorten it");

@@ -330,6 +330,13 @@ TEST_CASE(
     CHECK(level(file, 16) == 16);
     CHECK_THROWS_AS(level(file, 11), FileError);
   }
+  Bytes opaque = {0};
+  append(opaque, numbers({0, 65535, 4095, 65535}, 2, true));
+  CHECK_THROWS_AS(level(Png{2, 1, 16, Png::kGreyAlpha, opaque}.bytes(), 0), FileError);
+  CHECK(level(Png{2, 1, 16, Png::kGreyAlpha, opaque}.bytes(), 12) == 255);
+  const Bytes inverted = Tiff(2, 1, numbers({4095, 0}, 2)).with(258, {16}).with(262, {0}).bytes();
+  CHECK_THROWS_AS(level(inverted, 0), FileError);
+  CHECK(level(inverted, 12) == 255);
   for (const Bytes& file : files(kMinMaxWideSample)) CHECK(level(file, 0) == 64);
   for (const Bytes& file : files(0)) CHECK(level(file, 0) == 0);
   CHECK(level(text("P5 2 1 4095\n\x00\x00\x0f\xff"sv), 0) == 255);
@@ -356,6 +363,9 @@ TEST_CASE(
   CHECK(row({}) == Row{0, 128, 255});
   CHECK(row({.bits = 0, .heights = std::pair(-3.0, 3.0)}) == Row{64, 128, 191});
   CHECK(row({.bits = 0, .heights = std::pair(0.0, 1.0)}) == Row{0, 0, 255});
+  const Picture cut = decode_picture(file, "picture", {.bits = 0, .heights = std::pair(0.0, 9.0)});
+  CHECK(cut.notes.cut_share == Approx(1.0 / 3));
+  CHECK(remarks_on(cut.notes).size() == 1);
   const Bytes gap =
       Tiff(2, 1, numbers({bits_of(NAN), 0}, 4)).with(258, {32}).with(339, {3}).bytes();
   CHECK_THROWS_AS(decode_picture(gap, "picture"), FileError);

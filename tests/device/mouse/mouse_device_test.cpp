@@ -130,6 +130,30 @@ TEST_CASE("pressing lands smoothly on the wall and holds 0.7 N, releasing lifts 
   CHECK(steepest_n_per_s < 25.0);
 }
 
+TEST_CASE("a hand that was down when a plane went off is up when the next comes on") {
+  device::VirtualClock clock;
+  bool pressed = true;
+  ScriptedPointer pointer(clock, [&](double) { return at(20.0, 20.0, pressed); });
+  device::MouseDevice mouse(pointer, clock);
+  FlatWall wall;
+  device::DeviceSample sample;
+  const auto feel = [&](int ticks) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      clock.wait_until(clock.now() + 1ms);
+      REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
+      REQUIRE(mouse.write(wall.force_n(sample)) == device::DeviceStatus::ok);
+    }
+  };
+  feel(500);
+  CHECK(sample.position_mm.z < 0.0);
+  pressed = GENERATE(false, true);
+  clock.wait_until(clock.now() + 5s);  // nobody reads the device
+  feel(1);
+  CHECK(sample.position_mm.z == Approx(device::MouseOptions{}.hover_mm).margin(0.1));
+  feel(500);
+  CHECK((sample.position_mm.z < 0.0) == pressed);
+}
+
 TEST_CASE("without a wall a pressing hand goes no deeper than its reach") {
   ConstantForce none({});
   const auto samples = run([](double) { return at(0.0, 0.0, true); }, none, 2000);
