@@ -96,6 +96,8 @@ HeadCheck check_heads(const store::StudyStore& store, const fs::path& database,
     check.gone +=
         ", which the database has on record; bring back what knows its end, or give `touchtrial "
         "verify` a copy with --head-file, or the last head with --head";
+  } catch (const store::DamagedStore&) {
+    throw;
   } catch (const Error& error) {
     // A damaged chain does not tell which head files there are.
     add(check.lacks, error.what());

@@ -33,6 +33,7 @@ struct HeadCheck {
 
 /// Holds a database against the head files that lie beside it or are on record.
 /// \param given  further head files, which may stand in for those that are gone
+/// \throws DamagedStore if the database cannot be read
 [[nodiscard]] HeadCheck check_heads(const store::StudyStore& store,
                                     const std::filesystem::path& database,
                                     std::span<const std::filesystem::path> given = {});

@@ -136,6 +136,7 @@ void MouseDevice::look_at(const PointerState& pointer, ServoClock::Time now) noe
 
 void MouseDevice::lift() noexcept {
   push_share_ = 0.0;
+  force_n_ = {};
   height_mm_ = options_.hover_mm;
   rise_mm_s_ = 0.0;
 }

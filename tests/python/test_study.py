@@ -1,31 +1,37 @@
-""
-    "read and simulate: the same numbers as the program's report and exports."
-    ""
+"""read and simulate: the same numbers as the program's report and exports."""
 
-    import json import os import shutil import sys from concurrent.futures import ThreadPoolExecutor
+import json
+import os
+import shutil
+import sys
+from concurrent.futures import ThreadPoolExecutor
 
-        import numpy as np import pytest import touchtrial
+import numpy as np
+import pytest
+import touchtrial
 
-            pandas =
-    pytest
-        .importorskip("pandas")
+pandas = pytest.importorskip("pandas")
 
-            @pytest.fixture(scope = "module") def
-            study(study_folder)
-    : return touchtrial.read(study_folder / "mine.db")
 
-          def
-          test_the_report_is_what_the_program_prints(program, study_folder, study)
-    : printed = json.loads(program("report", study_folder / "mine.db", "--json"))
-#Head files vouch for a database's end; the module reads the database alone.
-                    assert printed.pop("vouched")["fault"] == "" assert study.report
-                == printed assert study.report["trials"] == 12 assert study.simulated and study.name
-                == "mine" assert "SIMULATED" in repr(study)
+@pytest.fixture(scope="module")
+def study(study_folder):
+    return touchtrial.read(study_folder / "mine.db")
 
-def cell(value)
-    : ""
-      "A number as a float, whatever wrote it; nothing as None."
-      "" try : number = float(value)
+
+def test_the_report_is_what_the_program_prints(program, study_folder, study):
+    printed = json.loads(program("report", study_folder / "mine.db", "--json"))
+    # Head files vouch for a database's end; the module reads the database alone.
+    assert printed.pop("vouched")["fault"] == ""
+    assert study.report == printed
+    assert study.report["trials"] == 12
+    assert study.simulated and study.name == "mine"
+    assert "SIMULATED" in repr(study)
+
+
+def cell(value):
+    """A number as a float, whatever wrote it; nothing as None."""
+    try:
+        number = float(value)
     except (TypeError, ValueError):
         return value or None
     return None if np.isnan(number) else number
@@ -68,7 +74,7 @@ def test_traces_are_those_of_the_export(program, study_folder, study, tmp_path):
         samples = np.hstack((trace.position_mm, trace.force_n))
         exported = np.loadtxt(file)[:, 1:]  # the first is the latency
         assert samples.shape == exported.shape
-#Exports have 3 and 4 decimals.
+        # Exports have 3 and 4 decimals.
         np.testing.assert_allclose(samples[:, :3], exported[:, :3], atol=0.000501)
         np.testing.assert_allclose(samples[:, 3:], exported[:, 3:], atol=0.0000501)
         assert trace.rate_hz == 1000
