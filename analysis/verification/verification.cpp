@@ -102,7 +102,7 @@ SessionCourse course_of(const store::StudyStore& store, const design::StudyKey& 
 bool has_wrong_clock(const store::StudyStore& store, int session) {
   return std::ranges::any_of(store.events(session), [](const store::Event& event) {
     return event.kind == store::EventKind::deviated &&
-           store::note_from_json(event.body).code == "wrong-clock";
+           store::deviation_from_json(event.body).code == "wrong-clock";
   });
 }
 

@@ -101,7 +101,7 @@ class RunExperimenter final : public session::Experimenter {
 /// \param trouble  DatabaseWatch::trouble; what the store holds is then saved beside the database
 /// \return the exit code, as run_study_session
 [[nodiscard]] int conclude_session(const RunOptions& options, int session,
-                                   const session::SessionTally& tally,
-                                   store::StudyStore& store, std::string trouble);
+                                   const session::SessionTally& tally, store::StudyStore& store,
+                                   std::string trouble);
 
 }  // namespace touchtrial::app

@@ -1,7 +1,7 @@
 #include "analysis/quality.hpp"
 
-#include "analysis/json_figures.hpp"
 #include "analysis/fake_study.hpp"
+#include "analysis/json_figures.hpp"
 #include "analysis/outcomes.hpp"
 #include "analysis/page/study_document.hpp"
 #include "analysis/text_matching.hpp"
