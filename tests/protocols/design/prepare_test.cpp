@@ -46,6 +46,12 @@ TEST_CASE("packs and keys lie beside the study file, or where one says") {
   CHECK(design::pack_place_at("there/a.pack/").pack == "there/a.pack");
   CHECK(design::pack_place_at("there/a.pack/").key == "there/a.key");
   CHECK(design::pack_place_at("there/a.b").key == "there/a.b.key");
+  // The key never lies in the folder that stations get.
+  CHECK(design::pack_place_at("there/a.pack/.").key == "there/a.key");
+  CHECK(design::pack_place_at("there/b/../a.pack").key == "there/a.key");
+  const auto here = std::filesystem::current_path();
+  CHECK(design::pack_place_at(".").key.parent_path() == here.parent_path());
+  CHECK(design::pack_place_at("..").key.parent_path() == here.parent_path().parent_path());
 }
 
 TEST_CASE("prepare makes a field for every stimulus, under its code, with the chosen gains") {
