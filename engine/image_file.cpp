@@ -54,8 +54,8 @@ void check_range(const GreyScale& scale) {
           std::to_string(max) + "), of which " +
           std::to_string(to_8_bit(static_cast<std::uint16_t>(max)) + 1) +
           " grey levels would be left",
-      "say how many bits its camera or scanner has, for instance `touchtrial stimuli import "
-      "--bits 12`, or --bits 16 if it is just dark"};
+      "give --bits with the bits of its camera or scanner, for instance 12, or 16 if it is just "
+      "dark; for a study, to `touchtrial stimuli import`"};
 }
 
 Picture decode_file(ByteView file, const SampleScale& samples) {
