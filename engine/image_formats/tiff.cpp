@@ -423,7 +423,9 @@ GreyImage read_heights(TIFF* tiff, const Source& source, const Layout& layout, c
   const auto [lowest, highest] =
       std::minmax_element(heights.samples().begin(), heights.samples().end());
   notes.heights = {*lowest, *highest};
-  const auto [low, high] = scale.heights().value_or(*notes.heights);
+  const auto range = scale.heights().value_or(*notes.heights);
+  const double low = range.first;
+  const double high = range.second;
   notes.has_given_heights = scale.heights().has_value();
   notes.cut_share = static_cast<double>(std::ranges::count_if(
                         heights.samples(), [&](Real h) { return h < low || h > high; })) /
