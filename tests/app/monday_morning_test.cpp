@@ -1,4 +1,4 @@
-// What docs/monday-morning.md says to type, typed in the situation that it is for.
+// What docs/when-something-goes-wrong.md says to type, typed in the situation that it is for.
 #include "app/study_folder.hpp"
 #include "core/files.hpp"
 #include "protocols/store/study_store.hpp"
@@ -34,10 +34,10 @@ struct MondayCase {
   std::vector<std::vector<std::string>> blocks;  ///< of commands
 };
 
-/// The cases of docs/monday-morning.md by their headings, and what stands before the first under
+/// The cases of docs/when-something-goes-wrong.md by their headings, and what stands before the first under
 /// "".
 std::map<std::string, MondayCase> monday_cases() {
-  std::istringstream page(content(fs::path(TOUCHTRIAL_SOURCE_DIR) / "docs" / "monday-morning.md"));
+  std::istringstream page(content(fs::path(TOUCHTRIAL_SOURCE_DIR) / "docs" / "when-something-goes-wrong.md"));
   std::map<std::string, MondayCase> cases;
   std::string heading;
   bool in_block = false;
