@@ -1,4 +1,4 @@
-/// \file What an output may replace: docs/durability.md, "What is replaced". The one rule for every
+/// \file What an output may replace: docs/evidence.md, "What is replaced". The one rule for every
 /// file that a command writes because somebody asked for it.
 #pragma once
 

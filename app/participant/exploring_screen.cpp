@@ -10,7 +10,7 @@ namespace touchtrial::app {
 namespace {
 
 // The ranges that the instructions ask for, and the ends of the bars.
-// Source: docs/participant-window.md.
+// Source: docs/running-sessions.md.
 constexpr double kGoodForceN[] = {0.5, 0.8};
 constexpr double kTooHardN = 2.0;
 constexpr double kFullForceN = 2.5;

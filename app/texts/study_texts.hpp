@@ -1,5 +1,5 @@
 /// \file The texts that people read in a session: those of the study's language, and the study's own
-/// in their place. Sources of questions and items: docs/experimenter.md.
+/// in their place. Sources of questions and items: docs/running-sessions.md.
 #pragma once
 
 #include "protocols/design/study.hpp"

@@ -1,6 +1,6 @@
 /// \file The texts that people read in a session, in each language of the program: the files of
 /// config/texts, built in and read strictly, and what a study puts in their place.
-/// Format: docs/participant-texts.md.
+/// Format: docs/running-sessions.md, "Texts and languages".
 #pragma once
 
 #include "core/strict_json.hpp"

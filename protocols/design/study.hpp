@@ -39,7 +39,7 @@ enum class Blocks { by_method, mixed };
 /// end.
 enum class OnInterruption { repeat, leave_out, restart_block };
 
-/// The speeds of strokes that the instructions ask for, mm/s. Source: docs/participant-window.md.
+/// The speeds of strokes that the instructions ask for, mm/s. Source: docs/running-sessions.md.
 inline constexpr double kSlowestMmS = 50.0;
 inline constexpr double kFastestMmS = 150.0;
 /// The forces across the plane that they ask for, N.

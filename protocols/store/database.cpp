@@ -144,7 +144,7 @@ void require_setting(const Database& database, const std::string& name, const st
                                     ", not " + wanted + "); " + remedy));
 }
 
-/// Acknowledged events must be on the disk: see docs/durability.md.
+/// Acknowledged events must be on the disk: see docs/evidence.md.
 void set_up_for_writing(const Database& database) {
   // A whole session fits into the cache (KiB), so that no page is written before its commit.
   database.connection().exec(

@@ -34,10 +34,11 @@ struct MondayCase {
   std::vector<std::vector<std::string>> blocks;  ///< of commands
 };
 
-/// The cases of docs/when-something-goes-wrong.md by their headings, and what stands before the first under
-/// "".
+/// The cases of docs/when-something-goes-wrong.md by their headings, and what stands before the
+/// first under "".
 std::map<std::string, MondayCase> monday_cases() {
-  std::istringstream page(content(fs::path(TOUCHTRIAL_SOURCE_DIR) / "docs" / "when-something-goes-wrong.md"));
+  std::istringstream page(
+      content(fs::path(TOUCHTRIAL_SOURCE_DIR) / "docs" / "when-something-goes-wrong.md"));
   std::map<std::string, MondayCase> cases;
   std::string heading;
   bool in_block = false;
@@ -274,7 +275,7 @@ bool has_bytes(const fs::path& folder, ByteView bytes) {
 
 }  // namespace
 
-TEST_CASE("monday morning's page has a rehearsal of each case, which takes ten lines at most") {
+TEST_CASE("the page on what goes wrong has a rehearsal of each case, which takes ten lines at most") {
   const std::set<std::string> rehearsed = {"",     kDead,      kOlder, kNoKey, kNoStation,
                                            kWrong, kWithdrawn, kFull,  kClock, kLog};
   std::set<std::string> headings;

@@ -103,7 +103,7 @@ enum class Outcome {
   refused,    ///< the program does not read the file
   named,      ///< `verify` or a head file names it
   unchanged,  ///< no row of any table differs
-  possible    ///< this person can do that: docs/threat-model.md says so
+  possible    ///< this person can do that: docs/evidence.md says so
 };
 
 /// Notes outcomes for scripts/attack, which names a file in TOUCHTRIAL_ATTACKS.

@@ -120,7 +120,7 @@ store::InterruptionDetail WholeSession::check(const std::vector<int>& named, int
   return detail;
 }
 
-/// The codes are those of docs/instruments.md.
+/// The codes are those of docs/running-sessions.md.
 void WholeSession::check_codes(int unlucky) {
   std::string expected = "E1 T0\n";
   bool is_lost = false;
