@@ -1,5 +1,4 @@
-/// \file The publications behind a report's statistics. How each is used: docs/statistics.md,
-/// docs/cues.md.
+/// \file The publications behind a report's statistics. How each is used: docs/statistics.md.
 #pragma once
 
 #include <span>

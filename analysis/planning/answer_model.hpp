@@ -1,5 +1,5 @@
 /// \file How likely each answer to each stimulus is, given a subject model: computed from felt
-/// explorations, without drawing answers. Source: docs/fitting.md, "Probabilities of answers".
+/// explorations, without drawing answers. Source: docs/planning.md, "Probabilities of answers".
 #pragma once
 
 #include "engine/pack/pack.hpp"

@@ -232,7 +232,7 @@ std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin) {
   const bool others_fit = fit.warnings.empty();
   text += analysis::wrapped(
       "  ", fmt::format("{} parameters for {} numbers{}", fit.parameters, fit.classes.size(),
-                        others_fit ? ": other subjects fit as well, see docs/fitting.md" : ""));
+                        others_fit ? ": other subjects fit as well, see docs/planning.md" : ""));
   if (!fit.warnings.empty()) text += analysis::heading("to bear in mind", origin.simulated);
   for (const std::string& warning : fit.warnings) text += analysis::wrapped("  - ", warning);
   return text;

@@ -1,5 +1,5 @@
 /// \file The search for the most likely subject: starting points and label swaps.
-/// Private to analysis/planning. Source: docs/fitting.md, "Estimates".
+/// Private to analysis/planning. Source: docs/planning.md, "Estimates".
 #pragma once
 
 #include "analysis/planning/fit_problem.hpp"

@@ -1,6 +1,6 @@
 /// \file How uncertain a fit's numbers are: covariance, profile intervals, studies simulated from
 /// the fit, and the error that the bank's finite size leaves.
-/// Private to analysis/planning. Source: docs/fitting.md, "Uncertainty".
+/// Private to analysis/planning. Source: docs/planning.md, "Uncertainty".
 #pragma once
 
 #include "analysis/planning/fit_evidence.hpp"

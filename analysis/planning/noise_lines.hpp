@@ -1,6 +1,6 @@
 /// \file A classifier's supports for prototypes, how noise moves them along straight lines, and how
 /// likely each picture wins along such a line.
-/// Source: docs/fitting.md, "Probabilities of answers". Private to analysis/planning.
+/// Source: docs/planning.md, "Probabilities of answers". Private to analysis/planning.
 #pragma once
 
 #include "engine/perception/felt_classifier.hpp"

@@ -1,5 +1,5 @@
 /// \file How much participants differ in the noise of their sense, by each participant's own
-/// answers. Source: docs/fitting.md, "Differences between people"; Self, Liang 1987 (the test of no
+/// answers. Source: docs/planning.md, "Spread between people"; Self, Liang 1987 (the test of no
 /// difference).
 #pragma once
 

@@ -1,5 +1,5 @@
 /// \file The results of a power run, all from simulated participants: power given the assumed
-/// sensitivity. Source: docs/power.md.
+/// sensitivity. Source: docs/planning.md.
 #pragma once
 
 #include "analysis/planning/power_runs.hpp"

@@ -1,5 +1,5 @@
 /// \file The plan of a power run, and its runs: the numbers of every simulated study. Source:
-/// docs/power.md.
+/// docs/planning.md.
 #pragma once
 
 #include "analysis/planning/primary_test.hpp"

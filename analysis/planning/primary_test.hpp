@@ -1,5 +1,5 @@
 /// \file The test that decides a study, and its result in one simulated study.
-/// Source: docs/power.md, "The primary test"; docs/statistics.md.
+/// Source: docs/planning.md, "The primary test"; docs/statistics.md.
 #pragma once
 
 #include "analysis/outcomes.hpp"

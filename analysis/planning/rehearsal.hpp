@@ -1,5 +1,5 @@
 /// \file A study that is simulated again and again, straight to its outcomes, and what every kind of
-/// simulated people has in common. Source: docs/power.md.
+/// simulated people has in common. Source: docs/planning.md.
 #pragma once
 
 #include "analysis/outcomes.hpp"

@@ -1,6 +1,6 @@
 /// \file A study with simulated participants, straight to its outcomes: with its own schedules,
 /// pictures and orders, but without sessions, a database or traces; and where the participants'
-/// feelings come from. Source: docs/power.md, "The fast path".
+/// feelings come from. Source: docs/planning.md, "The fast path".
 #pragma once
 
 #include "analysis/outcomes.hpp"

@@ -1,6 +1,6 @@
 /// \file People of whom nothing is known but how often they are right: a mean and a spread between
 /// them. Nobody feels anything, so neither device nor hand nor texture enters. Source:
-/// docs/power.md, "From a stated mean and spread".
+/// docs/planning.md, "From a stated mean and spread".
 #pragma once
 
 #include "analysis/planning/primary_test.hpp"

@@ -1,5 +1,5 @@
 /// \file A subject model fitted to a study's answers, or to published accuracies.
-/// Source: docs/fitting.md.
+/// Source: docs/planning.md.
 #pragma once
 
 #include "analysis/planning/fit_evidence.hpp"
@@ -108,7 +108,7 @@ struct AccuracyFit {
 /// The subject whose accuracies are the most likely, by a binomial likelihood with equally many
 /// trials for each class. With as many parameters as classes, many subjects usually reach the
 /// accuracies exactly, and this is one of them. Label swaps are not searched.
-/// Source: docs/fitting.md, "Published accuracies".
+/// Source: docs/planning.md, "Published accuracies".
 /// \param wanted  by class, 0 .. 1
 /// \param layouts  of the participants
 /// \throws std::invalid_argument unless there is one accuracy in range for each class

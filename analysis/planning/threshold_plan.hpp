@@ -1,5 +1,6 @@
 /// \file How narrow the interval of a mean threshold becomes with a number of participants, and how
-/// often a difference of two thresholds is found. Source: docs/power.md, "Thresholds".
+/// often a difference of two thresholds is found. Source: docs/planning.md, "Power of threshold
+/// studies".
 #pragma once
 
 #include "analysis/planning/threshold_pool.hpp"

@@ -1,5 +1,5 @@
 /// \file Thresholds of simulated participants, from which studies of any size are drawn.
-/// Source: docs/power.md, "Thresholds".
+/// Source: docs/planning.md, "Power of threshold studies".
 #pragma once
 
 #include "protocols/design/prepare.hpp"

@@ -1,5 +1,5 @@
 /// \file What the procedure of one track chooses after a list of answers, and what it then believes.
-/// Source: docs/procedures.md, "The command".
+/// Source: docs/thresholds.md, "The command".
 #pragma once
 
 #include "protocols/design/study.hpp"

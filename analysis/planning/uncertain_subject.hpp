@@ -1,5 +1,5 @@
 /// \file A fitted subject with what its fit leaves open, for the assurance of a study: its power over
-/// that uncertainty. Source: docs/power.md, "Assurance"; O'Hagan, Stevens and Campbell 2005,
+/// that uncertainty. Source: docs/planning.md, "Assurance"; O'Hagan, Stevens and Campbell 2005,
 /// doi:10.1002/pst.175.
 #pragma once
 

@@ -1,4 +1,4 @@
-/// \file Sensitivity in the task "same or different". Source: docs/procedures.md, "d'"; Macmillan,
+/// \file Sensitivity in the task "same or different". Source: docs/thresholds.md, "d'"; Macmillan,
 /// Creelman 2005, chapter 9. Standard "which interval" tasks: d_prime.hpp.
 #pragma once
 

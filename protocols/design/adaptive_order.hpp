@@ -1,4 +1,4 @@
-/// \file Orders in which the answers so far decide what comes next. Source: docs/procedures.md.
+/// \file Orders in which the answers so far decide what comes next. Source: docs/thresholds.md.
 #pragma once
 
 #include "protocols/design/schedule.hpp"

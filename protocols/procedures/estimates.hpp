@@ -1,6 +1,6 @@
 /// \file Thresholds of finished tracks, with intervals, and how well a function fits. A track that
 /// reached a bound of its levels is censored: it says on which side the threshold lies, and gives
-/// none. Formulas and sources: docs/procedures.md, "Estimates".
+/// none. Formulas and sources: docs/thresholds.md, "Estimates".
 #pragma once
 
 #include "core/random.hpp"

@@ -1,6 +1,6 @@
 /// \file What answers tell of an observer: a posterior on a grid of threshold, slope and lapse, and
 /// the expected entropy after one more trial at each level. Sources: Kontsevich, Tyler 1999;
-/// Prins 2013; Watson 2017; docs/procedures.md, "QUEST+, psi and psi-marginal".
+/// Prins 2013; Watson 2017; docs/thresholds.md, "QUEST+, psi and psi-marginal".
 #pragma once
 
 #include "protocols/procedures/psychometric_function.hpp"

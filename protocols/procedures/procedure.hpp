@@ -1,6 +1,6 @@
 /// \file Procedures decide which level comes next: each is a state machine that settings, a random
 /// stream and the answers so far determine completely. To add one: a file with its class, and a
-/// line in the list of procedure.cpp. Formulas, defaults and sources: docs/procedures.md.
+/// line in the list of procedure.cpp. Formulas, defaults and sources: docs/thresholds.md.
 #pragma once
 
 #include "core/random.hpp"

@@ -1,5 +1,5 @@
 /// \file How often an observer is right at a level: psychometric functions. Formulas and sources:
-/// docs/procedures.md, "Psychometric functions". Pure functions, safe in any thread.
+/// docs/thresholds.md, "Psychometric functions". Pure functions, safe in any thread.
 #pragma once
 
 #include <cstdint>

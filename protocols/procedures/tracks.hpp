@@ -1,5 +1,5 @@
 /// \file Interleaved tracks with catch trials: what comes next in one block of trials, as a function
-/// of settings, a secret and the answers. Source: docs/procedures.md, "Tracks".
+/// of settings, a secret and the answers. Source: docs/thresholds.md, "Tracks".
 #pragma once
 
 #include "core/hash.hpp"

@@ -1,5 +1,5 @@
 /// \file The condition that a simulated participant is in, from trial to trial of one visit.
-/// Source: docs/subject-file.md, "From trial to trial".
+/// Source: docs/planning.md, "From trial to trial".
 #pragma once
 
 #include "protocols/simulation/subject_model.hpp"

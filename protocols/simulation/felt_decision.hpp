@@ -35,7 +35,7 @@ inline constexpr const char* kAnswerPurpose = "subject: answer";
 [[nodiscard]] double moved(double probability, double log_odds);
 
 /// One participant of a population. A function of subject model, seed and number: the same in every
-/// study and thread. Source of the distributions: docs/subject-file.md, "Differences between
+/// study and thread. Source of the distributions: docs/planning.md, "Differences between
 /// participants".
 class Individual {
  public:

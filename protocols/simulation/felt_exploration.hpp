@@ -40,7 +40,7 @@ class HandSense final : private device::TipSense {
 };
 
 /// By how much a participant's hand differs from the median: a function of its arguments. Source:
-/// docs/subject-file.md, "Differences between participants".
+/// docs/planning.md, "Differences between participants".
 /// \param number  of the participant, from 1
 [[nodiscard]] device::HandFactors hand_of_participant(const SubjectModel& subject,
                                                       std::uint64_t seed, std::uint64_t number);

@@ -1,5 +1,5 @@
 /// \file What the participants of one study learn before it, and what each of them remembers.
-/// Source: docs/subject-file.md, "Training".
+/// Source: docs/planning.md, "Training".
 #pragma once
 
 #include "protocols/design/study.hpp"

@@ -1,5 +1,5 @@
 /// \file What people expect to feel who know a study's pictures and none of its textures.
-/// Source: docs/subject-file.md, "Without training".
+/// Source: docs/planning.md, "Without training".
 #pragma once
 
 #include "engine/perception/felt_features.hpp"

@@ -1,5 +1,5 @@
 /// \file How participants change from trial to trial, how they come to know the classes, and how
-/// long they think: parts of a subject model. Source: docs/subject-file.md.
+/// long they think: parts of a subject model. Source: docs/planning.md.
 #pragma once
 
 #include <string_view>

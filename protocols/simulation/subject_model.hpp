@@ -1,5 +1,5 @@
 /// \file The parameters of simulated participants, read from a subject file and written to one.
-/// Format: docs/subject-file.md and config/schema/subject.schema.json.
+/// Format: docs/planning.md and config/schema/subject.schema.json.
 #pragma once
 
 #include "device/model/device_model.hpp"

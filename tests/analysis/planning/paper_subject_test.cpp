@@ -1,4 +1,4 @@
-/// Checks what docs/fitting.md, "Published accuracies", says about config/subjects/paper.json.
+/// Checks what docs/planning.md, "Published accuracies", says about config/subjects/paper.json.
 #include "analysis/planning/answer_model.hpp"
 #include "analysis/planning/fit_evidence.hpp"
 #include "protocols/design/prepare.hpp"

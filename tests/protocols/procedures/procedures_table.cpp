@@ -203,7 +203,7 @@ int main(int argc, char** argv) {
       "track.\n"
       "Weibull functions in dB, guess .5, thresholds uniform in -24 .. -14 dB, slopes log-uniform "
       "in 2 .. 6,\n"
-      "lapses uniform in 0 .. .05. Settings: [procedures.md](procedures.md), \"Defaults\"; "
+      "lapses uniform in 0 .. .05. Settings: [thresholds.md](thresholds.md), \"Defaults\"; "
       "staircases begin at\n"
       "-10 dB; constant stimuli are at -30, -25 .. -5 dB. Bias and RMSE in dB, over tracks that "
       "are not\n"

@@ -14,7 +14,7 @@ namespace touchtrial::tracked {
 /// Whole decibels from `low` to `high`.
 [[nodiscard]] std::vector<double> decibels(int low, int high, int step = 1);
 
-/// Levels of -40 .. 0 dB and the beliefs of docs/procedures.md, "Defaults"; a two-interval task.
+/// Levels of -40 .. 0 dB and the beliefs of docs/thresholds.md, "Defaults"; a two-interval task.
 [[nodiscard]] procedures::TrackSettings usual_track(const std::string& procedure, int trials);
 
 /// The trials of a track that this observer answers.

@@ -1,6 +1,6 @@
 /// \file Which cue did participants use? The answers that ideal observers would have given from
-/// what each hand felt, beside the answers of the participants. Source: docs/cues.md. Format of the
-/// JSON: docs/data-dictionary.md, "Cues".
+/// what each hand felt, beside the answers of the participants. Source: docs/statistics.md. Format
+/// of the JSON: docs/data-dictionary.md, "Cues".
 #pragma once
 
 #include "analysis/outcomes.hpp"

@@ -1,6 +1,6 @@
 /// \file Answers of participants and observers to one method's trials, and efficiencies and
-/// divergences with intervals over participants. Sources: docs/cues.md; docs/statistics.md,
-/// "Participants as clusters"; Lin 1991, IEEE Transactions on Information Theory 37(1)
+/// divergences with intervals over participants. Sources: docs/statistics.md, "Which cue was it?"
+/// and "Participants as clusters"; Lin 1991, IEEE Transactions on Information Theory 37(1)
 /// (divergence).
 #pragma once
 

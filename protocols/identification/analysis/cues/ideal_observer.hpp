@@ -1,5 +1,5 @@
 /// \file Ideal observers: they feel what a hand felt, use a part of it as well as possible, and
-/// answer, either with certainty or with the participants' uncertainty. Source: docs/cues.md.
+/// answer, either with certainty or with the participants' uncertainty. Source: docs/statistics.md.
 #pragma once
 
 #include "engine/perception/felt_features.hpp"
