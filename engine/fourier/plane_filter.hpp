@@ -1,5 +1,5 @@
 /// \file Linear filters of real planes, diagonal in the Fourier basis, for callers that work on the
-/// rows before and after. Source: docs/decisions/0005-tv-gabor-solver.md.
+/// rows before and after. Source: docs/decisions/README.md, decision 5.
 #pragma once
 
 #include "core/plane.hpp"

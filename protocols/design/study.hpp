@@ -63,7 +63,7 @@ struct ValidityRule {
 
 /// What the hand does at the plane before its presentation can be answered. The usual one is half a
 /// second at the slowest stroke that the instructions ask for. Source:
-/// docs/decisions/0063-no-answer-without-a-touch.md.
+/// docs/decisions/README.md, decision 63.
 struct LeastTouch {
   double contact_s = 0.5;
   double path_mm = 25.0;  ///< along the plane
