@@ -2,7 +2,7 @@
 /// whatever is felt.
 /// P(answer j | class i) = bias_j similarity_ij / sum_k bias_k similarity_ik, similarity symmetric
 /// with 1 on its diagonal. Source: docs/statistics.md, "Choice model"; Luce 1963; Townsend, Landon
-/// 1982; why zeros matter: docs/decisions/0037.
+/// 1982; why zeros matter: docs/decisions/README.md, decision 37.
 #pragma once
 
 #include "analysis/statistics/confusion.hpp"
