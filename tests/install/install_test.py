@@ -47,9 +47,13 @@ def main(work):
     demo = run(program, "demo", work / "demo", cwd=work).splitlines()
     check("demo ends with both reports",
           all((work / "demo" / f"{study}-report" / "report.html").exists() for study in ("classification", "comparison")))
-    told = (SOURCE / "README.md").read_text().partition("```text\n[SIMULATED]")[2].partition("```")[0].splitlines()[1:]
-    check(f"the README's tables are the demo's: {len(told)} lines",
+    page = (SOURCE / "docs" / "report.md").read_text()
+    told = page.partition("```text\n[SIMULATED]")[2].partition("```")[0].splitlines()[1:]
+    check(f"the tables in docs/report.md are the demo's: {len(told)} lines",
           len(told) > 20 and [line for line in told if line not in demo] == [])
+    mean = "".join(told).partition("*")[2].partition("%")[0]
+    check(f"the README has its mean, {mean} %", f"name {mean} % of five textures" in
+          " ".join((SOURCE / "README.md").read_text().split()))
     again = subprocess.run([program, "demo", work / "demo"], capture_output=True, text=True)
     check("demo refuses a folder that is not empty", again.returncode == 2 and "exists already" in again.stderr)
 
