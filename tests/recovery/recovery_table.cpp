@@ -12,7 +12,7 @@ namespace {
 
 using touchtrial::recovery::Finding;
 
-constexpr const char* kIntroduction = R"(# Known participants, found again
+constexpr const char* kIntroduction = R"(# Parameter recovery of statistics
 
 This page shows what the analysis finds for simulated participants whose parameters are all known. They
 answer by signal detection with a known sensitivity d', spread between people, lapses, biases and

@@ -198,7 +198,7 @@ int main(int argc, char** argv) {
   const int runs = argc > 1 ? std::atoi(argv[1]) : 1000;
   if (runs < 20) return 2;
   fmt::print(
-      "# Known thresholds, found again\n\n"
+      "# Parameter recovery of thresholds\n\n"
       "`scripts/recovery-procedures {0}` prints this page. Each row: {0} observers, each with one "
       "track.\n"
       "Weibull functions in dB, guess .5, thresholds uniform in -24 .. -14 dB, slopes log-uniform "
