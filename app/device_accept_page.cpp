@@ -158,79 +158,10 @@ void add_lines(analysis::Section& section, analysis::Picture picture) {
   if (!picture.id.empty()) section.blocks.emplace_back(std::move(picture));
 }
 
-/// The bands of several spectra side by side.
-analysis::Table bands_table(std::span<const device::SpectrumResult> spectra, std::size_t number) {
-  analysis::Table table{"bands-" + std::to_string(number),
-                        "Acceleration at the stylus by band, root mean square in m/s²",
-                        {{"band, Hz", analysis::Align::left}}};
-  std::size_t bands = 0;
-  for (const device::SpectrumResult& spectrum : spectra) {
-    table.columns.push_back({spectrum.felt, analysis::Align::right});
-    bands = std::max(bands, spectrum.bands.size());
-  }
-  for (std::size_t i = 0; i < bands; ++i) {
-    std::vector<Cell> row = {Cell("")};
-    for (const device::SpectrumResult& spectrum : spectra) {
-      const bool has_band = i < spectrum.bands.size();
-      if (has_band) {
-        const device::BandResult& band = spectrum.bands[i];
-        row.front() = Cell(fmt::format("{:.0f} to {:.0f}", band.from_hz, band.to_hz));
-      }
-      row.push_back(Cell(has_band ? fmt::format("{:.4f}", spectrum.bands[i].acceleration_m_s2)
-                                  : std::string("-")));
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-/// The planes together: where the lines of textures lie above the blank plane's, they are felt.
-analysis::Picture spectra_picture(const std::vector<device::SpectrumResult>& spectra) {
-  constexpr std::size_t kMostLines = 6;  // as many as there are colours
-  std::vector<PlotLine> lines;
-  for (const device::SpectrumResult& spectrum : spectra) {
-    PlotLine line{spectrum.felt, {}};
-    for (const device::BandResult& band : spectrum.bands) {
-      // A logarithmic axis has no zero.
-      constexpr double kLeast = 1e-5;
-      line.points.emplace_back(std::sqrt(band.from_hz * band.to_hz),
-                               std::max(band.acceleration_m_s2, kLeast));
-    }
-    const bool is_silent = !(spectrum.all_m_s2() > 0.0);
-    if (lines.size() < kMostLines && !is_silent) lines.push_back(std::move(line));
-  }
-  return lines_picture({"spectra",
-                        "What the stylus gets: acceleration in thirds of an octave, all axes "
-                        "together. What a plane adds to the blank one is its texture.",
-                        "Acceleration over frequency, a line for each plane.", "frequency, Hz",
-                        "acceleration, m/s2"},
-                       lines, "set logscale xy\nset format y '10^{%T}'\n");
-}
-
-analysis::Table spectra_table(const std::vector<device::SpectrumResult>& spectra) {
-  analysis::Table table{"accelerations",
-                        "Acceleration at the stylus in all bands",
-                        {{"felt", analysis::Align::left},
-                         {"m/s²", analysis::Align::right},
-                         {"re the blank plane, dB", analysis::Align::right}}};
-  const auto blank = std::ranges::find(spectra, device::kBlankPlane, &device::SpectrumResult::felt);
-  for (const device::SpectrumResult& spectrum : spectra) {
-    const bool has_both =
-        blank != spectra.end() && blank->all_m_s2() > 0.0 && spectrum.all_m_s2() > 0.0;
-    table.rows.push_back(
-        {Cell(spectrum.felt), Cell(fmt::format("{:.4f}", spectrum.all_m_s2())),
-         Cell(has_both ? fmt::format("{:+.1f}",
-                                     20.0 * std::log10(spectrum.all_m_s2() / blank->all_m_s2()))
-                       : std::string("-"))});
-  }
-  return table;
-}
-
 analysis::Section results_of(const device::Certificate& certificate) {
   analysis::Section section{"results", "Results", {}};
   section.blocks.emplace_back(table_of_axes(certificate));
   section.blocks.emplace_back(device_figures(certificate));
-  if (!certificate.spectra.empty()) section.blocks.emplace_back(spectra_table(certificate.spectra));
   return section;
 }
 
@@ -249,14 +180,6 @@ analysis::Section curves_of(const device::Acceptance& acceptance) {
                            "keep the fit of mass and damping from telling it.",
                            "Bend over delay, a line for each axis.", "delay, ms", "bend, mm"},
                           lines_of(acceptance.curves, &device::AxisCurves::by_delay)));
-  const std::vector<device::SpectrumResult>& spectra = acceptance.certificate.spectra;
-  add_lines(section, spectra_picture(spectra));
-  constexpr std::size_t kSideBySide = 7;
-  for (std::size_t at = 0; at < spectra.size(); at += kSideBySide) {
-    const std::span some =
-        std::span(spectra).subspan(at).first(std::min(kSideBySide, spectra.size() - at));
-    section.blocks.emplace_back(bands_table(some, 1 + at / kSideBySide));
-  }
   return section;
 }
 
