@@ -15,7 +15,6 @@
 namespace touchtrial {
 namespace {
 
-using device::Acceptance;
 using device::AxisResult;
 using device::Certificate;
 using device::DeviceAxis;
@@ -25,7 +24,7 @@ using device::Measured;
 const std::vector<std::string> kEmulated = {"falcon", "touch", "omega_3", "inverse3"};
 
 Certificate rehearsed(const DeviceModel& model, const device::AcceptanceOptions& options = {}) {
-  return device::rehearse_acceptance(model, options).certificate;
+  return device::rehearse_acceptance(model, options);
 }
 
 const AxisResult& axis_of(const Certificate& certificate, DeviceAxis axis) {
@@ -112,7 +111,7 @@ TEST_CASE("an acceptance finds a wrong sign on any axis, refuses it, and pulls a
       DeviceModel model = device::device_model(name);
       component(model.planted.force_sign_scale, axis) = -1.0;
       WatchedRehearsal bench(model);
-      const Certificate certificate = device::accept_device(bench, bench.person(), {}).certificate;
+      const Certificate certificate = device::accept_device(bench, bench.person(), {});
       CHECK_FALSE(certificate.passed());
       CHECK(has_line(certificate.failures(),
                      "axis " + std::string(device::name_of(axis)) + ": the handle moved against"));
