@@ -14,12 +14,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-class SleepingClock final : public ServoClock {
- public:
-  [[nodiscard]] Time now() noexcept override { return monotonic_now(); }
-  void wait_until(Time time) noexcept override { sleep_until(time); }
-};
-
 constexpr double kMmPerM = 1000.0;
 constexpr double kRateHz = 1e9 / static_cast<double>(Inverse3Device::kPeriod.count());
 /// Radius of the ball that the arm reaches, mm.
@@ -217,10 +211,6 @@ std::unique_ptr<HapticDevice> open_inverse3(const DeviceSettings& settings) {
 
 }  // namespace
 
-std::unique_ptr<ServoClock> sleeping_clock() {
-  return std::make_unique<SleepingClock>();
-}
-
 Inverse3Device::Inverse3Device(const Inverse3Settings& settings, Inverse3Options options)
     : settings_(settings),
       options_(std::move(options)),
@@ -244,6 +234,7 @@ Inverse3Device::Inverse3Device(const Inverse3Settings& settings, Inverse3Options
 
 Inverse3Device::~Inverse3Device() {
   stopping_.store(true, std::memory_order_release);
+  options_.pace->end();
   thread_.join();
 }
 
@@ -349,10 +340,10 @@ void Inverse3Device::describe(const DeviceConfig& config) {
 }
 
 void Inverse3Device::exchange_until_stopped() noexcept {
-  ServoClock::Time next = options_.clock->now();
+  LinkPace::Time next = options_.pace->now();
   while (!stopping_.load(std::memory_order_acquire) && link_.fault() == DeviceFault::none) {
-    options_.clock->wait_until(next);
-    next = options_.clock->now() + kPeriod;
+    options_.pace->rest_until(next);
+    next = options_.pace->now() + kPeriod;
     try {
       exchange();
     } catch (const BadMessage&) {
@@ -362,11 +353,12 @@ void Inverse3Device::exchange_until_stopped() noexcept {
     }
   }
   say_farewell();
+  options_.pace->end();
 }
 
 void Inverse3Device::exchange() {
   // Taken even if it is not sent, so that no old force waits in the link.
-  const Vec3 wanted_n = link_.force_to_send(options_.clock->now());
+  const Vec3 wanted_n = link_.force_to_send(options_.pace->now());
   const bool may_push = status_.is_usable() && is_finite(wanted_n);
   const Vec3 sent_n = may_push ? within_reach(wanted_n) : Vec3{};
   switch (service_->exchange(force_message(id_, to_service_axes(sent_n)), options_.silence)) {
