@@ -421,18 +421,6 @@ TEST_CASE("closing sends packets without force and switches the lights off") {
   CHECK(rig.emulator.complaints().empty());
 }
 
-TEST_CASE("a Falcon without firmware is loaded from the user's file when it is opened") {
-  const TempFolder folder;
-  FalconEmulator emulator;
-  Lockstep lockstep;
-  device::FalconSettings settings;
-  settings.firmware = write_dummy_firmware(folder.path());
-  const FalconDevice device(std::make_unique<EmulatorTransport>(emulator), settings,
-                            in_lockstep(lockstep));
-  CHECK(emulator.image() == dummy_firmware());
-  CHECK(device.readiness() == device::DeviceReadiness::needs_homing);
-}
-
 TEST_CASE("a firmware that does not run is reported") {
   const TempFolder folder;
   FalconEmulator emulator({.boot_loader = {.image = {1, 2, 3}}});
