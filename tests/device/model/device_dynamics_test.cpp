@@ -198,53 +198,6 @@ DeviceModel structured(double stiffness_n_per_mm, double tip_share, double dampi
   return model;
 }
 
-TEST_CASE("a stiff structure moves like a rigid device") {
-  DeviceModel rigid = model_of(0.045);
-  rigid.viscous_n_s_per_m = 3.0;
-  rigid.zero_order_hold = true;
-  DeviceModel stiff = rigid;
-  stiff.structure = {1000.0, 0.5, 1.0};
-  DeviceDynamics a(rigid);
-  DeviceDynamics b(stiff);
-  for (int i = 0; i < 500; ++i) {
-    const Vec3 force_n{0.3 * std::sin(0.05 * i), 0.1, -0.2 * std::cos(0.03 * i)};
-    a.tick(force_n, {.mass_kg = 0.1});
-    b.tick(force_n, {.mass_kg = 0.1});
-  }
-  CHECK(norm(a.true_position_mm()) > 1.0);
-  CHECK(norm(a.true_position_mm() - b.true_position_mm()) < 1e-3 * norm(a.true_position_mm()));
-}
-
-TEST_CASE("an undamped structure keeps its energy, and rings at its own frequency") {
-  const double k = GENERATE(1.26, 50.0, 1000.0);
-  DeviceDynamics device(structured(k, 0.5, 0.0));
-  device.tick({2.0, 0.0, 0.0}, {});
-  // The mean of both masses' velocities is what the pulse gave the whole device.
-  const double mean_mm_s = 2.0 * 1000.0 * kT / 0.045;
-  std::vector<double> crossings_s;
-  double last = 0.0;
-  double greatest = 0.0;
-  double late_greatest = 0.0;
-  for (int i = 0; i < 20'000; ++i) {
-    device.tick({}, {});
-    const double relative = device.true_velocity_mm_s().x - mean_mm_s;
-    if (last < 0.0 && relative >= 0.0) {
-      crossings_s.push_back(kT * (i - relative / (relative - last)));
-    }
-    last = relative;
-    (i < 10'000 ? greatest : late_greatest) =
-        std::max(i < 10'000 ? greatest : late_greatest, std::abs(relative));
-  }
-  CHECK(late_greatest == Approx(greatest).epsilon(0.01));
-  REQUIRE(crossings_s.size() > 100);
-  const double measured_hz =
-      static_cast<double>(crossings_s.size() - 1) / (crossings_s.back() - crossings_s.front());
-  const double natural = std::sqrt(k / (0.001 * 0.045 * 0.25));
-  // The trapezium rule bends frequencies as the bilinear transform does.
-  const double expected_hz = std::atan(0.5 * natural * kT) / (kPi * kT);
-  CHECK(measured_hz == Approx(expected_hz).epsilon(1e-3));
-}
-
 TEST_CASE("encoders at the motors do not see a tip that bends while friction holds the motors") {
   DeviceModel model = structured(1.26, 0.5, 1.0);
   model.coulomb_n = 0.26;

@@ -11,9 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
-#include <map>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -210,52 +208,6 @@ TEST_CASE("the shipped models are the files in config, and each says where its n
   CHECK(names.size() == device::shipped_device_models().size());
   for (const char* name : {"ideal", "touch", "touch_x", "premium_1_5", "falcon"}) {
     CHECK(names.contains(name));
-  }
-}
-
-TEST_CASE("the table of shipped device models in the docs has the files' numbers and confidences") {
-  const std::map<std::string, std::string> letters = {
-      {"opened", "O"}, {"derived", "D"}, {"memory", "M"}, {"guess", "G"}};
-  const auto text_of_number = [](const json& number) {
-    std::ostringstream text;
-    text << number.get<double>();
-    return text.str();
-  };
-  const auto cell_of = [&](const json& file, const std::string& key) -> std::string {
-    if (!file.contains(key)) return key == "zero_order_hold" ? "no" : "-";
-    const json& value = file.at(key);
-    std::string text;
-    if (value.is_boolean()) {
-      text = "yes";
-    } else if (value.is_object()) {
-      for (const char* part : {"stiffness_n_per_mm", "tip_share", "damping_ratio"}) {
-        text += (text.empty() ? "" : ", ") + text_of_number(value.at(part));
-      }
-    } else {
-      text = text_of_number(value);
-    }
-    return text + " " + letters.at(file.at("provenance").at(key).at("confidence"));
-  };
-  std::map<std::string, std::string> rows;
-  std::string header;
-  std::istringstream page(text_of(read_file(config() / "../docs/devices/models.md")));
-  for (std::string line; std::getline(page, line);) {
-    if (line.starts_with("| | ")) header = line.substr(3);
-    if (line.starts_with("| `")) rows[line.substr(3, line.find('`', 3) - 3)] = line;
-  }
-  REQUIRE(rows.size() >= 10);
-  std::vector<json> files;
-  std::istringstream names(header);
-  for (std::string name; names >> name;) {
-    if (name == "|") continue;
-    files.push_back(json::parse(text_of(read_file(config() / "devices" / (name + ".json")))));
-  }
-  CHECK(files.size() == device::shipped_device_models().size());
-  for (const auto& [key, row] : rows) {
-    std::string cells;
-    for (const json& file : files) cells += " | " + cell_of(file, key);
-    INFO(row);
-    CHECK_THAT(row, holds_text(cells + " |"));
   }
 }
 
