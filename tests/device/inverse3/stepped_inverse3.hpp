@@ -32,20 +32,10 @@ struct PacedInverse3 {
 /// Every `read` runs one exchange, which sends the force of the last `write`.
 class SteppedInverse3 final : private PacedInverse3, public device::falcon::LockstepDevice {
  public:
-  /// \param before_read  on the servo's thread, while the driver's thread rests; may be empty
+  /// \param before_read  as LockstepDevice
   explicit SteppedInverse3(const device::Inverse3Settings& settings,
                            std::function<void()> before_read = {})
-      : PacedInverse3(settings),
-        LockstepDevice(driver, lockstep),
-        before_read_(std::move(before_read)) {}
-
-  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
-    if (before_read_) before_read_();
-    return LockstepDevice::read(sample);
-  }
-
- private:
-  std::function<void()> before_read_;
+      : PacedInverse3(settings), LockstepDevice(driver, lockstep, std::move(before_read)) {}
 };
 
 }  // namespace touchtrial::testing
