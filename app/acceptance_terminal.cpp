@@ -102,10 +102,8 @@ extern "C" void pass_on_to_acceptance(int signal) {
 }  // namespace
 
 AcceptanceTerminal::AcceptanceTerminal(const std::string& driver,
-                                       const device::DeviceSettings& settings,
-                                       device::Accelerometer* accelerometer)
-    : accelerometer_(accelerometer),
-      opened_(driver, settings),
+                                       const device::DeviceSettings& settings)
+    : opened_(driver, settings),
       limits_(limits_of(opened_.device(), settings.use_of(driver))),
       run_(opened_, with_motors(opened_.device()), limits_, device::kServoRateHz, false) {
   tell(

@@ -19,11 +19,9 @@ struct AcceptanceStopped {};
 class AcceptanceTerminal final : public device::AcceptanceBench, public device::AcceptancePerson {
  public:
   /// Opens the device and waits until it is ready.
-  /// \param accelerometer  null: none
   /// \throws AcceptanceStopped; DeviceError if it has no motors; as OpenedDevice and
   ///   AttendedRun::wait_until_ready
-  AcceptanceTerminal(const std::string& driver, const device::DeviceSettings& settings,
-                     device::Accelerometer* accelerometer = nullptr);
+  AcceptanceTerminal(const std::string& driver, const device::DeviceSettings& settings);
 
   [[nodiscard]] const device::SchedulingObtained& scheduling() const noexcept {
     return run_.scheduling();
@@ -34,7 +32,6 @@ class AcceptanceTerminal final : public device::AcceptanceBench, public device::
   void limit_force(double most_n) override;
   [[nodiscard]] device::ServoReport run(const std::string& name,
                                         device::Measurement& measurement) override;
-  [[nodiscard]] device::Accelerometer* accelerometer() override { return accelerometer_; }
   [[nodiscard]] std::optional<device::ServoReport> run_suspended(
       device::Measurement& measurement) override;
 
@@ -48,7 +45,6 @@ class AcceptanceTerminal final : public device::AcceptanceBench, public device::
  private:
   void require_going_on() const;
 
-  device::Accelerometer* accelerometer_;
   OpenedDevice opened_;
   device::SafetyLimits limits_;
   double most_n_ = std::numeric_limits<double>::infinity();  ///< of limit_force

@@ -1,23 +1,18 @@
 // device accept: a person tries a device step by step, guided, and its certificate is written.
+#include "analysis/page/document.hpp"
 #include "app/acceptance_terminal.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/device_accept_page.hpp"
-#include "app/device_words.hpp"
 #include "app/force_flag.hpp"
-#include "app/sound/sound_accelerometer.hpp"
-#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/outputs.hpp"
 #include "core/text.hpp"
+#include "core/utc.hpp"
 #include "core/version.hpp"
-#include "device/acceptance/accelerometer.hpp"
 #include "device/acceptance/acceptance.hpp"
 #include "device/acceptance/rehearsal.hpp"
 #include "device/registry.hpp"
-#include "engine/pack/pack.hpp"
-#include "protocols/session/stimulus_source.hpp"
 
 #include <algorithm>
 #include <array>
@@ -46,10 +41,6 @@ struct AcceptArguments {
   fs::path certificate;
   std::string emulated;  ///< name or file of a device model
   std::vector<std::string> skip;
-  std::vector<std::string> records;  ///< LABEL=FILE of an accelerometer
-  fs::path planes;                   ///< study file
-  std::string sound_input;
-  std::vector<double> full_scale_m_s2;
   bool thermal = false;
   bool json = false;
 };
@@ -69,54 +60,31 @@ std::string emulated_word(const std::string& model) {
   return "emulated-" + file_word(model);
 }
 
-/// "falcon-model.json" beside "falcon-certificate.json", with this ending in place of
-/// "-certificate.json".
-fs::path file_beside(const fs::path& certificate, const std::string& ending) {
+/// "falcon-model.json" beside "falcon-certificate.json".
+fs::path model_beside(const fs::path& certificate) {
   std::string stem = certificate.stem().string();
   const std::string usual = "-certificate";
-  if (ending != ".html" && stem.ends_with(usual)) stem.resize(stem.size() - usual.size());
-  return certificate.parent_path() / (stem + ending);
+  if (stem.ends_with(usual)) stem.resize(stem.size() - usual.size());
+  return certificate.parent_path() / (stem + "-model.json");
 }
 
 /// The files that an acceptance writes.
 struct AcceptanceFiles {
   fs::path certificate;
-  fs::path page;
   fs::path model;
 
-  [[nodiscard]] std::array<const fs::path*, 3> all() const { return {&certificate, &page, &model}; }
+  [[nodiscard]] std::array<const fs::path*, 2> all() const { return {&certificate, &model}; }
 };
-
-/// \return WHAT and FILE of --accelerometer
-/// \throws UsageError
-std::pair<std::string, std::string> record_words(const std::string& record) {
-  const std::size_t equals = record.find('=');
-  if (equals == 0 || equals == std::string::npos || equals + 1 == record.size()) {
-    throw UsageError("--accelerometer " + in_quotes(record) +
-                     ": give WHAT=FILE, for instance wall=wall.csv");
-  }
-  return {record.substr(0, equals), record.substr(equals + 1)};
-}
 
 /// Called before the device is opened, so that no work is lost at the end.
 /// \param name  of the certificate, without its ending, unless the arguments name one
-/// \throws UsageError if the certificate would not be a .json file, or a file that this very
-///   acceptance reads would be replaced
+/// \throws UsageError if a file that this very acceptance reads would be replaced
 /// \throws FileError if they cannot be written
 AcceptanceFiles files_to_write(const AcceptArguments& arguments, const std::string& name) {
   const fs::path path =
       arguments.certificate.empty() ? fs::path(name + "-certificate.json") : arguments.certificate;
-  if (ending_of(path) != ".json") {
-    throw UsageError("--certificate " + in_quotes(path.string()) +
-                     ": the page with the plots is written beside it; give a name that ends in "
-                     ".json");
-  }
-  AcceptanceFiles files{path, file_beside(path, ".html"), file_beside(path, "-model.json")};
-  std::vector<fs::path> inputs = {arguments.emulated, arguments.settings};
-  inputs.push_back(arguments.planes);
-  for (const std::string& record : arguments.records) {
-    inputs.emplace_back(record_words(record).second);
-  }
+  const AcceptanceFiles files{path, model_beside(path)};
+  const std::array<fs::path, 2> inputs = {arguments.emulated, arguments.settings};
   for (const fs::path* const file : files.all()) {
     std::error_code ignored;
     const auto is_input = [&](const fs::path& input) {
@@ -153,19 +121,125 @@ void keep_earlier(const AcceptanceFiles& files) {
   }
 }
 
-/// The spectra of the records that the arguments name.
-std::vector<device::SpectrumResult> spectra_of(const AcceptArguments& arguments) {
-  std::vector<device::SpectrumResult> spectra;
-  for (const std::string& record : arguments.records) {
-    const auto [what, file] = record_words(record);
-    spectra.push_back({what, device::acceleration_bands(device::read_accelerometer_csv(file))});
+using analysis::Cell;
+
+std::string number_cell(const std::optional<device::Measured>& measured, int digits,
+                        double factor = 1.0) {
+  if (!measured) return "-";
+  return fmt::format("{:.{}f} ± {:.{}f}", factor * measured->value, digits,
+                     factor * measured->error, digits);
+}
+
+std::string push_cell(const std::optional<device::PushResult>& push) {
+  if (!push) return "-";
+  if (!push->moved) return fmt::format("no motion at {:.1f} N", push->force_n);
+  return fmt::format("{:+.1f} mm at {:.1f} N", push->along_mm, push->force_n);
+}
+
+analysis::Table table_of_axes(const device::Certificate& certificate) {
+  analysis::Table table{"axes",
+                        "Each axis of the device frame (x right, y up, z towards the person). "
+                        "Numbers have the half-width of their interval of about 95 %.",
+                        {{"axis", analysis::Align::left},
+                         {"push along it", analysis::Align::right},
+                         {"push against it", analysis::Align::right},
+                         {"delivered, %", analysis::Align::right},
+                         {"friction, N", analysis::Align::right},
+                         {"mass, kg", analysis::Align::right},
+                         {"damping, N s/m", analysis::Align::right},
+                         {"delay, ms", analysis::Align::right}}};
+  for (const device::AxisResult& axis : certificate.axes) {
+    table.rows.push_back({Cell(std::string(device::name_of(axis.axis))), Cell(push_cell(axis.plus)),
+                          Cell(push_cell(axis.minus)), Cell(number_cell(axis.scale(), 1, 100.0)),
+                          Cell(number_cell(axis.friction_n, 3)), Cell(number_cell(axis.mass_kg, 3)),
+                          Cell(number_cell(axis.viscous_n_s_per_m, 1)),
+                          Cell(number_cell(axis.delay_ms, 1))});
   }
-  return spectra;
+  return table;
+}
+
+analysis::Definitions device_figures(const device::Certificate& certificate) {
+  analysis::Definitions figures;
+  auto& entries = figures.entries;
+  if (certificate.rest) {
+    entries.emplace_back("noise and drift at rest",
+                         fmt::format("{:.4f} mm and {:.3f} mm", certificate.rest->noise_mm,
+                                     certificate.rest->drift_mm));
+  }
+  if (certificate.step_mm) {
+    entries.emplace_back("encoder step", number_cell(certificate.step_mm, 4) + " mm");
+  }
+  if (certificate.wall) {
+    const device::WallResult& wall = *certificate.wall;
+    entries.emplace_back("stiffest stable wall", fmt::format("{:.2f} N/mm; the trials ended by {}",
+                                                             wall.stable_n_per_mm, wall.ended));
+    if (wall.oscillates_n_per_mm > 0.0) {
+      // b = K (T/2 + delay) at the edge; T is one tick.
+      const auto delay = certificate.mean_of(&device::AxisResult::delay_ms);
+      const double damping = wall.oscillates_n_per_mm * (0.5 + (delay ? delay->value : 0.0));
+      entries.emplace_back("first wall that swings",
+                           fmt::format("{:.2f} N/mm, where {}K (T/2 + delay) is {:.2f} N s/m",
+                                       wall.oscillates_n_per_mm,
+                                       delay ? "" : "(delay unknown, taken as 0) ", damping));
+    }
+  }
+  if (certificate.warm) {
+    entries.emplace_back("load's force at first, and after twenty minutes",
+                         fmt::format("{:.3f} N and {:.3f} N", certificate.warm->before_n,
+                                     certificate.warm->after_n));
+  }
+  return figures;
+}
+
+analysis::Section results_of(const device::Certificate& certificate) {
+  analysis::Section section{"results", "Results", {}};
+  section.blocks.emplace_back(table_of_axes(certificate));
+  section.blocks.emplace_back(device_figures(certificate));
+  return section;
+}
+
+analysis::Section verdict_of(const device::Certificate& certificate) {
+  analysis::Section section{"verdict", "Verdict", {}};
+  const std::vector<std::string> failures = certificate.failures();
+  section.blocks.emplace_back(analysis::Cited{
+      failures.empty() ? "Every requirement of a session with people was measured and is met."
+                       : "No session with people runs on this device.",
+      {},
+      failures.empty() ? "Passed." : "Failed."});
+  if (!failures.empty()) section.blocks.emplace_back(analysis::Warnings{failures, "Why"});
+  if (!certificate.not_measured.empty()) {
+    analysis::Warnings missing{{}, "Not measured"};
+    for (const device::NotMeasured& one : certificate.not_measured) {
+      missing.sentences.push_back(one.what + ": " + one.why);
+    }
+    section.blocks.emplace_back(std::move(missing));
+  }
+  return section;
+}
+
+/// Verdict and numbers, for the terminal.
+analysis::Document document_of(const device::Certificate& certificate) {
+  analysis::Document document;
+  document.title = "Acceptance of " + certificate.driver +
+                   (certificate.model.empty() ? "" : ", " + certificate.model);
+  if (!certificate.emulated.empty()) {
+    document.stamp = "REHEARSAL";
+    document.banners.push_back("REHEARSAL on an emulated device (" + certificate.emulated +
+                               "): proves the program, not a device.");
+  }
+  document.header.entries = {{"driver", certificate.driver},
+                             {"model", certificate.model},
+                             {"serial number", certificate.serial},
+                             {"firmware", certificate.firmware},
+                             {"made", utc_text(certificate.made.time_since_epoch())},
+                             {"program", certificate.program}};
+  document.about = "This certificate";
+  document.sections = {verdict_of(certificate), results_of(certificate)};
+  return document;
 }
 
 int write_results(const AcceptArguments& arguments, const AcceptanceFiles& files,
-                  device::Acceptance acceptance, const device::DeviceInfo& info) {
-  device::Certificate& certificate = acceptance.certificate;
+                  device::Certificate certificate, const device::DeviceInfo& info) {
   certificate.program = std::string(program_version());
   certificate.made = std::chrono::floor<std::chrono::seconds>(
       std::chrono::sys_time<std::chrono::nanoseconds>(utc_now()));
@@ -174,111 +248,36 @@ int write_results(const AcceptArguments& arguments, const AcceptanceFiles& files
   const std::string json = device::certificate_json(certificate);
   keep_earlier(files);
   write_output(files.certificate, json);
-  write_output(files.page, acceptance_page(acceptance));
   write_output(files.model, device::device_model_json(model));
   if (arguments.json) {
     print(json);
   } else {
-    print(acceptance_text(certificate, columns_of_output()) +
+    print(analysis::document_text(document_of(certificate), columns_of_output()) +
           fmt::format("{}: SHA-256 {}\n", files.certificate.string(),
                       to_hex(sha256_of_file(files.certificate))));
   }
   return certificate.passed() ? 0 : kRefused;
 }
 
-/// The planes of a prepared study, which the acceptance presents one by one.
-class StudyPlanes {
- public:
-  /// \throws FileError if the study is not prepared here, or its key is under a passphrase
-  explicit StudyPlanes(const fs::path& file)
-      : key_(key_of(file)), pack_(key_.pack_folder), source_(pack_, key_.study.rendering) {}
-
-  /// Refers to this. The blank plane comes first.
-  [[nodiscard]] std::vector<device::FeltPlane> planes() const {
-    std::vector<device::FeltPlane> planes = {
-        plane(std::string(device::kBlankPlane), source_.flat())};
-    for (const design::KeyedStimulus& keyed : sorted()) {
-      const design::StudyClass& own = key_.study.classes[keyed.stimulus.class_index];
-      std::string felt = own.label + " " + key_.study.methods[keyed.stimulus.method].label;
-      if (own.images.size() > 1) felt += fmt::format(" {}", keyed.stimulus.exemplar + 1);
-      planes.push_back(plane(std::move(felt), source_.model(keyed.code)));
-    }
-    return planes;
-  }
-
- private:
-  static design::StudyKey key_of(const fs::path& file) {
-    std::optional<design::StudyKey> key = open_key_of(design::load_study(file), file);
-    if (key) return std::move(*key);
-    throw FileError(one_line(file.string()) +
-                    ": --planes: is not prepared here, or its key is under a passphrase; run "
-                    "touchtrial prepare with a copy of the study in another folder");
-  }
-  /// Codes are random, and so is the key's order.
-  [[nodiscard]] std::vector<design::KeyedStimulus> sorted() const {
-    std::vector<design::KeyedStimulus> stimuli = key_.stimuli;
-    std::ranges::sort(stimuli, {}, &design::KeyedStimulus::stimulus);
-    return stimuli;
-  }
-  [[nodiscard]] device::FeltPlane plane(std::string felt,
-                                        const engine::RenderingModel& model) const {
-    return {std::move(felt), key_.study.rendering.stiffness_n_per_mm, source_.plane(),
-            [&model, touch = engine::Bristle()](Vec3 position_mm, Vec3 velocity_mm_s) mutable {
-              return model.force_n(position_mm, velocity_mm_s, touch);
-            }};
-  }
-
-  design::StudyKey key_;
-  engine::Pack pack_;
-  session::StimulusSource source_;
-};
-
-device::AcceptanceOptions options_of(const AcceptArguments& arguments,
-                                     const std::optional<StudyPlanes>& study) {
-  device::AcceptanceOptions options;
-  options.skip.insert(arguments.skip.begin(), arguments.skip.end());
-  options.thermal = arguments.thermal;
-  if (study) options.planes = study->planes();
-  return options;
+device::AcceptanceOptions options_of(const AcceptArguments& arguments) {
+  return {{arguments.skip.begin(), arguments.skip.end()}, arguments.thermal};
 }
 
-std::optional<StudyPlanes> planes_of(const AcceptArguments& arguments) {
-  std::optional<StudyPlanes> study;
-  if (!arguments.planes.empty()) study.emplace(arguments.planes);
-  return study;
-}
-
-void add_spectra(const std::vector<device::SpectrumResult>& spectra,
-                 device::Certificate& certificate) {
-  certificate.spectra.insert(certificate.spectra.end(), spectra.begin(), spectra.end());
-}
-
-int rehearse_on_model(const AcceptArguments& arguments,
-                      const std::vector<device::SpectrumResult>& spectra) {
-  if (!arguments.sound_input.empty()) {
-    throw UsageError("--sound-input: a rehearsal has an accelerometer of its own; leave it out");
-  }
+int rehearse_on_model(const AcceptArguments& arguments) {
   const device::DeviceModel model = device::model_of_device(arguments.emulated);
   const AcceptanceFiles files = files_to_write(arguments, emulated_word(model.name));
-  const std::optional<StudyPlanes> study = planes_of(arguments);
-  device::Acceptance acceptance = device::rehearse_acceptance(model, options_of(arguments, study));
-  add_spectra(spectra, acceptance.certificate);
-  return write_results(arguments, files, std::move(acceptance),
+  return write_results(arguments, files, device::rehearse_acceptance(model, options_of(arguments)),
                        device::ModelledDevice(model).info());
 }
 
-int accept_on_cable(const AcceptArguments& arguments, const AcceptanceFiles& files,
-                    const std::vector<device::SpectrumResult>& spectra) {
-  std::optional<device::Acceptance> acceptance;
-  device::DeviceInfo info;
+int accept_on_cable(const AcceptArguments& arguments) {
+  const AcceptanceFiles files =
+      files_to_write(arguments, device::device_driver(arguments.driver).name);
   try {
-    const std::optional<StudyPlanes> study = planes_of(arguments);
-    std::optional<SoundAccelerometer> accelerometer;
-    if (study) accelerometer.emplace(arguments.sound_input, arguments.full_scale_m_s2);
-    AcceptanceTerminal terminal(arguments.driver, device::device_settings_for(arguments.settings),
-                                accelerometer ? &*accelerometer : nullptr);
-    info = terminal.info();
-    acceptance = device::accept_device(terminal, terminal, options_of(arguments, study));
+    AcceptanceTerminal terminal(arguments.driver, device::device_settings_for(arguments.settings));
+    return write_results(arguments, files,
+                         device::accept_device(terminal, terminal, options_of(arguments)),
+                         terminal.info());
   } catch (const AcceptanceStopped&) {
     if (device::StopOnSignals::asked()) {
       std::cerr << "touchtrial: " << device::StopOnSignals::message() << "; nothing was written\n";
@@ -286,8 +285,6 @@ int accept_on_cable(const AcceptArguments& arguments, const AcceptanceFiles& fil
     }
     throw DeviceError("the acceptance was stopped; nothing was written");
   }
-  add_spectra(spectra, acceptance->certificate);
-  return write_results(arguments, files, std::move(*acceptance), info);
 }
 
 int accept_one(const AcceptArguments& arguments) {
@@ -295,15 +292,7 @@ int accept_one(const AcceptArguments& arguments) {
     throw UsageError(
         "device accept: name a driver, as touchtrial device list does, or a model with --emulate");
   }
-  const std::vector<device::SpectrumResult> spectra = spectra_of(arguments);
-  if (arguments.emulated.empty() && !arguments.planes.empty() && arguments.sound_input.empty()) {
-    throw UsageError(
-        "--planes: needs an accelerometer at the stylus; name its sound input with --sound-input");
-  }
-  if (!arguments.emulated.empty()) return rehearse_on_model(arguments, spectra);
-  const AcceptanceFiles files =
-      files_to_write(arguments, device::device_driver(arguments.driver).name);
-  return accept_on_cable(arguments, files, spectra);
+  return arguments.emulated.empty() ? accept_on_cable(arguments) : rehearse_on_model(arguments);
 }
 
 }  // namespace
@@ -326,32 +315,6 @@ void add_device_accept_command(CLI::App& device, Action& action) {
       ->allow_extra_args(false)
       ->check(CLI::IsMember(std::vector<std::string>(device::kAcceptanceSteps.begin(),
                                                      device::kAcceptanceSteps.end())));
-  command
-      ->add_option("--accelerometer", arguments->records,
-                   "WHAT=FILE, a CSV record at the stylus (time_s,x_m_s2,y_m_s2,z_m_s2) while it "
-                   "felt WHAT; may be repeated")
-      ->type_name("WHAT=FILE")
-      ->allow_extra_args(false);
-  CLI::Option* planes =
-      command
-          ->add_option("--planes", arguments->planes,
-                       "Also stroke the blank plane and every texture of this prepared study, "
-                       "under an accelerometer at the stylus")
-          ->type_name("STUDY");
-  CLI::Option* input =
-      command
-          ->add_option("--sound-input", arguments->sound_input,
-                       "With --planes: the sound card's input that the accelerometer is plugged "
-                       "into, by its name or a part of it")
-          ->type_name("NAME")
-          ->needs(planes);
-  command
-      ->add_option("--full-scale", arguments->full_scale_m_s2,
-                   "With --sound-input: the acceleration in m/s2 at the end of the input's range; "
-                   "one number for one axis, or X,Y,Z")
-      ->type_name("A")
-      ->delimiter(',')
-      ->needs(input);
   command->add_flag("--thermal", arguments->thermal, "Also hold a weight for twenty minutes");
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return accept_one(*arguments); }; });

@@ -1,5 +1,5 @@
 // device bring-up: half an hour with a device that the project does not have, in one file to send
-// back; and what such a file settles.
+// back.
 #include "app/acceptance_terminal.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
@@ -26,14 +26,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kEndedEarly = 1;
-constexpr std::size_t kPrinted = 3;  ///< numbers of a finding; of more their count
 
 struct BringUpArguments {
   std::string program;  ///< what `--version` prints
   std::string driver;
   fs::path settings;
   fs::path out;
-  fs::path read;
   bool facts = false;
   bool json = false;
 };
@@ -59,87 +57,15 @@ std::string steps_line(const device::BringUp& record) {
   return open.empty() ? "" : fmt::format("steps not done: {}\n", fmt::join(open, ", "));
 }
 
-std::string finding_line(const device::Finding& finding) {
-  std::string value = finding.word;
-  if (finding.numbers.size() > kPrinted) {
-    value = fmt::format("{} values", finding.numbers.size());
-  } else if (!finding.numbers.empty()) {
-    value = fmt::format("{:.4g} {}", fmt::join(finding.numbers, ", "), finding.unit);
-  }
-  return fmt::format("{}: {}: {}\n", name_of(finding.step), finding.name, value);
-}
-
-std::string identity_line(const device::BringUp& record) {
-  std::string text = record.driver + (record.model.empty() ? "" : ": " + record.model);
-  if (!record.firmware.empty()) text += ", firmware " + record.firmware;
-  if (!record.library.empty()) text += ", library " + record.library;
-  if (!record.device_mark.empty()) text += ", mark " + record.device_mark;
-  return text + "; " + record.program + "\n";
-}
-
-std::string facts_text(const std::vector<const device::UnverifiedFact*>& facts,
-                       const std::string& title) {
-  std::string text = title + ":" + (facts.empty() ? " nothing" : "") + "\n";
-  for (const device::UnverifiedFact* fact : facts) {
-    text += fmt::format("  {}: {}\n", fact->id, fact->what);
-  }
-  return text;
-}
-
-/// Facts of a driver that a file settles, or does not.
-struct Verdict {
-  std::vector<const device::UnverifiedFact*> settled;
-  std::vector<const device::UnverifiedFact*> open;
-};
-
-Verdict verdict_of(const device::BringUp& record) {
-  Verdict verdict;
-  for (const device::UnverifiedFact& fact : device::device_driver(record.driver).unverified) {
-    (record.settles(fact) ? verdict.settled : verdict.open).push_back(&fact);
-  }
-  return verdict;
-}
-
-nlohmann::ordered_json ids_of(const std::vector<const device::UnverifiedFact*>& facts) {
-  nlohmann::ordered_json ids = nlohmann::ordered_json::array();
-  for (const device::UnverifiedFact* fact : facts) ids.push_back(fact->id);
-  return ids;
-}
-
-int read_file_of_bring_up(const BringUpArguments& arguments) {
-  const device::BringUp record = device::read_bring_up(arguments.read);
-  const Verdict verdict = verdict_of(record);
-  if (arguments.json) {
-    print(json_text(nlohmann::ordered_json{{"driver", record.driver},
-                                           {"stand_in", stand_in_of(record)},
-                                           {"ended", name_of(record.ended)},
-                                           {"settled", ids_of(verdict.settled)},
-                                           {"open", ids_of(verdict.open)}}));
-    return 0;
-  }
-  std::string text = identity_line(record);
-  if (const std::string stand_in = stand_in_of(record); !stand_in.empty()) {
-    text += "STAND-IN, NO HARDWARE: " + stand_in + "; it settles no fact\n";
-  }
-  text += fmt::format("ended: {}{}{}\n", name_of(record.ended), record.why.empty() ? "" : ": ",
-                      record.why);
-  text += steps_line(record);
-  for (const device::Finding& finding : record.findings) text += finding_line(finding);
-  print(text + facts_text(verdict.settled, "settled by this file") +
-        facts_text(verdict.open, "still unverified"));
-  return 0;
-}
-
 int print_facts(const BringUpArguments& arguments) {
   std::string text;
   nlohmann::ordered_json all = nlohmann::ordered_json::object();
   for (const device::DeviceDriver& driver : device::device_drivers()) {
     if (driver.unverified.empty()) continue;
     if (!arguments.driver.empty() && arguments.driver != driver.name) continue;
-    std::vector<const device::UnverifiedFact*> facts;
-    for (const device::UnverifiedFact& fact : driver.unverified) facts.push_back(&fact);
-    text += facts_text(facts, driver.name);
+    text += driver.name + ":\n";
     for (const device::UnverifiedFact& fact : driver.unverified) {
+      text += fmt::format("  {}: {}\n", fact.id, fact.what);
       all[driver.name][fact.id] = fact.what;
     }
   }
@@ -183,7 +109,6 @@ int lead(const BringUpArguments& arguments, const fs::path& out) {
 }
 
 int bring_up_device(const BringUpArguments& arguments) {
-  if (!arguments.read.empty()) return read_file_of_bring_up(arguments);
   if (arguments.facts) return print_facts(arguments);
   if (arguments.driver.empty()) {
     throw UsageError("device bring-up: name a device, as touchtrial device list does");
@@ -212,14 +137,7 @@ void add_device_bring_up_command(CLI::App& device, Action& action) {
   add_driver_argument(*command, "NAME", arguments->driver);
   add_settings_option(*command, arguments->settings);
   command->add_option("--out", arguments->out, "File to write (default: NAME-bring-up.json)");
-  CLI::Option* read =
-      command
-          ->add_option("--read", arguments->read,
-                       "Print what such a file says, which facts it settles and which stay open")
-          ->type_name("FILE")
-          ->check(CLI::ExistingFile);
-  command->add_flag("--facts", arguments->facts, "Print what nobody has verified of the devices")
-      ->excludes(read);
+  command->add_flag("--facts", arguments->facts, "Print what nobody has verified of the devices");
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return bring_up_device(*arguments); }; });
 }

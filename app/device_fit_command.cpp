@@ -1,6 +1,4 @@
 // device fit: whether a study's plane and its stiffness fit a device, even if none is at hand.
-#include "analysis/planning/level_report.hpp"
-#include "analysis/text_figures.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/device_words.hpp"
@@ -14,7 +12,6 @@
 #include "device/workspace_fit.hpp"
 #include "engine/image_file.hpp"
 #include "protocols/design/study.hpp"
-#include "protocols/simulation/stimulus_levels.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -22,7 +19,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 
 #include <fmt/format.h>
@@ -251,40 +247,25 @@ ordered_json stiffness_json(const StudyFit& fit) {
           {"damping_limit_n_s_per_mm", limit_json(fit.limits.max_damping_n_s_per_mm)}};
 }
 
-/// device_words of the models that levels were computed on.
-std::string devices_of(const simulation::StimulusLevels& levels) {
-  std::set<std::string> recorded;
-  for (const simulation::StimulusLevel& level : levels.blank) {
-    device::DeviceModel model;
-    model.name = level.device;
-    recorded.insert(device::words_of_simulated(model));
-  }
-  return analysis::device_words(recorded);
-}
-
 /// The format is documented in docs/devices/README.md.
-std::string fit_json(const design::Study& study, const StudyFit& fit,
-                     const std::optional<simulation::StimulusLevels>& levels) {
-  ordered_json object = {{"study", fit.study}};
-  if (levels) object["simulated_on"] = devices_of(*levels);
-  object.update({{"device", fit.device},
-                 {"driver", fit.driver},
-                 {"model", fit.model ? ordered_json(*fit.model) : ordered_json(nullptr)},
-                 {"fits", fit.fit.fits},
-                 {"margin_mm", device::kWorkspaceMarginMm},
-                 {"plane", plane_json(fit.plane)},
-                 {"workspace", workspace_json(fit)},
-                 {"stiffness", stiffness_json(fit)},
-                 {"orientation", nullptr},
-                 {"origin_mm", nullptr},
-                 {"crop", nullptr}});
+std::string fit_json(const StudyFit& fit) {
+  ordered_json object = {{"study", fit.study},
+                         {"device", fit.device},
+                         {"driver", fit.driver},
+                         {"model", fit.model ? ordered_json(*fit.model) : ordered_json(nullptr)},
+                         {"fits", fit.fit.fits},
+                         {"margin_mm", device::kWorkspaceMarginMm},
+                         {"plane", plane_json(fit.plane)},
+                         {"workspace", workspace_json(fit)},
+                         {"stiffness", stiffness_json(fit)},
+                         {"orientation", nullptr},
+                         {"origin_mm", nullptr},
+                         {"crop", nullptr}};
   if (fit.fit.placement) {
     object["orientation"] = word_for(fit.fit.placement->orientation);
     object["origin_mm"] = vec_json(fit.fit.placement->origin_mm);
   }
   if (!fit.fit.fits && fit.fit.largest.width_px > 0) object["crop"] = plane_json(fit.fit.largest);
-  object["levels"] = nullptr;
-  if (levels) object["levels"] = ordered_json::parse(planning::all_levels_json(study, *levels));
   return json_text(object);
 }
 
@@ -315,35 +296,12 @@ void check_with_certificate(const fs::path& file, const design::Study& study, co
   device::require_stable(certificate, study.rendering.stiffness_n_per_mm);
 }
 
-/// How strong the stimuli are, if the study is prepared here with a key that anybody may read.
-std::optional<simulation::StimulusLevels> levels_here(const design::Study& study,
-                                                      const fs::path& file) {
-  const std::optional<design::StudyKey> key = open_key_of(study, file);
-  if (!key) return std::nullopt;
-  return levels_of_pack(*key);
-}
-
-void print_levels(const design::Study& study,
-                  const std::optional<simulation::StimulusLevels>& levels) {
-  if (!levels) {
-    print("levels of the stimuli: run touchtrial prepare, whose key and pack they need\n");
-    return;
-  }
-  analysis::Document document;
-  document.sections.push_back(planning::levels_section(study, *levels));
-  print(analysis::document_text(document, columns_of_output()));
-}
-
 int fit(const DeviceFitArguments& arguments) {
   const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   const design::Study study = design::load_study(arguments.study);
   const NamedDevice named = device_to_fit(arguments.device, study);
   const StudyFit fit = fit_of(study, named, settings, arguments.orientation);
-  const auto levels = levels_here(study, arguments.study);
-  if (levels && !arguments.json) {
-    print("levels " + analysis::simulated_on_line(devices_of(*levels)));
-  }
-  print(arguments.json ? fit_json(study, fit, levels) : fit_text(fit));
+  print(arguments.json ? fit_json(fit) : fit_text(fit));
   if (!fit.fit.fits) {
     throw DeviceError(device::misfit_text(fit.device, fit.plane, *fit.workspace, fit.fit));
   }
@@ -353,7 +311,6 @@ int fit(const DeviceFitArguments& arguments) {
     check_with_certificate(arguments.certificate.empty() ? usual : arguments.certificate, study,
                            fit);
   }
-  if (!arguments.json) print_levels(study, levels);
   const std::string warning = device::check_stiffness(fit.rendered, fit.limits);
   if (!warning.empty()) spdlog::warn("{}", warning);
   return 0;

@@ -9,9 +9,6 @@
 
 namespace touchtrial::app {
 
-/// The names of a report's faults: "device (link_lost)", or "none".
-[[nodiscard]] std::string fault_names(const device::ServoReport& report);
-
 /// What went wrong, and the remedy: "the device no longer answers; check its cable and power".
 [[nodiscard]] std::string fault_in_words(const device::ServoReport& report);
 

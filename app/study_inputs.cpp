@@ -311,18 +311,6 @@ void refuse_other_key(const std::filesystem::path& path, const design::StudyKey&
   }
 }
 
-std::optional<design::StudyKey> open_key_of(const design::Study& study,
-                                            const std::filesystem::path& file) {
-  const design::PackPlace place = pack_place_for(file, {});
-  if (!is_there(place.key) || design::is_protected(place.key) ||
-      !is_there(place.pack / "pack.json")) {
-    return std::nullopt;
-  }
-  design::StudyKey key = design::rekeyed(design::load_study_key(place.key), study);
-  key.pack_folder = place.pack;
-  return key;
-}
-
 simulation::StimulusLevels levels_of_pack(const design::StudyCodes& key) {
   const engine::Pack pack(key.pack_folder);
   const session::StimulusSource source(pack, key.study.rendering);

@@ -116,12 +116,6 @@ void save_station_files(const design::StudyKey& key, const design::PackPlace& pl
 /// \throws as plane_of and prepare_pack
 void prepare_simulated_pack(const design::StudyKey& key);
 
-/// The key of a study that is prepared beside its file, with the study as it is now, if anybody may
-/// read the key.
-/// \return nothing if key or pack are not there, or the key is under a passphrase
-[[nodiscard]] std::optional<design::StudyKey> open_key_of(const design::Study& study,
-                                                          const std::filesystem::path& file);
-
 /// The levels of a study's stimuli (docs/perception.md), on the device that it names, else on all
 /// that the program ships, with all of the processor's cores.
 /// \throws FileError if the key's pack is not there or lacks a stimulus

@@ -15,7 +15,7 @@
 #include "engine/rendering/texture_field.hpp"
 #include "protocols/session/exploration.hpp"
 #include "protocols/store/trace.hpp"
-#include "tests/device/falcon/falcon_inverse.hpp"
+#include "tests/device/falcon/emulator/falcon_legs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -98,9 +98,8 @@ std::vector<device::falcon::PerLeg> readings_of_a_stroke() {
     if (norm(place_mm) > 30.0) heading = -1.0 * place_mm;
     heading = (1.0 / norm(heading)) * heading;
     place_mm = place_mm + kStep_mm * heading;
-    const auto legs =
-        device::falcon::inverse_kinematics(device::falcon::to_native_m(place_mm)).value();
-    readings.push_back({legs[0].theta1_rad, legs[1].theta1_rad, legs[2].theta1_rad});
+    readings.push_back(
+        device::falcon::reference_theta1(device::falcon::to_native_m(place_mm)).value());
   }
   return readings;
 }

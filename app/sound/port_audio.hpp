@@ -1,13 +1,11 @@
-/// \file PortAudio, for outputs and inputs of the computer's sound card.
+/// \file PortAudio, for the computer's sound card.
 #pragma once
 
 #include "core/errors.hpp"
-#include "core/text.hpp"
 #include "device/platform/dynamic_library.hpp"
 
 #include <cstdio>
 #include <string>
-#include <string_view>
 
 #include <fcntl.h>
 #include <portaudio.h>
@@ -42,7 +40,7 @@ class QuietErrors {
 /// PortAudio, which is loaded for the first sound, because no other command needs it (decision 47).
 class PortAudio {
  public:
-  PortAudio() { insist(initialize_(), "cannot be initialised", kPlugIn); }
+  PortAudio() { insist(initialize_(), "cannot be initialised"); }
   ~PortAudio() {
     const QuietErrors quiet;
     terminate_();
@@ -55,52 +53,23 @@ class PortAudio {
     PaStream* stream = nullptr;
     // One channel: the system sends it to both ears.
     insist(open_(&stream, 0, 1, paFloat32, rate_hz, paFramesPerBufferUnspecified, callback, data),
-           "the output cannot be opened", kPlugIn);
+           "the output cannot be opened");
     return stream;
-  }
-  /// An input by its name or a part of it, not started yet.
-  /// \throws DeviceError naming the inputs that there are if none has this name and these channels
-  [[nodiscard]] PaStream* opened_input(const std::string& name, int channels,
-                                       PaStreamCallback* callback, void* data,
-                                       double rate_hz) const {
-    std::string others;
-    for (PaDeviceIndex i = 0; i < count_(); ++i) {
-      const PaDeviceInfo* device = info_(i);
-      if (device == nullptr || device->maxInputChannels < channels) continue;
-      if (std::string_view(device->name).find(name) == std::string_view::npos) {
-        others += (others.empty() ? "" : ", ") + std::string(device->name);
-        continue;
-      }
-      const PaStreamParameters input{i, channels, paFloat32, device->defaultHighInputLatency,
-                                     nullptr};
-      PaStream* stream = nullptr;
-      insist(open_any_(&stream, &input, nullptr, rate_hz, paFramesPerBufferUnspecified, paClipOff,
-                       callback, data),
-             "the input cannot be opened", kOtherInput);
-      return stream;
-    }
-    throw DeviceError(one_line(
-        "sound: no input with " + std::to_string(channels) + " channels is called '" + name +
-        "'; " + (others.empty() ? "there is none at all: connect one" : "there are: " + others)));
   }
   void start(PaStream* stream) const {
     const PaError started = start_(stream);
     if (started != paNoError) close_(stream);
-    insist(started, "it cannot be started", kPlugIn);
+    insist(started, "it cannot be started");
   }
-  void stop(PaStream* stream) const noexcept { stop_(stream); }
   void close(PaStream* stream) const noexcept { close_(stream); }
   [[nodiscard]] bool is_active(PaStream* stream) const noexcept { return is_active_(stream) == 1; }
 
  private:
-  static constexpr const char* kPlugIn =
-      "connect headphones, and check whether another program uses the sound card";
-  static constexpr const char* kOtherInput =
-      "check its rate and channels, and whether another program uses it";
-
-  void insist(PaError error, const char* what, const char* remedy) const {
+  void insist(PaError error, const char* what) const {
     if (error == paNoError) return;
-    throw DeviceError(std::string("sound: ") + what + ": " + error_text_(error) + "; " + remedy);
+    throw DeviceError(
+        std::string("sound: ") + what + ": " + error_text_(error) +
+        "; connect headphones, and check whether another program uses the sound card");
   }
   template <typename Function>
   [[nodiscard]] Function* named(const char* name) const {
@@ -114,10 +83,6 @@ class PortAudio {
   decltype(&Pa_GetErrorText) error_text_ = named<decltype(Pa_GetErrorText)>("Pa_GetErrorText");
   decltype(&Pa_OpenDefaultStream) open_ =
       named<decltype(Pa_OpenDefaultStream)>("Pa_OpenDefaultStream");
-  decltype(&Pa_GetDeviceCount) count_ = named<decltype(Pa_GetDeviceCount)>("Pa_GetDeviceCount");
-  decltype(&Pa_GetDeviceInfo) info_ = named<decltype(Pa_GetDeviceInfo)>("Pa_GetDeviceInfo");
-  decltype(&Pa_OpenStream) open_any_ = named<decltype(Pa_OpenStream)>("Pa_OpenStream");
-  decltype(&Pa_StopStream) stop_ = named<decltype(Pa_StopStream)>("Pa_StopStream");
   decltype(&Pa_StartStream) start_ = named<decltype(Pa_StartStream)>("Pa_StartStream");
   decltype(&Pa_CloseStream) close_ = named<decltype(Pa_CloseStream)>("Pa_CloseStream");
   decltype(&Pa_IsStreamActive) is_active_ = named<decltype(Pa_IsStreamActive)>("Pa_IsStreamActive");

@@ -24,9 +24,6 @@ constexpr double kLeastSwingMm = 0.15;
 constexpr double kStepsOfSwing = 3.0;
 constexpr double kNoisesOfSwing = 4.0;
 constexpr double kLeastContactS = 1.0;
-constexpr double kSettledS = 2.0;
-constexpr double kLeastRecordS = 1.0;
-constexpr double kLeastStrokedS = 6.0;
 constexpr int kWarmMinutes = 20;
 constexpr double kMinuteS = 60.0;
 
@@ -78,7 +75,7 @@ class Procedure {
     certificate_.scale = info_.scale;
   }
 
-  Acceptance run() {
+  Certificate run() {
     try {
       listen();
       push();
@@ -86,7 +83,6 @@ class Procedure {
       weigh();
       shake();
       press();
-      feel_planes();
       if (options_.thermal) warm();
     } catch (const EndOfAcceptance& end) {
       missed("everything that follows", end.why);
@@ -96,7 +92,7 @@ class Procedure {
     }
     if (!options_.thermal) missed("force after twenty minutes", "not asked for (--thermal)");
     put_newtons_right();
-    return {std::move(certificate_), std::move(curves_)};
+    return std::move(certificate_);
   }
 
  private:
@@ -117,12 +113,6 @@ class Procedure {
     if (found != certificate_.axes.end()) return *found;
     certificate_.axes.push_back({.axis = axis});
     return certificate_.axes.back();
-  }
-  AxisCurves& curves_of(DeviceAxis axis) {
-    const auto found = std::ranges::find(curves_, axis, &AxisCurves::axis);
-    if (found != curves_.end()) return *found;
-    curves_.push_back({.axis = axis});
-    return curves_.back();
   }
   [[nodiscard]] double step_mm() const {
     return certificate_.step_mm ? certificate_.step_mm->value : 0.0;
@@ -207,7 +197,6 @@ class Procedure {
       result.friction_n = strokes.value->friction_n;
       support_n_ =
           support_n_ + (*result.load_n - dot(support_n_, direction_of(axis))) * direction_of(axis);
-      curves_of(axis).loop = strokes.value->loop;
       person_.tell(fmt::format("axis {}: friction {}, the handle's own load {:.2f} N",
                                name_of(axis), words_of(*result.friction_n, 2, "N"),
                                *result.load_n));
@@ -273,7 +262,6 @@ class Procedure {
     } else {
       result.delay_ms = figures.delay_ms;
     }
-    curves_of(result.axis).by_delay = figures.by_delay;
     person_.tell(fmt::format("axis {}: mass {}, {:.0f} % of the motion unexplained",
                              name_of(result.axis), words_of(figures.mass_kg, 3, "kg"),
                              100.0 * figures.unexplained));
@@ -329,68 +317,6 @@ class Procedure {
                                  ? fmt::format(", swings at {:.2f} N/mm", wall.oscillates_n_per_mm)
                                  : "",
                              wall.ended));
-  }
-
-  /// What the stylus gets of every plane, and what the accelerometer reads if nothing moves it.
-  void feel_planes() {
-    Accelerometer* const accelerometer = bench_.accelerometer();
-    if (options_.planes.empty() || accelerometer == nullptr) return;
-    if (!consents({"planes", Stance::lying, DeviceAxis::y,
-                   "Hold the handle still; no force acts for 4 s. This tells the accelerometer's "
-                   "own noise."},
-                  "accelerations at the stylus")) {
-      return;
-    }
-    Listening rest(kRestRunS);
-    record("still", "held still", rest, *accelerometer);
-    for (const FeltPlane& plane : options_.planes) {
-      const std::string what = "accelerations on " + plane.felt;
-      if (!certificate_.wall || certificate_.wall->stable_n_per_mm < plane.stiffness_n_per_mm) {
-        missed(what, fmt::format("no wall of {:.2f} N/mm was shown to be stable",
-                                 plane.stiffness_n_per_mm));
-        continue;
-      }
-      if (!consents({"planes", Stance::stroking, DeviceAxis::y,
-                     fmt::format("Hold the handle lightly in the middle. 3 mm below it is {}: "
-                                 "stroke it to and fro for 12 s, as a participant would, and do "
-                                 "not lift the handle.",
-                                 plane.felt)},
-                    what)) {
-        continue;
-      }
-      StrokedPlane run(plane, least_swing_mm(), forces_.hold_n);
-      if (!record("plane", plane.felt, run, *accelerometer)) continue;
-      if (run.oscillated() || run.contact_s() < kLeastStrokedS) {
-        certificate_.spectra.pop_back();
-        missed(what, run.oscillated() ? "the plane began to swing" : "nobody stroked it");
-      }
-    }
-  }
-
-  /// \return whether there is a spectrum, the last of the certificate's
-  bool record(const std::string& name, const std::string& felt, Measurement& run,
-              Accelerometer& accelerometer) {
-    accelerometer.start();
-    runs_.measure(name, run);
-    AccelerometerRecord record = accelerometer.stop();
-    // The beginning is the way down to the plane.
-    const auto before = static_cast<std::size_t>(kSettledS * record.rate_hz);
-    std::vector<Vec3>& samples = record.acceleration_m_s2;
-    samples.erase(samples.begin(),
-                  samples.begin() + static_cast<std::ptrdiff_t>(std::min(before, samples.size())));
-    const std::string what = "accelerations on " + felt;
-    if (record.overdriven) {
-      missed(what, "the accelerometer's input was overdriven; turn its gain down");
-      return false;
-    }
-    if (static_cast<double>(samples.size()) < kLeastRecordS * record.rate_hz) {
-      missed(what, "the accelerometer recorded less than a second");
-      return false;
-    }
-    certificate_.spectra.push_back({felt, acceleration_bands(record)});
-    person_.tell(
-        fmt::format("{}: {:.3f} m/s2 in all bands", felt, certificate_.spectra.back().all_m_s2()));
-    return true;
   }
 
   /// Holds a load along y for twenty minutes; the force that it needs tells what warm motors lose.
@@ -453,7 +379,6 @@ class Procedure {
   HandleRuns runs_;
   Vec3 support_n_;  ///< commanded, for the handle's own load
   Certificate certificate_;
-  std::vector<AxisCurves> curves_;
 };
 
 }  // namespace
@@ -475,8 +400,8 @@ AcceptanceForces acceptance_forces(const DeviceInfo& device, const SafetyLimits&
   return forces;
 }
 
-Acceptance accept_device(AcceptanceBench& bench, AcceptancePerson& person,
-                         const AcceptanceOptions& options) {
+Certificate accept_device(AcceptanceBench& bench, AcceptancePerson& person,
+                          const AcceptanceOptions& options) {
   return Procedure(bench, person, options).run();
 }
 

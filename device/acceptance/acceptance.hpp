@@ -2,7 +2,6 @@
 /// what the results are. Source: docs/devices/acceptance.md.
 #pragma once
 
-#include "device/acceptance/accelerometer.hpp"
 #include "device/acceptance/certificate.hpp"
 #include "device/acceptance/measurement.hpp"
 #include "device/safety/safety_limits.hpp"
@@ -32,13 +31,12 @@ enum class Stance {
   free,      ///< brings it to the middle and lets go
   loaded,    ///< the same with a weight on it
   pressing,  ///< presses it down on a floor
-  stroking,  ///< strokes a plane to and fro, as in a session
   guarding,  ///< holds it firmly and watches
 };
 
 /// What is to be done before a run.
 struct Prompt {
-  std::string_view step;  ///< one of kAcceptanceSteps, "planes" or "thermal"
+  std::string_view step;  ///< one of kAcceptanceSteps, or "thermal"
   Stance stance = Stance::lying;
   DeviceAxis axis = DeviceAxis::y;  ///< of the run, where it has one
   std::string text;                 ///< for the person
@@ -79,8 +77,6 @@ class AcceptanceBench {
   /// \param name  of the run, at most 8 letters
   /// \throws touchtrial::Error if a person or a signal stopped it
   [[nodiscard]] virtual ServoReport run(const std::string& name, Measurement& measurement) = 0;
-  /// What records at the stylus; null: nothing.
-  [[nodiscard]] virtual Accelerometer* accelerometer() { return nullptr; }
   /// The same, while the system suspends the program for two seconds.
   /// \return nothing where that is not possible
   [[nodiscard]] virtual std::optional<ServoReport> run_suspended(Measurement& /*measurement*/) {
@@ -90,21 +86,7 @@ class AcceptanceBench {
 
 struct AcceptanceOptions {
   std::set<std::string, std::less<>> skip{};  ///< of kAcceptanceSteps
-  /// Planes to stroke under the bench's accelerometer, the blank one first.
-  std::vector<FeltPlane> planes{};
-  bool thermal = false;  ///< twenty minutes under a load
-};
-
-/// Curves of one axis, for pictures.
-struct AxisCurves {
-  DeviceAxis axis = DeviceAxis::y;
-  std::vector<std::pair<double, double>> loop{};      ///< StrokeFigures::loop
-  std::vector<std::pair<double, double>> by_delay{};  ///< ShakeFigures::by_delay
-};
-
-struct Acceptance {
-  Certificate certificate;  ///< `program`, `made` and `emulated` are the caller's
-  std::vector<AxisCurves> curves;
+  bool thermal = false;                       ///< twenty minutes under a load
 };
 
 /// The greatest force of a push, of a shake and of a weight on this device.
@@ -118,8 +100,9 @@ struct AcceptanceForces {
                                                  const SafetyLimits& limits) noexcept;
 
 /// Runs the acceptance. A wrong sign and a fault end it at once, with a certificate that says so.
+/// \return without `program`, `made` and `emulated`, which are the caller's
 /// \throws whatever bench and person throw
-[[nodiscard]] Acceptance accept_device(AcceptanceBench& bench, AcceptancePerson& person,
-                                       const AcceptanceOptions& options);
+[[nodiscard]] Certificate accept_device(AcceptanceBench& bench, AcceptancePerson& person,
+                                        const AcceptanceOptions& options);
 
 }  // namespace touchtrial::device

@@ -189,15 +189,6 @@ ordered_json json_of(const AxisResult& axis) {
   return object;
 }
 
-ordered_json json_of(const SpectrumResult& spectrum) {
-  ordered_json bands = ordered_json::array();
-  for (const BandResult& band : spectrum.bands) {
-    bands.push_back({{"from_hz", band.from_hz},
-                     {"to_hz", band.to_hz},
-                     {"acceleration_m_s2", band.acceleration_m_s2}});
-  }
-  return {{"felt", spectrum.felt}, {"bands", bands}};
-}
 ///@}
 
 /// \name Reading
@@ -312,18 +303,6 @@ WarmResult read_warm(const JsonValue& place) {
           read_if(object, "before_c", read_signed), read_if(object, "after_c", read_signed)};
 }
 
-SpectrumResult read_spectrum(const JsonValue& place) {
-  const JsonObject object = place.object({"felt", "bands"});
-  SpectrumResult spectrum{object.at("felt").text(), {}};
-  for (const JsonValue& item : object.at("bands").items(0, kMostEntries)) {
-    const JsonObject band = item.object({"from_hz", "to_hz", "acceleration_m_s2"});
-    spectrum.bands.push_back({band.at("from_hz").number(kPositive),
-                              band.at("to_hz").number(kPositive),
-                              band.at("acceleration_m_s2").number(kPositive)});
-  }
-  return spectrum;
-}
-
 std::vector<AxisResult> read_axis_results(const JsonValue& place) {
   std::vector<AxisResult> axes;
   for (const JsonValue& item : place.items(0, kDeviceAxes.size())) {
@@ -339,10 +318,9 @@ std::vector<AxisResult> read_axis_results(const JsonValue& place) {
 Certificate read_acceptance(const JsonValue& place) {
   // The last key is of the former kind, which is then refused by its kind.
   const JsonObject object = place.object(
-      {"kind",     "driver",   "model",       "serial",       "firmware", "program",
-       "made",     "emulated", "force_scale", "length_scale", "fault",    "rest",
-       "step_mm",  "axes",     "wall",        "warm",         "spectra",  "not_measured",
-       "failures", "passed",   "observed"});
+      {"kind",     "driver",      "model",        "serial",   "firmware", "program", "made",
+       "emulated", "force_scale", "length_scale", "fault",    "rest",     "step_mm", "axes",
+       "wall",     "warm",        "not_measured", "failures", "passed",   "observed"});
   if (object.at("kind").text() != kCertificateKind) {
     object.at("kind").refuse("must be " + in_quotes(kCertificateKind) +
                              "; make a certificate with touchtrial device accept");
@@ -362,9 +340,6 @@ Certificate read_acceptance(const JsonValue& place) {
   certificate.axes = read_axis_results(object.at("axes"));
   certificate.wall = read_if(object, "wall", read_wall);
   certificate.warm = read_if(object, "warm", read_warm);
-  for (const JsonValue& item : object.at("spectra").items(0, kMostEntries)) {
-    certificate.spectra.push_back(read_spectrum(item));
-  }
   for (const JsonValue& item : object.at("not_measured").items(0, kMostEntries)) {
     const JsonObject one = item.object({"what", "why"});
     certificate.not_measured.push_back({one.at("what").text(), one.at("why").text()});
@@ -442,12 +417,6 @@ double Certificate::largest_scale() const {
   return largest > 0.0 ? largest : 1.0;
 }
 
-double SpectrumResult::all_m_s2() const {
-  double squares = 0.0;
-  for (const BandResult& band : bands) squares += band.acceleration_m_s2 * band.acceleration_m_s2;
-  return std::sqrt(squares);
-}
-
 std::optional<Measured> Certificate::mean_of(std::optional<Measured> AxisResult::*part) const {
   Measured sum;
   int n = 0;
@@ -465,8 +434,6 @@ std::optional<Measured> Certificate::mean_of(std::optional<Measured> AxisResult:
 std::string certificate_json(const Certificate& certificate) {
   ordered_json axes = ordered_json::array();
   for (const AxisResult& axis : certificate.axes) axes.push_back(json_of(axis));
-  ordered_json spectra = ordered_json::array();
-  for (const SpectrumResult& one : certificate.spectra) spectra.push_back(json_of(one));
   ordered_json not_measured = ordered_json::array();
   for (const NotMeasured& one : certificate.not_measured) {
     not_measured.push_back({{"what", one.what}, {"why", one.why}});
@@ -487,7 +454,6 @@ std::string certificate_json(const Certificate& certificate) {
   object["axes"] = axes;
   put_if(object, "wall", certificate.wall);
   put_if(object, "warm", certificate.warm);
-  object["spectra"] = spectra;
   object["not_measured"] = not_measured;
   object["failures"] = certificate.failures();
   object["passed"] = certificate.passed();

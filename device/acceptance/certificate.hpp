@@ -92,22 +92,6 @@ struct WarmResult {
   std::optional<double> after_c{};
 };
 
-/// Accelerations at the stylus in a band, from an accelerometer.
-struct BandResult {
-  double from_hz = 0.0;
-  double to_hz = 0.0;
-  double acceleration_m_s2 = 0.0;  ///< root mean square
-};
-/// What SpectrumResult::felt calls the plane without a texture.
-inline constexpr std::string_view kBlankPlane = "the blank plane";
-struct SpectrumResult {
-  std::string felt;  ///< kBlankPlane, "held still", or what a person names, as a texture's label
-  std::vector<BandResult> bands;
-
-  /// \return the root mean square in all bands
-  [[nodiscard]] double all_m_s2() const;
-};
-
 /// What was not measured, and why.
 struct NotMeasured {
   std::string what;
@@ -129,7 +113,6 @@ struct Certificate {
   std::vector<AxisResult> axes{};  ///< those that were tried, in the order of kDeviceAxes
   std::optional<WallResult> wall{};
   std::optional<WarmResult> warm{};
-  std::vector<SpectrumResult> spectra{};
   std::vector<NotMeasured> not_measured{};
 
   /// \return why the device is refused, a line each; empty: it passed. The rest, the signs, the

@@ -26,12 +26,7 @@ ServoReport HandleRuns::measure(const std::string& name, Measurement& measuremen
 }
 
 void HandleRuns::require_no_fault(const ServoReport& report, const std::string& name) {
-  if (report.end != ServoEnd::fault) return;
-  std::string fault(name_of(report.fault));
-  if (report.device_fault != DeviceFault::none) {
-    fault += " (" + std::string(name_of(report.device_fault)) + ")";
-  }
-  throw DeviceFailed{fault, name};
+  if (report.end == ServoEnd::fault) throw DeviceFailed{fault_names(report), name};
 }
 
 OrWhy<Measured> HandleRuns::encoder_step() {

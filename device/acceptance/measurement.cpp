@@ -1,7 +1,5 @@
 #include "device/acceptance/measurement.hpp"
 
-#include "device/placed_device.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -278,28 +276,6 @@ Vec3 WallTrial::next_n(const DeviceSample& sample, double time_s) noexcept {
   if (height_mm >= 0.0) return {};
   contact_s_ += kServoTickS;
   return {0.0, -stiffness_ * height_mm, 0.0};
-}
-
-StrokedPlane::StrokedPlane(const FeltPlane& plane, double least_mm, double most_n)
-    : Measurement(kStrokedS, most_n, std::numeric_limits<double>::infinity()),
-      plane_(plane),
-      detector_(least_mm) {}
-
-Vec3 StrokedPlane::next_n(const DeviceSample& sample, double time_s) noexcept {
-  if (time_s >= seconds()) finish();
-  constexpr PlaneOrientation kLying = PlaneOrientation::horizontal;
-  Vec3 place_mm = to_plane_direction(sample.position_mm - start_mm(), kLying);
-  place_mm = place_mm + Vec3{0.5 * plane_.geometry.width_mm(), 0.5 * plane_.geometry.height_mm(),
-                             WallTrial::kDepthMm};
-  const bool swings_now = detector_.swings(place_mm.z, time_s);
-  if (contact_s_ > 0.0 && swings_now) {
-    oscillated_ = true;
-    finish();
-    return {};
-  }
-  if (place_mm.z < 0.0) contact_s_ += kServoTickS;
-  return to_device_direction(
-      plane_.force_n(place_mm, to_plane_direction(sample.velocity_mm_s, kLying)), kLying);
 }
 
 SteadyPush::SteadyPush(double seconds, Vec3 force_n, double reach_mm)

@@ -2,14 +2,12 @@
 /// servo. Source: docs/devices/acceptance.md.
 #pragma once
 
-#include "core/plane_geometry.hpp"
 #include "core/vec.hpp"
 #include "device/servo/servo.hpp"
 
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -254,37 +252,6 @@ class WallTrial final : public Measurement {
   double stiffness_;
   SwingDetector detector_;
   ReboundDetector rebounds_;
-  double contact_s_ = 0.0;
-  bool oscillated_ = false;
-};
-
-/// A plane that a person strokes: a texture, or the wall without one.
-struct FeltPlane {
-  std::string felt;  ///< as the certificate calls it
-  double stiffness_n_per_mm = 0.0;
-  PlaneGeometry geometry;
-  /// In the plane frame, from tick to tick; must not throw or allocate.
-  std::function<Vec3(Vec3 position_mm, Vec3 velocity_mm_s)> force_n;
-};
-
-/// Lays a plane horizontally below the handle's first place, its middle there. A plane that begins
-/// to swing is switched off as WallTrial's is.
-class StrokedPlane final : public Measurement {
- public:
-  static constexpr double kStrokedS = 12.0;
-
-  /// \param plane  outlives the run
-  StrokedPlane(const FeltPlane& plane, double least_mm, double most_n);
-
-  [[nodiscard]] bool oscillated() const noexcept { return oscillated_; }
-  /// Time in contact.
-  [[nodiscard]] double contact_s() const noexcept { return contact_s_; }
-
- private:
-  [[nodiscard]] Vec3 next_n(const DeviceSample& sample, double time_s) noexcept override;
-
-  const FeltPlane& plane_;
-  SwingDetector detector_;
   double contact_s_ = 0.0;
   bool oscillated_ = false;
 };

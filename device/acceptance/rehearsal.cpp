@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <utility>
 
 namespace touchtrial::device {
 namespace {
@@ -15,9 +14,6 @@ constexpr double kLongestWayS = 6.0;
 constexpr double kCarriedMm = 20.0;
 constexpr double kCarriedAfterS = 1.0;
 constexpr double kPressN = 0.7;
-constexpr double kStrokeMm = 15.0;  ///< to either side; 94 mm/s at most
-constexpr double kStrokeS = 1.0;
-constexpr double kStrokeNPerMm = 0.2;
 constexpr double kLettingGoS = 1.8;  ///< within the two seconds that the prompts give
 
 double seconds_of(std::chrono::nanoseconds time) {
@@ -32,26 +28,8 @@ Vec3 same_on_all(double value) {
 
 Rehearsal::Rehearsal(const DeviceModel& model)
     : device_(model), middle_mm_(device_.dynamics().true_position_mm()) {
-  device_.set_hand([this](double time_s, Vec3 position_mm, Vec3 velocity_mm_s) {
-    tip_.moved(velocity_mm_s);
-    return hand(time_s, position_mm);
-  });
-}
-
-void Rehearsal::TipAccelerometer::start() {
-  record_ = {kServoRateHz, {}, false};
-  records_ = true;
-}
-
-AccelerometerRecord Rehearsal::TipAccelerometer::stop() {
-  records_ = false;
-  return std::move(record_);
-}
-
-void Rehearsal::TipAccelerometer::moved(Vec3 velocity_mm_s) {
-  // A tick lasts 1 ms: mm/s of a tick are m/s2.
-  if (records_) record_.acceleration_m_s2.push_back(velocity_mm_s - last_mm_s_);
-  last_mm_s_ = velocity_mm_s;
+  device_.set_hand(
+      [this](double time_s, Vec3 position_mm, Vec3) { return hand(time_s, position_mm); });
 }
 
 ServoReport Rehearsal::run(const std::string& /*name*/, Measurement& measurement) {
@@ -116,13 +94,6 @@ DeviceDynamics::Outside Rehearsal::hand(double time_s, Vec3 position_mm) const {
       return {hand.force_n + sign * weight_n_ * direction_of(axis_),
               weight_n_ / kStandardGravityMS2, hand.damping_n_s_per_mm};
     }
-    case Stance::stroking: {
-      const double phase = 2.0 * std::acos(-1.0) * (time_s - began_s_) / kStrokeS;
-      const double off_way_mm = off_mm.x + kStrokeMm * std::sin(phase);
-      return {weight_carried + Vec3{kStrokeNPerMm * off_way_mm, -kPressN, 0.1 * off_mm.z},
-              0.1,
-              {0.004, 0.008, 0.004}};
-    }
     case Stance::pressing:
       break;
   }
@@ -130,11 +101,11 @@ DeviceDynamics::Outside Rehearsal::hand(double time_s, Vec3 position_mm) const {
       weight_carried + Vec3{0.1 * off_mm.x, -kPressN, 0.1 * off_mm.z}, 0.1, {0.004, 0.008, 0.004}};
 }
 
-Acceptance rehearse_acceptance(const DeviceModel& model, const AcceptanceOptions& options) {
+Certificate rehearse_acceptance(const DeviceModel& model, const AcceptanceOptions& options) {
   Rehearsal rehearsal(model);
-  Acceptance acceptance = accept_device(rehearsal, rehearsal, options);
-  acceptance.certificate.emulated = model.name;
-  return acceptance;
+  Certificate certificate = accept_device(rehearsal, rehearsal, options);
+  certificate.emulated = model.name;
+  return certificate;
 }
 
 }  // namespace touchtrial::device

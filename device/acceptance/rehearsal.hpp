@@ -24,9 +24,6 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
   }
   [[nodiscard]] ServoReport run(const std::string& name, Measurement& measurement) override;
 
-  /// Of the model's tip, each tick.
-  [[nodiscard]] Accelerometer* accelerometer() override { return &tip_; }
-
   [[nodiscard]] Consent ready(const Prompt& prompt) override;
   [[nodiscard]] std::optional<double> weight_n(DeviceAxis axis, double least_n,
                                                double most_n) override;
@@ -38,19 +35,6 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
   [[nodiscard]] const std::vector<std::string>& told() const noexcept { return told_; }
 
  private:
-  /// Differences of the tip's true velocity.
-  class TipAccelerometer final : public Accelerometer {
-   public:
-    void start() override;
-    [[nodiscard]] AccelerometerRecord stop() override;
-    void moved(Vec3 velocity_mm_s);
-
-   private:
-    AccelerometerRecord record_;
-    bool records_ = false;
-    Vec3 last_mm_s_;
-  };
-
   [[nodiscard]] DeviceDynamics::Outside hand(double time_s, Vec3 position_mm) const;
 
   /// A hand that lets go, from the run's beginning on.
@@ -58,7 +42,6 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
 
   ModelledDevice device_;
   SafetyLimits limits_;
-  TipAccelerometer tip_;
   Vec3 middle_mm_;
   Stance stance_ = Stance::lying;
   DeviceAxis axis_ = DeviceAxis::y;
@@ -69,7 +52,7 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
 
 /// Rehearses with a model.
 /// \return with `emulated` set
-[[nodiscard]] Acceptance rehearse_acceptance(const DeviceModel& model,
-                                             const AcceptanceOptions& options);
+[[nodiscard]] Certificate rehearse_acceptance(const DeviceModel& model,
+                                              const AcceptanceOptions& options);
 
 }  // namespace touchtrial::device

@@ -81,22 +81,22 @@ void note_wall(std::span<const ServoSample> samples, BringUp& record) {
     height_um.push_back(std::round(1e3 * at->position_mm.y));
     force_mn.push_back(std::round(1e3 * at->force_n.y));
   }
-  record.note("time", ms);
-  record.note("height", height_um);
-  record.note("force up", force_mn);
+  record.note("time_ms", ms);
+  record.note("height_um", height_um);
+  record.note("force_up_mn", force_mn);
 }
 
 void note_loop(const ServoReport& report, const Listening& run, BringUp& record) {
   const auto ticks = static_cast<double>(report.ticks + report.overruns);
   const double seconds = ticks / (report.rate_hz > 0.0 ? report.rate_hz : kServoRateHz);
-  record.note("ticks", {report.rate_hz});
+  record.note("ticks_hz", {report.rate_hz});
   if (seconds > 0.0 && run.new_readings() > 0) {
-    record.note("new readings", {static_cast<double>(run.new_readings()) / seconds});
+    record.note("new_readings_hz", {static_cast<double>(run.new_readings()) / seconds});
   }
-  record.note("longest gap", {run.longest_gap_ticks() * 1e3 * kServoTickS});
-  record.note("late p50", {report.lateness.p50_us});
-  record.note("late p99", {report.lateness.p99_us});
-  record.note("late worst", {report.lateness.worst_us});
+  record.note("longest_gap_ms", {run.longest_gap_ticks() * 1e3 * kServoTickS});
+  record.note("late_p50_us", {report.lateness.p50_us});
+  record.note("late_p99_us", {report.lateness.p99_us});
+  record.note("late_worst_us", {report.lateness.worst_us});
   record.note("overruns", {static_cast<double>(report.overruns)});
 }
 
@@ -209,12 +209,12 @@ class Steps {
                              ? rest_figures(samples.subspan(kSettledTicks))
                              : std::nullopt;
     if (!figures) return StepOutcome::failed;
-    record_.note("noise", {figures->noise_mm});
-    record_.note("drift", {figures->drift_mm});
+    record_.note("noise_mm", {figures->noise_mm});
+    record_.note("drift_mm", {figures->drift_mm});
     person_.tell(
         fmt::format("noise {:.4f} mm, drift {:.3f} mm; {:.0f} new readings in a second, "
                     "99 % of ticks within {:.0f} us",
-                    figures->noise_mm, figures->drift_mm, record_.number("new readings"),
+                    figures->noise_mm, figures->drift_mm, record_.number("new_readings_hz"),
                     report.lateness.p99_us));
     return StepOutcome::done;
   }
@@ -249,7 +249,7 @@ class Steps {
         person_.tell("that is too little to tell; carry it further");
         continue;
       }
-      record_.note("carried " + name, {moved.x, moved.y, moved.z});
+      record_.note("carried_mm " + name, {moved.x, moved.y, moved.z});
       if (!was_carried_right(record_, axis)) {
         throw WrongSign{fmt::format(
             "the handle was carried {}, and the readings say otherwise; no force was sent",
@@ -257,7 +257,7 @@ class Steps {
       }
       const auto ruler_mm = number_between<double>(
           "\nBy how many mm did it move along the ruler? (Enter: no ruler; q: end): ", 1.0, 500.0);
-      if (ruler_mm) record_.note("ruler " + name, {*ruler_mm});
+      if (ruler_mm) record_.note("ruler_mm " + name, {*ruler_mm});
       return true;
     }
   }
@@ -286,9 +286,9 @@ class Steps {
       const auto side = choose("Towards which side did it push?", kSides);
       if (!side) return false;
       const Vec3 moved = moved_by(run);
-      record_.note("push " + name, {force_n});
+      record_.note("push_n " + name, {force_n});
       record_.note("felt " + name, kSides.at(*side));
-      record_.note("moved " + name, {moved.x, moved.y, moved.z});
+      record_.note("moved_mm " + name, {moved.x, moved.y, moved.z});
       switch (sign_of_push(record_, axis, sign)) {
         case PushSign::right:
           return true;
@@ -308,7 +308,7 @@ class Steps {
     const OrWhy<Measured> step = runs_.encoder_step();
     if (!step.value) return fail(step.why);
     step_mm_ = step.value->value;
-    record_.note("encoder step", {step_mm_});
+    record_.note("encoder_step_mm", {step_mm_});
     person_.tell(fmt::format("encoder step: {:.4f} mm", step_mm_));
     return StepOutcome::done;
   }
@@ -330,7 +330,7 @@ class Steps {
     if (std::min({size.x, size.y, size.z}) < kLeastWayMm) {
       return fail("the handle was moved by less than 1 cm along an axis");
     }
-    note_extent(record_, "reach ", reach);
+    note_extent(record_, "reach_mm ", reach);
     return StepOutcome::done;
   }
 
@@ -339,15 +339,15 @@ class Steps {
     if (!empty.value) return fail(empty.why);
     const double load_n = empty.value->load_n.value;
     const double friction_n = empty.value->friction_n.value;
-    record_.note("load", {load_n});
-    record_.note("friction", {friction_n});
+    record_.note("load_n", {load_n});
+    record_.note("friction_n", {friction_n});
     const OrWhy<WeighResult> weighed =
         runs_.weigh("weight", DeviceAxis::y, {{0.0, load_n, 0.0}, load_n, friction_n}, step_mm_);
     if (!weighed.value) return fail(weighed.why);
     const auto scale = AxisResult{.weight = weighed.value}.scale();
-    record_.note("weight", {weighed.value->expected_n});
-    record_.note("commanded for it", {weighed.value->measured_n});
-    record_.note("force scale and error", {scale->value, scale->error});
+    record_.note("weight_n", {weighed.value->expected_n});
+    record_.note("commanded_for_it_n", {weighed.value->measured_n});
+    record_.note("force_scale_and_error", {scale->value, scale->error});
     return StepOutcome::done;
   }
 
@@ -371,10 +371,10 @@ class Steps {
     if (!run.oscillated() && run.contact_s() < kLeastContactS) {
       return fail("nobody pressed on the floor");
     }
-    record_.note("stiffness", {stiffness_n_per_mm});
+    record_.note("stiffness_n_per_mm", {stiffness_n_per_mm});
     record_.note("wall", run.oscillated() ? "swung" : "steady");
-    record_.note("contact", {run.contact_s()});
-    if (report.delivered_share > 0.0) record_.note("delivered share", {report.delivered_share});
+    record_.note("contact_s", {run.contact_s()});
+    if (report.delivered_share > 0.0) record_.note("delivered_share", {report.delivered_share});
     note_wall(run.samples(), record_);
     return StepOutcome::done;
   }
@@ -391,17 +391,17 @@ class Steps {
     device_failed_ = run.value->device_fault != DeviceFault::none;
     const auto force = choose("What did the force do meanwhile?", kSilences);
     if (!force) return StepOutcome::failed;
-    const std::string without = "without " + std::string(name_of(step));
+    const std::string without = "without_" + std::string(name_of(step));
     const DeviceFault fault = run.value->device_fault;
-    record_.note("force " + without, kSilences.at(*force));
-    record_.note("fault " + without,
+    record_.note("force_" + without, kSilences.at(*force));
+    record_.note("fault_" + without,
                  fault == DeviceFault::none ? name_of(run.value->fault) : name_of(fault));
     return StepOutcome::done;
   }
 
   StepOutcome ask_questions() {
     for (const UnverifiedFact& fact : facts_) {
-      if (fact.evidence != Evidence::answer) continue;
+      if (fact.question.empty()) continue;
       const auto answer = choose(fact.question, fact.answers);
       if (answer) record_.note(fact.id, fact.answers.at(*answer));
     }

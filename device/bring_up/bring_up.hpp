@@ -7,7 +7,6 @@
 #include "device/unverified_fact.hpp"
 
 #include <array>
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -56,9 +55,8 @@ inline constexpr double kConfirmedN = 2.5;
 
 /// What a step found: numbers of one unit, or a word.
 struct Finding {
-  BringUpStep step = BringUpStep::open;
-  std::string name;    ///< unique; of an axis, with " x" or " +x" behind it
-  std::string unit{};  ///< of the numbers
+  std::string
+      name;  ///< unique, with the unit: "noise_mm"; of an axis, with " x" or " +x" behind it
   std::vector<double> numbers{};
   std::string word{};
 };
@@ -89,23 +87,18 @@ struct BringUp {
   [[nodiscard]] const Finding* find(std::string_view name) const noexcept;
   /// \return its first number; 0 if it was not found
   [[nodiscard]] double number(std::string_view name) const noexcept;
-  /// \name Add a finding that a step may have, or replace the one of this name
+  /// \name Add a finding, or replace the one of this name
   ///@{
   void note(const std::string& name, std::vector<double> numbers);
   void note(const std::string& name, std::string_view word);
   ///@}
   /// Whether readings and forces are right on all axes, either way.
   [[nodiscard]] bool signs_confirmed() const;
-  /// Whether it settles a fact of its driver, one way or the other. A stand-in settles none.
-  [[nodiscard]] bool settles(const UnverifiedFact& fact) const;
 };
 
 /// \return why this is no real hardware, as far as the program can know: a phrase; empty: nothing
 ///   says so
 [[nodiscard]] std::string stand_in_of(const DeviceInfo& device, const DeviceSettings& settings);
-
-/// \return the same of what a file says of its device, its own mark first
-[[nodiscard]] std::string stand_in_of(const BringUp& record);
 
 /// \return what a file may say of a device: the serial number's hash, cut to 16 bits, which tells
 ///   two devices apart and fits thousands of serial numbers; texts in which the number was replaced
@@ -123,11 +116,5 @@ void bring_up(AcceptanceBench& bench, AcceptancePerson& person,
 
 /// \return the content of its file: JSON
 [[nodiscard]] std::string bring_up_json(const BringUp& record);
-
-/// \param source  names the origin in errors
-/// \throws StudyError with the JSON pointer if it is no such file
-[[nodiscard]] BringUp parse_bring_up(std::string_view text, const std::string& source);
-/// \throws FileError if it cannot be read; as parse_bring_up
-[[nodiscard]] BringUp read_bring_up(const std::filesystem::path& file);
 
 }  // namespace touchtrial::device

@@ -1,20 +1,20 @@
-// What each step of a bring-up may find, what that shows of a device's facts, and what does not
-// count.
+// The record of a bring-up and its file; what it says of signs, and what is no hardware.
 #include "device/bring_up/findings.hpp"
 
 #include "core/hash.hpp"
+#include "core/strict_json.hpp"
+#include "core/text.hpp"
 #include "device/bring_up/bring_up.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <span>
 #include <system_error>
 
 #include <dlfcn.h>
-#include <fmt/format.h>
 #include <link.h>
+#include <nlohmann/json.hpp>
 
 namespace touchtrial::device {
 namespace {
@@ -26,56 +26,6 @@ constexpr std::array<std::string_view, 5> kOutcomeNames = {"not_reached", "inter
                                                            "failed", "done"};
 constexpr std::array<std::string_view, 4> kEndNames = {"stopped", "complete", "wrong_sign",
                                                        "fault"};
-
-constexpr std::array<std::string_view, 9> kAxes = {" x",  " y",  " z",  " +x", " -x",
-                                                   " +y", " -y", " +z", " -z"};
-constexpr std::array<std::string_view, 2> kWallWords = {"steady", "swung"};
-/// Names of SafetyFault and DeviceFault.
-constexpr std::array<std::string_view, 14> kFaults = {
-    "none",     "not_finite",   "emergency_stop",  "not_ready", "overspeed",
-    "stalled",  "stale_sample", "frozen_encoders", "device",    "link_lost",
-    "bad_data", "warm_motors",  "limit_passed",    "driver"};
-
-using enum BringUpStep;
-constexpr std::array kKinds = {
-    FindingKind{open, "peak force", "N"},
-    FindingKind{open, "continuous force", "N"},
-    FindingKind{open, "max stiffness", "N/mm"},
-    FindingKind{open, "max damping", "N s/mm", Evidence::limits},
-    FindingKind{open, "max rate", "Hz"},
-    FindingKind{open, "workspace", "mm"},
-    FindingKind{rest, "noise", "mm"},
-    FindingKind{rest, "drift", "mm"},
-    FindingKind{rest, "ticks", "Hz"},
-    FindingKind{rest, "new readings", "Hz", Evidence::readings},
-    FindingKind{rest, "longest gap", "ms"},
-    FindingKind{rest, "late p50", "us"},
-    FindingKind{rest, "late p99", "us"},
-    FindingKind{rest, "late worst", "us"},
-    FindingKind{rest, "overruns"},
-    FindingKind{ways, "carried", "mm"},
-    FindingKind{ways, "ruler", "mm", Evidence::lengths},
-    FindingKind{push, "push", "N"},
-    FindingKind{push, "felt", "", Evidence::none, kSides},
-    FindingKind{push, "moved", "mm"},
-    FindingKind{steps, "encoder step", "mm"},
-    FindingKind{range, "reach", "mm", Evidence::range},
-    FindingKind{weight, "load", "N"},
-    FindingKind{weight, "friction", "N"},
-    FindingKind{weight, "weight", "N"},
-    FindingKind{weight, "commanded for it", "N"},
-    FindingKind{weight, "force scale and error", "", Evidence::weight},
-    FindingKind{wall, "stiffness", "N/mm"},
-    FindingKind{wall, "contact", "s"},
-    FindingKind{wall, "wall", "", Evidence::wall, kWallWords},
-    FindingKind{wall, "delivered share", "", Evidence::delivered},
-    FindingKind{wall, "time", "ms"},
-    FindingKind{wall, "height", "um"},
-    FindingKind{wall, "force up", "mN"},
-    FindingKind{program, "force without program", "", Evidence::program_silent, kSilences},
-    FindingKind{program, "fault without program", "", Evidence::none, kFaults},
-    FindingKind{cable, "force without cable", "", Evidence::cable_silent, kSilences},
-    FindingKind{cable, "fault without cable", "", Evidence::none, kFaults}};
 
 constexpr double kAgainstMm = 2.0;
 
@@ -89,42 +39,9 @@ Vec3 vec_of(const Finding* finding) {
   return {finding->numbers[0], finding->numbers[1], finding->numbers[2]};
 }
 
-/// What no kind knows is the answer to a question.
 Finding& noted(std::vector<Finding>& findings, const std::string& name) {
   const auto same = std::ranges::find(findings, name, &Finding::name);
-  if (same != findings.end()) return *same;
-  const FindingKind* const kind = kind_of(name);
-  findings.push_back(kind == nullptr ? Finding{questions, name}
-                                     : Finding{kind->step, name, std::string(kind->unit)});
-  return findings.back();
-}
-
-/// Whether numbers of a finding can have been measured.
-bool is_possible(const Finding& finding, Evidence evidence) {
-  const std::vector<double>& n = finding.numbers;
-  switch (evidence) {
-    case Evidence::lengths:
-      return n.size() == 1 && n[0] >= 1.0 && n[0] <= 500.0;
-    case Evidence::range:
-      return n.size() == 2 && n[0] < n[1];
-    case Evidence::weight:
-      return n.size() == 2 && n[0] > 0.0 && n[1] >= 0.0;
-    default:
-      return n.size() == 1 && n[0] > 0.0;
-  }
-}
-
-/// Whether readings of a way or a push, not the end alone, say that a sign is wrong.
-bool found_wrong(const BringUp& record) {
-  return std::ranges::any_of(kDeviceAxes, [&](DeviceAxis axis) {
-    const bool was_carried = norm(vec_of(record.find("carried " + std::string(name_of(axis))))) > 0;
-    const auto is_wrong = [&](int sign) {
-      const Finding* const moved = record.find("moved " + signed_name(sign, axis));
-      return moved != nullptr && moved->numbers.size() == 3 &&
-             sign_of_push(record, axis, sign) == PushSign::wrong;
-    };
-    return (was_carried && !was_carried_right(record, axis)) || is_wrong(1) || is_wrong(-1);
-  });
+  return same == findings.end() ? findings.emplace_back(Finding{name}) : *same;
 }
 
 bool names_a_stand_in(std::string text) {
@@ -174,6 +91,17 @@ bool usb_is_emulated() {
   });
 }
 
+/// Several numbers are a text on one line, where a list would take a line for each.
+nlohmann::ordered_json value_of(const Finding& finding) {
+  if (!finding.word.empty()) return finding.word;
+  if (finding.numbers.size() == 1) return finding.numbers.front();
+  std::string text;
+  for (const double number : finding.numbers) {
+    text += (text.empty() ? "" : " ") + number_text(number);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string_view name_of(BringUpStep step) noexcept {
@@ -184,17 +112,6 @@ std::string_view name_of(StepOutcome outcome) noexcept {
 }
 std::string_view name_of(BringUpEnd end) noexcept {
   return kEndNames.at(static_cast<std::size_t>(end));
-}
-
-const FindingKind* kind_of(std::string_view name) noexcept {
-  const auto named = [](std::string_view wanted) {
-    const auto found = std::ranges::find(kKinds, wanted, &FindingKind::name);
-    return found == kKinds.end() ? nullptr : &*found;
-  };
-  if (const FindingKind* const kind = named(name)) return kind;
-  const std::size_t end = std::min(name.rfind(' '), name.size());
-  const bool is_of_axis = std::ranges::find(kAxes, name.substr(end)) != kAxes.end();
-  return is_of_axis ? named(name.substr(0, end)) : nullptr;
 }
 
 const Finding* BringUp::find(std::string_view name) const noexcept {
@@ -221,7 +138,7 @@ std::string signed_name(int sign, DeviceAxis axis) {
 }
 
 bool was_carried_right(const BringUp& record, DeviceAxis axis) {
-  const Vec3 moved_mm = vec_of(record.find("carried " + std::string(name_of(axis))));
+  const Vec3 moved_mm = vec_of(record.find("carried_mm " + std::string(name_of(axis))));
   const double along_mm = dot(moved_mm, direction_of(axis));
   return along_mm > norm(moved_mm - along_mm * direction_of(axis));
 }
@@ -231,7 +148,7 @@ PushSign sign_of_push(const BringUp& record, DeviceAxis axis, int sign) {
   const Finding* const felt = record.find("felt " + name);
   if (felt == nullptr || felt->word == kSides.back()) return PushSign::not_felt;
   const std::size_t pair = axis == DeviceAxis::x ? 0 : axis == DeviceAxis::y ? 2 : 4;
-  const double along_mm = sign * dot(vec_of(record.find("moved " + name)), direction_of(axis));
+  const double along_mm = sign * dot(vec_of(record.find("moved_mm " + name)), direction_of(axis));
   const bool is_right = felt->word == kSides.at(pair + (sign > 0 ? 0 : 1));
   return is_right && along_mm >= -kAgainstMm ? PushSign::right : PushSign::wrong;
 }
@@ -240,25 +157,6 @@ bool BringUp::signs_confirmed() const {
   return std::ranges::all_of(kDeviceAxes, [&](DeviceAxis axis) {
     return was_carried_right(*this, axis) && sign_of_push(*this, axis, 1) == PushSign::right &&
            sign_of_push(*this, axis, -1) == PushSign::right;
-  });
-}
-
-bool BringUp::settles(const UnverifiedFact& fact) const {
-  if (!stand_in_of(*this).empty() || fact.evidence == Evidence::none) return false;
-  if (fact.evidence == Evidence::answer) {
-    return outcome(questions) == StepOutcome::done && find(fact.id) != nullptr;
-  }
-  if (fact.evidence == Evidence::signs) {
-    const bool all_done = outcome(ways) == StepOutcome::done && outcome(push) == StepOutcome::done;
-    return (all_done && signs_confirmed()) ||
-           (ended == BringUpEnd::wrong_sign && found_wrong(*this));
-  }
-  const Evidence evidence = fact.evidence == Evidence::opened ? Evidence::readings : fact.evidence;
-  return std::ranges::any_of(findings, [&](const Finding& finding) {
-    const FindingKind* const kind = kind_of(finding.name);
-    return finding.step != questions && kind != nullptr && kind->shows == evidence &&
-           outcome(finding.step) == StepOutcome::done &&
-           (kind->words.empty() ? is_possible(finding, evidence) : !finding.word.empty());
   });
 }
 
@@ -274,13 +172,6 @@ std::string stand_in_of(const DeviceInfo& device, const DeviceSettings& settings
     return "the library's file or folder has a stand-in's name";
   }
   return usb_is_emulated() ? "a USB bus of the machine is emulated" : "";
-}
-
-std::string stand_in_of(const BringUp& record) {
-  if (!record.stand_in.empty()) return record.stand_in;
-  const bool is_named = names_a_stand_in(record.model) || names_a_stand_in(record.firmware) ||
-                        names_a_stand_in(record.library);
-  return is_named ? "the device or its library calls itself a stand-in" : "";
 }
 
 BringUp bring_up_of(const DeviceInfo& device) {
@@ -306,13 +197,14 @@ BringUp bring_up_of(const DeviceInfo& device) {
   const auto note_known = [&](const char* name, double number) {
     if (number > 0.0) record.note(name, {number});
   };
-  note_known("peak force", device.max_force_n);
-  note_known("continuous force", device.continuous_force_n);
-  note_known("max stiffness", device.max_stiffness_n_per_mm);
+  note_known("peak_force_n", device.max_force_n);
+  note_known("continuous_force_n", device.continuous_force_n);
+  note_known("max_stiffness_n_per_mm", device.max_stiffness_n_per_mm);
   // It counts only beside the stiffness.
-  if (device.max_stiffness_n_per_mm > 0.0) note_known("max damping", device.max_damping_n_s_per_mm);
-  note_known("max rate", device.max_rate_hz);
-  if (device.workspace) note_extent(record, "workspace ", *device.workspace);
+  if (device.max_stiffness_n_per_mm > 0.0)
+    note_known("max_damping_n_s_per_mm", device.max_damping_n_s_per_mm);
+  note_known("max_rate_hz", device.max_rate_hz);
+  if (device.workspace) note_extent(record, "workspace_mm ", *device.workspace);
   record.outcome(BringUpStep::open) = StepOutcome::done;
   return record;
 }
@@ -323,6 +215,30 @@ void note_extent(BringUp& record, const std::string& name, const Workspace& exte
     record.note(name + std::string(name_of(axis)),
                 {dot(extent.least_mm, along), dot(extent.greatest_mm, along)});
   }
+}
+
+std::string bring_up_json(const BringUp& record) {
+  using nlohmann::ordered_json;
+  ordered_json file = {{"kind", "touchtrial device bring-up 2"},
+                       {"program", record.program},
+                       {"driver", record.driver},
+                       {"device_mark", record.device_mark},
+                       {"model", record.model},
+                       {"firmware", record.firmware},
+                       {"library", record.library},
+                       {"stand_in", record.stand_in},
+                       {"scheduling", record.scheduling},
+                       {"memory_locked", record.memory_locked},
+                       {"ended", name_of(record.ended)},
+                       {"why", record.why}};
+  for (std::size_t i = 0; i < kBringUpSteps; ++i) {
+    file["steps"][std::string(kStepNames[i])] = name_of(record.outcomes.at(i));
+  }
+  ordered_json& findings = file["findings"] = ordered_json::array();
+  for (const Finding& finding : record.findings) {
+    findings.push_back({{"name", finding.name}, {"value", value_of(finding)}});
+  }
+  return json_text(file);
 }
 
 }  // namespace touchtrial::device

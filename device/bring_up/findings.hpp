@@ -1,10 +1,9 @@
-/// \file Names and words of a bring-up's findings, and what they say of signs. Private to this folder.
+/// \file Words of a bring-up's findings, and what they say of signs. Private to this folder.
 #pragma once
 
 #include "device/bring_up/bring_up.hpp"
 
 #include <array>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,18 +15,6 @@ inline constexpr std::array<std::string_view, 7> kSides = {"right",       "left"
 /// What a force did while program or cable were gone.
 inline constexpr std::array<std::string_view, 4> kSilences = {
     "gone at once", "gone within a second", "stayed longer", "became stronger"};
-
-/// What a step may find.
-struct FindingKind {
-  BringUpStep step = BringUpStep::open;
-  std::string_view name;                      ///< without an axis
-  std::string_view unit{};                    ///< of its numbers
-  Evidence shows = Evidence::none;            ///< which facts it settles
-  std::span<const std::string_view> words{};  ///< that it may be; empty: it is numbers
-};
-/// \param name  of a finding, with or without an axis
-/// \return null if no step finds it; answers to a driver's questions are none
-[[nodiscard]] const FindingKind* kind_of(std::string_view name) noexcept;
 
 /// \return "+x"
 [[nodiscard]] std::string signed_name(int sign, DeviceAxis axis);

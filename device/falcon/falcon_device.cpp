@@ -187,29 +187,23 @@ DeviceDriver falcon_driver() {
       .nominal_workspace = falcon::kFalconWorkspace,
       .products = {{"falcon", "Novint Falcon", "falcon"}},
       .unverified = {
-          {"signs", "which way positions and forces run on each axis", Evidence::signs},
-          {"lengths", "legs and degrees a count: the sources differ by 1.2 to 1.5 in lengths",
-           Evidence::lengths},
+          {"signs", "which way positions and forces run on each axis"},
+          {"lengths", "legs and degrees a count: the sources differ by 1.2 to 1.5 in lengths"},
           {"zero_angle",
-           "the legs' angle at count 0 (32.99 or 35 degrees), which shifts the middle of the reach",
-           Evidence::range},
-          {"force_scale", "motor values for 1 N m: 6,616, or 3,728, or 10,000", Evidence::weight},
-          {"homing", "whether firmware loads and the axes home as the driver does it",
-           Evidence::opened},
+           "the legs' angle at count 0 (32.99 or 35 degrees), which shifts the middle of the "
+           "reach"},
+          {"force_scale", "motor values for 1 N m: 6,616, or 3,728, or 10,000"},
+          {"homing", "whether firmware loads and the axes home as the driver does it"},
           {"lights",
            "which bit is which light",
-           Evidence::answer,
            "Which light was on before the grip was homed?",
            {"red", "green", "blue", "none"}},
-          {"program_silent", "what the firmware does with the motors when the host falls silent",
-           Evidence::program_silent},
-          {"cable_silent", "what the firmware does with the motors when the USB cable is pulled",
-           Evidence::cable_silent},
-          {"replies", "how late replies come on this port", Evidence::readings},
-          {"beyond_peak", "what the firmware does with motor values beyond 4,095", Evidence::none},
+          {"program_silent", "what the firmware does with the motors when the host falls silent"},
+          {"cable_silent", "what the firmware does with the motors when the USB cable is pulled"},
+          {"replies", "how late replies come on this port"},
+          {"beyond_peak", "what the firmware does with motor values beyond 4,095"},
           {"warm_motors",
-           "how long motors hold which torque, and how warm they get (device accept --thermal)",
-           Evidence::none}}};
+           "how long motors hold which torque, and how warm they get (device accept --thermal)"}}};
 }
 
 }  // namespace touchtrial::device

@@ -14,12 +14,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-class SleepingClock final : public ServoClock {
- public:
-  [[nodiscard]] Time now() noexcept override { return monotonic_now(); }
-  void wait_until(Time time) noexcept override { sleep_until(time); }
-};
-
 constexpr double kMmPerM = 1000.0;
 constexpr double kRateHz = 1e9 / static_cast<double>(Inverse3Device::kPeriod.count());
 /// Radius of the ball that the arm reaches, mm.
@@ -27,9 +21,6 @@ constexpr double kInverse3RadiusMm = 100.0;
 constexpr double kMinverseRadiusMm = 40.0;
 /// A place further from the middle than this is no place of the arm, m.
 constexpr double kFarthestM = 1.0;
-/// The middle of the workspace in the frame of the arm's base, in which services before 3.5 speak,
-/// m. After the positions in the documentation's examples; not verified.
-constexpr Vec3 kCentreFromBaseM = {0.0, -0.12, 0.15};
 /// How often, and after what pause, the configuration is asked for until it is as wanted.
 constexpr int kReadBacks = 20;
 constexpr milliseconds kBetweenReadBacks{10};
@@ -82,12 +73,12 @@ KnownService service_at(const ServiceAddress& http, const std::string& version_a
   }
   if (version.is_known()) return {version, http};
   throw DeviceError("inverse3: the service at " + one_line(http.text()) + " has version " +
-                    version.text() + ", and versions 3.1 to 3.x are known; install 3.5 or later");
+                    version.text() + "; install version 3.5 or a later 3.x");
 }
 
-/// Services before later versions 3.5 have HTTP on a port of its own.
+/// Early versions 3.5 have HTTP on a port of its own.
 /// \return nothing if that port has no HTTP either
-std::optional<KnownService> older_service(const Inverse3Settings& settings,
+std::optional<KnownService> service_apart(const Inverse3Settings& settings,
                                           std::chrono::nanoseconds patience) {
   const ServiceAddress http{settings.host, settings.http_port};
   HttpAnswer answer;
@@ -99,8 +90,7 @@ std::optional<KnownService> older_service(const Inverse3Settings& settings,
   if (answer.status == 200) return service_at(http, answer.body);
   throw DeviceError(one_line("inverse3: the service at " + http.text() +
                              " does not know /version (HTTP " + std::to_string(answer.status) +
-                             "), so it is older than 3.1; install Haply's Inverse service 3.5 or "
-                             "later"));
+                             "), so it is old; install Haply's Inverse service 3.5 or later"));
 }
 
 KnownService find_service(const Inverse3Settings& settings, std::chrono::nanoseconds patience) {
@@ -116,7 +106,7 @@ KnownService find_service(const Inverse3Settings& settings, std::chrono::nanosec
   } catch (const NoService& none) {
     error = none.what();
   }
-  if (auto older = older_service(settings, patience)) return *older;
+  if (auto apart = service_apart(settings, patience)) return *apart;
   throw DeviceError(one_line(error));
 }
 
@@ -221,10 +211,6 @@ std::unique_ptr<HapticDevice> open_inverse3(const DeviceSettings& settings) {
 
 }  // namespace
 
-std::unique_ptr<ServoClock> sleeping_clock() {
-  return std::make_unique<SleepingClock>();
-}
-
 Inverse3Device::Inverse3Device(const Inverse3Settings& settings, Inverse3Options options)
     : settings_(settings),
       options_(std::move(options)),
@@ -233,7 +219,7 @@ Inverse3Device::Inverse3Device(const Inverse3Settings& settings, Inverse3Options
   try {
     const ServiceReport inventory = report_in(service_->answer());
     choose_device(inventory);
-    expect_no_other_session(inventory);
+    expect_no_other_session();
     configure();
   } catch (const BadMessage& error) {
     refuse_answer(address_of(settings_), "what comes", error);
@@ -248,6 +234,7 @@ Inverse3Device::Inverse3Device(const Inverse3Settings& settings, Inverse3Options
 
 Inverse3Device::~Inverse3Device() {
   stopping_.store(true, std::memory_order_release);
+  options_.pace->end();
   thread_.join();
 }
 
@@ -271,20 +258,14 @@ void Inverse3Device::choose_device(const ServiceReport& inventory) {
     throw DeviceError(one_line("inverse3: " + id_ + " has no power; connect its power supply"));
   }
   session_id_ = inventory.session_id;
-  centre_m_ = known_.version.has_filters() ? Vec3{} : kCentreFromBaseM;
   note_status(*device->status);
   describe(device->config.value_or(DeviceConfig{}));
 }
 
 /// Forces of several sessions add up, and only we know what is safe for the hand.
-void Inverse3Device::expect_no_other_session(const ServiceReport& inventory) const {
+void Inverse3Device::expect_no_other_session() const {
   const std::string remedy =
       "; forces of several programs would add up: close the other one (Haply Hub too)";
-  if (!known_.version.has_filters()) {
-    const auto& status = find_device(inventory, id_)->status;
-    if (!status->in_use) return;
-    throw DeviceError(one_line("inverse3: another program uses " + id_ + remedy));
-  }
   const std::vector<std::string> sessions =
       sessions_in(answer_of(known_.http, "/sessions", options_.patience));
   if (sessions.size() <= 1) return;
@@ -308,20 +289,16 @@ DeviceReport Inverse3Device::ask_for_inventory(const std::string& message) {
 }
 
 void Inverse3Device::configure() {
-  DeviceReport device = ask_for_inventory(first_message(known_.version, id_));
-  if (known_.version.has_filters()) {
-    std::string trouble = "the service does not tell its configuration; update it";
-    for (int i = 0; i < kReadBacks && !trouble.empty(); ++i) {
-      if (i > 0) std::this_thread::sleep_for(kBetweenReadBacks);
-      device = ask_for_inventory(inventory_request(known_.version, id_));
-      if (device.config) trouble = trouble_in(*device.config);
-    }
-    if (!trouble.empty()) throw DeviceError(one_line("inverse3: " + trouble));
+  DeviceReport device = ask_for_inventory(first_message(id_));
+  std::string trouble = "the service does not tell its configuration; update it";
+  for (int i = 0; i < kReadBacks && !trouble.empty(); ++i) {
+    if (i > 0) std::this_thread::sleep_for(kBetweenReadBacks);
+    device = ask_for_inventory(inventory_request(id_));
+    if (device.config) trouble = trouble_in(*device.config);
   }
-  if (device.config) {
-    refuse_home_return(*device.config);
-    describe(*device.config);
-  }
+  if (!trouble.empty()) throw DeviceError(one_line("inverse3: " + trouble));
+  refuse_home_return(*device.config);
+  describe(*device.config);
   if (device.status) note_status(*device.status);
   listen_to_events();
 }
@@ -340,11 +317,9 @@ void Inverse3Device::refuse_home_return(DeviceConfig& config) const {
                known_.http.text() + path));
 }
 
-/// Services before 3.5 need not have the channel.
 void Inverse3Device::listen_to_events() try {
   service_->listen_to({settings_.host, settings_.events_port}, options_.patience);
 } catch (const DeviceError&) {
-  if (!known_.version.has_filters()) return;
   throw DeviceError(one_line(
       "inverse3: the service's events, which tell of its emergency brake, do not come at " +
       settings_.host + ':' + std::to_string(settings_.events_port) +
@@ -365,10 +340,10 @@ void Inverse3Device::describe(const DeviceConfig& config) {
 }
 
 void Inverse3Device::exchange_until_stopped() noexcept {
-  ServoClock::Time next = options_.clock->now();
+  LinkPace::Time next = options_.pace->now();
   while (!stopping_.load(std::memory_order_acquire) && link_.fault() == DeviceFault::none) {
-    options_.clock->wait_until(next);
-    next = options_.clock->now() + kPeriod;
+    options_.pace->rest_until(next);
+    next = options_.pace->now() + kPeriod;
     try {
       exchange();
     } catch (const BadMessage&) {
@@ -378,15 +353,15 @@ void Inverse3Device::exchange_until_stopped() noexcept {
     }
   }
   say_farewell();
+  options_.pace->end();
 }
 
 void Inverse3Device::exchange() {
   // Taken even if it is not sent, so that no old force waits in the link.
-  const Vec3 wanted_n = link_.force_to_send(options_.clock->now());
+  const Vec3 wanted_n = link_.force_to_send(options_.pace->now());
   const bool may_push = status_.is_usable() && is_finite(wanted_n);
   const Vec3 sent_n = may_push ? within_reach(wanted_n) : Vec3{};
-  switch (service_->exchange(force_message(known_.version, id_, to_service_axes(sent_n)),
-                             options_.silence)) {
+  switch (service_->exchange(force_message(id_, to_service_axes(sent_n)), options_.silence)) {
     case LinkOutcome::ok:
       break;
     case LinkOutcome::nonsense:
@@ -404,11 +379,10 @@ void Inverse3Device::exchange() {
 }
 
 void Inverse3Device::take(const DeviceReport& report, std::uint32_t buttons) noexcept {
-  const Vec3 place_m = report.position_m - centre_m_;
-  if (norm(place_m) > kFarthestM) return link_.fail(DeviceFault::bad_data);
+  if (norm(report.position_m) > kFarthestM) return link_.fail(DeviceFault::bad_data);
   if (report.status) note_status(*report.status);
   DeviceSample sample;
-  sample.position_mm = kMmPerM * to_device_axes(place_m);
+  sample.position_mm = kMmPerM * to_device_axes(report.position_m);
   sample.velocity_mm_s = kMmPerM * to_device_axes(report.velocity_m_s);
   sample.buttons = buttons;
   sample.ready = status_.is_usable();
@@ -436,7 +410,7 @@ void Inverse3Device::heed(const ServiceEvent& event) noexcept {
 
 void Inverse3Device::say_farewell() noexcept {
   try {
-    const std::string no_force = force_message(known_.version, id_, {});
+    const std::string no_force = force_message(id_, {});
     // A service that answers has taken it: what is still on its way when it closes may be lost.
     bool answers = true;
     for (int i = 0; i < kFarewells; ++i) {
@@ -475,39 +449,28 @@ DeviceDriver inverse3_driver() {
                    {"inverse3x", "Haply Inverse3x"},
                    {"minverse", "Haply Minverse"}},
       .unverified = {
-          {"signs", "which way positions and forces run on each axis", Evidence::signs},
-          {"ports", "whether HTTP, simulation and events answer at the ports of the settings",
-           Evidence::opened},
-          {"filters", "whether force gate and damping stay at 0 after they are read back",
-           Evidence::opened},
-          {"torque_scaling", "what torque scaling does to a force within the limits",
-           Evidence::weight},
-          {"lengths", "whether a millimetre of the service is one at the handle",
-           Evidence::lengths},
-          {"middle", "the middle of the reach in the device's frame", Evidence::range},
-          {"delivered", "whether the force that the service says it exerted is the commanded one",
-           Evidence::delivered},
-          {"readings", "how often a new state comes", Evidence::readings},
-          {"program_silent", "whether the arm goes idle, and how soon, when messages stop",
-           Evidence::program_silent},
-          {"cable_silent", "what the arm does when its cable is pulled", Evidence::cable_silent},
-          {"service_killed", "what the arm does when the service is killed", Evidence::none},
+          {"signs", "which way positions and forces run on each axis"},
+          {"ports", "whether HTTP, simulation and events answer at the ports of the settings"},
+          {"filters", "whether force gate and damping stay at 0 after they are read back"},
+          {"torque_scaling", "what torque scaling does to a force within the limits"},
+          {"lengths", "whether a millimetre of the service is one at the handle"},
+          {"middle", "the middle of the reach in the device's frame"},
+          {"delivered", "whether the force that the service says it exerted is the commanded one"},
+          {"readings", "how often a new state comes"},
+          {"program_silent", "whether the arm goes idle, and how soon, when messages stop"},
+          {"cable_silent", "what the arm does when its cable is pulled"},
+          {"service_killed", "what the arm does when the service is killed"},
           {"peak_force",
            "the largest force, and what the motors can hold: no number is published (device accept "
-           "--thermal)",
-           Evidence::none},
-          {"latency", "the latency of service, USB and motors (device accept, step shake)",
-           Evidence::none},
+           "--thermal)"},
+          {"latency", "the latency of service, USB and motors (device accept, step shake)"},
           {"home_return",
            "the form of the service's answer about home_return",
-           Evidence::answer,
            "Does touchtrial device list or the service say that home return is off?",
            {"off", "on", "not_told"}},
           {"sessions",
-           "the form of the events about sessions, and whether a session that begins later is seen",
-           Evidence::none},
-          {"in_use", "whether in_use is true for one's own session (services before 3.5)",
-           Evidence::none}}};
+           "the form of the events about sessions, and whether a session that begins later is "
+           "seen"}}};
 }
 
 }  // namespace touchtrial::device

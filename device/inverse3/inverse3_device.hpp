@@ -6,7 +6,6 @@
 #include "device/device_settings.hpp"
 #include "device/inverse3/service_link.hpp"
 #include "device/inverse3/service_messages.hpp"
-#include "device/servo/servo_clock.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -17,12 +16,8 @@
 
 namespace touchtrial::device::inverse3 {
 
-/// Sleeps until the time of the next exchange.
-[[nodiscard]] std::unique_ptr<ServoClock> sleeping_clock();
-
 struct Inverse3Options {
-  /// Paces the exchanges. Any thread may ask it for the time.
-  std::unique_ptr<ServoClock> clock = sleeping_clock();
+  std::unique_ptr<LinkPace> pace = std::make_unique<RealLinkPace>();
   /// Of the driver's thread: its priority is a little above that of the servo, which needs its
   /// samples.
   SchedulingRequest scheduling{SchedulingPolicy::fifo, 81, true};
@@ -62,10 +57,10 @@ class Inverse3Device final : public LinkedDevice {
  private:
   [[nodiscard]] DeviceLink& link() const noexcept override { return link_; }
   [[nodiscard]] DeviceLink::Time link_time() const noexcept override {
-    return options_.clock->now();
+    return options_.pace->now();
   }
   void choose_device(const ServiceReport& inventory);
-  void expect_no_other_session(const ServiceReport& inventory) const;
+  void expect_no_other_session() const;
   void configure();
   void listen_to_events();
   void describe(const DeviceConfig& config);
@@ -85,7 +80,6 @@ class Inverse3Device final : public LinkedDevice {
   std::unique_ptr<ServiceLink> service_;
   std::string id_;
   std::optional<std::int64_t> session_id_;
-  Vec3 centre_m_;  ///< of the workspace, in the service's frame
   DeviceInfo info_;
   mutable DeviceLink link_;
   ArmStatus status_;  ///< driver's thread, once that runs

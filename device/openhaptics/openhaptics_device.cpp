@@ -343,32 +343,25 @@ DeviceDriver openhaptics_driver() {
                    {"desktop", "Phantom Desktop", "touch_x"},
                    {"premium", "Phantom Premium", "premium_1_5"}},
       .unverified = {
-          {"signs", "which way positions and forces run on each axis", Evidence::signs},
-          {"force_scale", "whether a newton of the library is one at the handle", Evidence::weight},
-          {"lengths", "whether a millimetre of the library is one at the handle",
-           Evidence::lengths},
+          {"signs", "which way positions and forces run on each axis"},
+          {"force_scale", "whether a newton of the library is one at the handle"},
+          {"lengths", "whether a millimetre of the library is one at the handle"},
           {"device_name",
            "which of the three names opens a device in which version",
-           Evidence::answer,
            "Is openhaptics.device set in the device settings?",
            {"no", "default_device", "default_phantom", "own_name"}},
           {"calibration",
            "which calibration style the library asks for, and whether it ends",
-           Evidence::answer,
            "What did the program ask for before it began?",
            {"nothing", "moving", "inkwell", "reset_position", "vendor_calibration"}},
-          {"premium_reset", "what a Premium that was never reset says of its calibration",
-           Evidence::none},
+          {"premium_reset", "what a Premium that was never reset says of its calibration"},
           {"stiffness",
            "the largest stiffness, and the unit of the largest damping: whether this model states "
-           "both",
-           Evidence::limits},
-          {"soft_wall", "whether a wall below the stated stiffness is stable", Evidence::wall},
-          {"program_silent", "what the motors do when the program is stopped or killed",
-           Evidence::program_silent},
-          {"cable_silent", "what the motors do when the cable is pulled", Evidence::cable_silent},
-          {"temperatures", "whether this model gives temperatures on a scale from 0 to 1",
-           Evidence::none}}};
+           "both"},
+          {"soft_wall", "whether a wall below the stated stiffness is stable"},
+          {"program_silent", "what the motors do when the program is stopped or killed"},
+          {"cable_silent", "what the motors do when the cable is pulled"},
+          {"temperatures", "whether this model gives temperatures on a scale from 0 to 1"}}};
 }
 
 }  // namespace touchtrial::device

@@ -24,72 +24,51 @@ constexpr std::array<std::string_view, 4> kColumns = {"time_s", "x_mm", "y_mm", 
 
 struct CsvRow {
   std::vector<std::string> fields;
-  std::size_t line = 0;  ///< on which the row begins, from 1
+  std::size_t line = 0;  ///< from 1
 };
 
 [[noreturn]] void refuse(const std::string& where, const std::string& why) {
   throw FileError(one_line(where + ": " + why));
 }
 
-/// Rows of a CSV file by RFC 4180. Commas separate fields, LF or CRLF separate rows; a field in
-/// quotation marks may contain both, and a doubled mark in it stands for one. A byte order mark in
-/// front is ignored.
+/// Rows of a CSV file: commas separate fields, LF or CRLF rows. Quotation marks around a field and
+/// a byte order mark in front are left out.
 class CsvRows {
  public:
   /// \param text  must outlive this
-  /// \param name  names the file in errors
-  CsvRows(std::string_view text, std::string name) : rest_(text), name_(std::move(name)) {
+  explicit CsvRows(std::string_view text) : rest_(text) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
   }
 
   /// \return false at the end
-  /// \throws FileError if a quotation mark is not closed, or text follows a closing one
   [[nodiscard]] bool next(CsvRow& row) {
     if (rest_.empty()) return false;
-    row = {{""}, line_};
-    enum class Field { open, in_quotes, closed } field = Field::open;
-    while (!rest_.empty()) {
-      const char c = rest_.front();
-      rest_.remove_prefix(1);
-      if (c == '\n') ++line_;
-      if (field == Field::in_quotes) {
-        const bool is_end = c == '"' && !rest_.starts_with('"');
-        if (is_end) {
-          field = Field::closed;
-          continue;
-        }
-        if (c == '"') rest_.remove_prefix(1);
-        row.fields.back() += c;
-      } else if (c == '\n') {
-        return true;
-      } else if (c == ',') {
-        row.fields.emplace_back();
-        field = Field::open;
-      } else if (c == '\r' && rest_.starts_with('\n')) {
-        continue;
-      } else if (field == Field::closed) {
-        refuse(line(line_), "text follows a closing quotation mark; put a comma between them");
-      } else if (c == '"' && row.fields.back().empty()) {
-        field = Field::in_quotes;
-      } else {
-        row.fields.back() += c;
+    std::string_view text = taken(rest_, '\n');
+    if (text.ends_with('\r')) text.remove_suffix(1);
+    row = {{}, ++line_};
+    do {
+      std::string_view field = taken(text, ',');
+      if (field.size() > 1 && field.front() == '"' && field.back() == '"') {
+        field = field.substr(1, field.size() - 2);
       }
-    }
-    if (field == Field::in_quotes) {
-      refuse(line(row.line), "a quotation mark is not closed; the file may be truncated");
-    }
+      row.fields.emplace_back(field);
+    } while (text.data() != nullptr);
     return true;
   }
 
  private:
-  [[nodiscard]] std::string line(std::size_t number) const {
-    return name_ + ", line " + std::to_string(number);
+  /// Takes what stands before the mark off the text, and the mark; all that is left if there is
+  /// none, whereupon nothing is.
+  static std::string_view taken(std::string_view& text, char mark) {
+    const std::size_t end = text.find(mark);
+    const std::string_view before = text.substr(0, end);
+    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+    return before;
   }
 
   std::string_view rest_;
-  std::string name_;
-  std::size_t line_ = 1;
+  std::size_t line_ = 0;
 };
 
 struct TimedPosition {
@@ -230,7 +209,7 @@ RecordedMotion::RecordedMotion(std::vector<Vec3> positions_mm, double rate_hz)
 RecordedMotion read_motion_csv(const std::filesystem::path& file) {
   const Bytes bytes = read_file(file, kLargestFile);
   const std::string name = file.string();
-  CsvRows rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
+  CsvRows rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   const std::vector<TimedPosition> positions = read_positions(rows, name);
   std::vector<Vec3> ticks = fill_ticks(positions, usual_step_s(positions), name);
   const double duration_s = positions.back().time_s - positions.front().time_s;

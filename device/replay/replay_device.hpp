@@ -37,9 +37,9 @@ class RecordedMotion {
   double rate_hz_;
 };
 
-/// Reads a CSV file (RFC 4180, lines end in LF or CRLF) whose header names time_s, x_mm, y_mm and
-/// z_mm in any order, and perhaps other columns. The usual step of time_s gives the rate; where
-/// rows are missing, the hand moves straight on to the next one.
+/// Reads a CSV file (lines end in LF or CRLF, no field has a comma) whose header names time_s,
+/// x_mm, y_mm and z_mm in any order, and perhaps other columns. The usual step of time_s gives the
+/// rate; where rows are missing, the hand moves straight on to the next one.
 /// \throws FileError with the line if the file, a column or a number is missing, a time does not
 ///   increase, a position is beyond 10 m, the rate is outside 10 to 20,000 Hz, or there are more
 ///   than kMostTicks

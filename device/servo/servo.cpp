@@ -377,4 +377,12 @@ std::string_view name_of(DeviceFault fault) noexcept {
   return name_in(kNames, fault);
 }
 
+std::string fault_names(const ServoReport& report) {
+  std::string names(name_of(report.fault));
+  if (report.device_fault != DeviceFault::none) {
+    names += " (" + std::string(name_of(report.device_fault)) + ")";
+  }
+  return names;
+}
+
 }  // namespace touchtrial::device

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace touchtrial::device {
@@ -148,6 +149,8 @@ struct ServoHooks {
 /// \name What files and reports call the states of the servo: lower case, with underscores
 ///@{
 [[nodiscard]] std::string_view name_of(ServoEnd end) noexcept;
+/// The names of a report's faults: "device (link_lost)", or "none".
+[[nodiscard]] std::string fault_names(const ServoReport& report);
 [[nodiscard]] std::string_view name_of(SafetyVerdict verdict) noexcept;
 [[nodiscard]] std::string_view name_of(SafetyFault fault) noexcept;
 [[nodiscard]] std::string_view name_of(DeviceFault fault) noexcept;

@@ -129,16 +129,3 @@ TEST_CASE("device fit refuses a device or an orientation that does not exist") {
   check_refused(folder.fit("--device falcn"), 2, {"falcon"});
   check_refused(folder.fit("--device falcon --orientation diagonal"), 2, {});
 }
-
-TEST_CASE("device fit says how strong the stimuli are once the study is prepared") {
-  const FitFolder folder(200, 200);
-  CHECK(folder.fitted("--device falcon").at("levels").is_null());
-  const json there = folder.printed("prepare @study.json --json");
-  const json fit = folder.fitted("--device falcon");
-  CHECK_THAT(fit.at("simulated_on").get<std::string>(), holds_text("modelled device falcon"));
-  CHECK(fit.at("levels").at("blank") == there.at("blank").at("levels"));
-  const json& stimuli = fit.at("levels").at("stimuli");
-  REQUIRE(stimuli.size() == 2);
-  // Both are the same grey: prepare lists them in the order of their codes.
-  CHECK(stimuli[0].at("levels") == there.at("stimuli")[0].at("levels"));
-}

@@ -248,10 +248,9 @@ TEST_CASE("device accept refuses files that it could not write before it opens t
   const auto accept = [&](const std::string& certificate) {
     return folder.device("accept dhd --certificate @" + certificate);
   };
-  check_refused(accept("c.html"), 2, {"ends in .json"});
   check_refused(accept("no/such/c.json"), 1, {"cannot be written"});
-  make_folder(folder.path() / "c.html");
-  check_refused(accept("c.json"), 1, {"c.html", "--force"});
+  make_folder(folder.path() / "c-model.json");
+  check_refused(accept("c.json"), 1, {"c-model.json", "--force"});
   check_refused(accept("devices.json"), 2, {"is read by this acceptance"});
   CHECK_FALSE(fs::exists(folder.in("c.json.trial")));
 }
@@ -283,8 +282,6 @@ TEST_CASE("device accept rehearses on a device model, and says that it proves no
   json certificate = folder.object_in("emulated-falcon-certificate.json");
   CHECK(certificate.at("emulated") == "falcon");
   CHECK(certificate.at("passed") == true);
-  CHECK_THAT(content(folder.in("emulated-falcon-certificate.html")),
-             holds_text("REHEARSAL") && holds_text("<svg"));
   const json model = folder.object_in("emulated-falcon-model.json");
   CHECK(model.at("mass_kg") > 0.1);
   CHECK(model.at("provenance").at("mass_kg").at("confidence") == "derived");
@@ -304,25 +301,18 @@ TEST_CASE("device accept rehearses on a device model, and says that it proves no
   }
 }
 
-TEST_CASE("device accept refuses a broken emulated device, and takes an accelerometer's record") {
+TEST_CASE("device accept refuses a broken emulated device") {
   const DeviceFolder folder;
   replace_file(folder.path() / "broken.json",
                R"({"name": "broken", "mass_kg": 0.1, "coulomb_n": 0.2, "max_force_n": 4,
                    "planted": {"force_sign_scale": [1, 1, -1]}})");
-  std::string record = "time_s,x_m_s2,y_m_s2,z_m_s2\n";
-  for (int i = 0; i < 2000; ++i) {
-    record += std::to_string(0.001 * i) + ",0,0," + std::to_string(i % 2) + "\n";
-  }
-  replace_file(folder.path() / "wall.csv", record);
   const ProgramResult result =
-      folder.device("accept --emulate @broken.json --accelerometer wall=" + folder.in("wall.csv") +
-                    " --certificate @c.json --json");
+      folder.device("accept --emulate @broken.json --certificate @c.json --json");
   INFO(result.errors);
   CHECK(result.exit_code == 1);
   const json certificate = json::parse(result.output);
   CHECK(certificate.at("passed") == false);
   CHECK_THAT(certificate.at("failures").dump(), holds_text("axis z") && holds_text("sign"));
-  CHECK(certificate.at("spectra").at(0).at("felt") == "wall");
 }
 
 TEST_CASE("device bring-up keeps what it has at q and at a signal, and says what was not done") {
@@ -356,7 +346,7 @@ TEST_CASE("device bring-up keeps what it has at the end of the input") {
   CHECK(folder.object_in("dhd-bring-up.json").at("steps").at("rest") == "interrupted");
 }
 
-TEST_CASE("device bring-up that leaves out every step asks its questions, and its file is read") {
+TEST_CASE("device bring-up that leaves out every step asks its questions, and replaces nothing") {
   const DeviceFolder folder(dhd_settings());
   ChildProcess skipping = folder.start("bring-up dhd");
   // rest, three ways, six pushes, steps, range, program, cable; then five questions.
@@ -365,15 +355,10 @@ TEST_CASE("device bring-up that leaves out every step asks its questions, and it
   INFO(skipping.output());
   CHECK(code == 0);
   CHECK(folder.object_in("dhd-bring-up.json").at("ended") == "complete");
-  const json verdict = folder.printed("device bring-up --json --read @dhd-bring-up.json");
   // The library's file is named libfake_dhd.so.
-  CHECK_FALSE(verdict.at("stand_in").get<std::string>().empty());
-  CHECK(verdict.at("settled") == json::array());
-  CHECK(verdict.at("open").size() > 5);
+  CHECK_FALSE(folder.object_in("dhd-bring-up.json").at("stand_in").get<std::string>().empty());
   // Nothing is replaced.
   check_refused(folder.device("bring-up dhd --out @dhd-bring-up.json"), 1, {"--out"});
-  replace_file(folder.path() / "hostile.json", R"({"kind": "touchtrial device bring-up 1"})");
-  check_refused(folder.type("device bring-up --read @hostile.json"), 2, {"hostile.json"});
 }
 
 TEST_CASE("device bring-up lists the facts that nobody has verified") {

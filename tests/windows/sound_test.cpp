@@ -1,5 +1,4 @@
 #include "app/sound/session_sound.hpp"
-#include "app/sound/sound_accelerometer.hpp"
 #include "device/platform/realtime.hpp"
 #include "support/catch.hpp"
 #include "support/environment.hpp"
@@ -305,67 +304,6 @@ TEST_CASE("the mixed samples arrive at the sound card unchanged") {
       std::find_if(played.begin(), played.end(), [](float sample) { return sample != 0.0F; });
   REQUIRE(played.end() - first >= kCount);
   CHECK(std::equal(expected.begin(), expected.end(), first));
-}
-
-TEST_CASE("a sound input's samples become accelerations, and an overdriven input is known") {
-  std::vector<float> samples;
-  for (int i = 0; i < 4800; ++i) {
-    const double phase = 2.0 * std::numbers::pi * 100.0 * i / 48000.0;
-    for (const double share : {0.5, 0.25, 0.0}) {
-      samples.push_back(static_cast<float>(share * std::sin(phase)));
-    }
-  }
-  const device::AccelerometerRecord record = app::record_of_sound(samples, {20.0, 40.0, 10.0});
-  CHECK(record.rate_hz == 12000.0);
-  REQUIRE(record.acceleration_m_s2.size() == 1200);
-  CHECK_FALSE(record.overdriven);
-  double squares_x = 0.0;
-  for (const Vec3& a : record.acceleration_m_s2) {
-    CHECK(a.y == Approx(a.x).margin(1e-5));
-    CHECK(a.z == 0.0);
-    squares_x += a.x * a.x / 1200.0;
-  }
-  CHECK(std::sqrt(squares_x) == Approx(10.0 / std::numbers::sqrt2).epsilon(1e-3));
-  for (const float worst : {1.0F, -1.0F, std::numeric_limits<float>::quiet_NaN()}) {
-    samples[7] = worst;
-    CHECK(app::record_of_sound(samples, {20.0, 40.0, 10.0}).overdriven);
-  }
-  CHECK(app::record_of_sound({0.1F}, {1.0}).acceleration_m_s2.empty());
-}
-
-TEST_CASE("an accelerometer records through the sound card's input, again and again") {
-  const TempFolder folder;
-  std::vector<float> signal;
-  for (int i = 0; i < 48000 * 2; ++i) {
-    signal.push_back(static_cast<float>(0.25 * std::sin(2.0 * std::numbers::pi * 0.0025 * i)));
-  }
-  std::ofstream(folder.path() / "in.raw", std::ios::binary)
-      .write(reinterpret_cast<const char*>(signal.data()),
-             static_cast<std::streamsize>(signal.size() * sizeof(float)));
-  const AlsaConfiguration file(
-      "pcm.!default { type plug slave.pcm { type file slave.pcm { type null } file \"/dev/null\" "
-      "infile \"" +
-      (folder.path() / "in.raw").string() + "\" format \"raw\" } }\n");
-  CHECK_THROWS_WITH(app::SoundAccelerometer("nowhere", {20.0}), holds_text("there are: default"));
-  CHECK_THROWS_WITH(app::SoundAccelerometer("default", {20.0, 1.0}), holds_text("--full-scale"));
-  CHECK_THROWS_WITH(app::SoundAccelerometer("default", {0.0}), holds_text("--full-scale"));
-  app::SoundAccelerometer accelerometer("default", {20.0});
-  for (int again = 0; again < 2; ++again) {
-    accelerometer.start();
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    const device::AccelerometerRecord record = accelerometer.stop();
-    CHECK_FALSE(record.overdriven);
-    double largest = 0.0;
-    for (const Vec3& a : record.acceleration_m_s2) largest = std::max(largest, std::abs(a.x));
-    // The file is read as fast as it can be, and what follows its end repeats.
-    if (again == 0) CHECK(largest == Approx(5.0).epsilon(0.01));
-    CHECK(largest <= 5.001);
-  }
-}
-
-TEST_CASE("without an input the error says so") {
-  const AlsaConfiguration nothing("pcm.!default { type hw card 99 }\n");
-  CHECK_THROWS_WITH(app::SoundAccelerometer("x", {20.0}), holds_text("there is none at all"));
 }
 
 }  // namespace

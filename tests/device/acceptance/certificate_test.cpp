@@ -2,7 +2,6 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "device/acceptance/accelerometer.hpp"
 #include "protocols/design/refusal.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
@@ -233,45 +232,6 @@ TEST_CASE("a study's wall must be softer than one that swung in the acceptance")
   // Where even the softest wall swung there is no advice.
   certificate.wall = device::WallResult{0.0, 0.1, "oscillation"};
   CHECK_THAT(refusal(0.4), holds_text("even the softest") && !holds_text("at most"));
-}
-
-TEST_CASE("an accelerometer's record gives the size of a sine in its band, and little elsewhere") {
-  // 0.5 m/s2 of amplitude at 100 Hz is 0.3536 m/s2 root mean square.
-  std::string csv = "time_s,x_m_s2,y_m_s2,z_m_s2\n";
-  for (int i = 0; i < 6000; ++i) {
-    const double t = i / 2000.0;
-    csv += std::to_string(t) + ",9.81," + std::to_string(0.5 * std::sin(628.3185307 * t)) + ",0\n";
-  }
-  const device::AccelerometerRecord record = device::parse_accelerometer_csv(csv, "record");
-  CHECK(record.rate_hz == Approx(2000.0).epsilon(1e-4));
-  double within = 0.0;
-  double beyond = 0.0;
-  for (const device::BandResult& band : device::acceleration_bands(record)) {
-    const bool is_near = band.from_hz < 105.0 && band.to_hz > 95.0;
-    (is_near ? within : beyond) += band.acceleration_m_s2 * band.acceleration_m_s2;
-  }
-  CHECK(std::sqrt(within) == Approx(0.3536).epsilon(0.01));
-  CHECK(std::sqrt(beyond) < 0.01);
-}
-
-TEST_CASE("an accelerometer's record that is no even CSV is refused with its line") {
-  const std::string header = "time_s,x_m_s2,y_m_s2,z_m_s2\n";
-  const auto refusal = [](const std::string& text) {
-    return message_of<FileError>([&] { return device::parse_accelerometer_csv(text, "r.csv"); });
-  };
-  CHECK_THAT(refusal("t,x\n1,2\n"), holds_text("line 1"));
-  CHECK_THAT(refusal(header + "0,1,2\n"), holds_text("line 2") && holds_text("4 columns"));
-  CHECK_THAT(refusal(header + "0,1,2,nan\n"), holds_text("line 2"));
-  CHECK_THAT(refusal(header + "0,1,2,3,4\n"), holds_text("line 2"));
-  CHECK_THAT(refusal(header + "0,1,2,3\n"), holds_text("less than a second"));
-  std::string slow = header;
-  for (int i = 0; i < 100; ++i) slow += std::to_string(0.1 * i) + ",0,0,0\n";
-  CHECK_THAT(refusal(slow), holds_text("samples a second"));
-  std::string uneven = header;
-  for (int i = 0; i < 2000; ++i) {
-    uneven += std::to_string(0.001 * i + (i > 1000 ? 0.02 : 0.0)) + ",0,0,0\n";
-  }
-  CHECK_THAT(refusal(uneven), holds_text("uneven"));
 }
 
 }  // namespace touchtrial

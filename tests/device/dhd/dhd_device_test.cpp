@@ -76,14 +76,6 @@ TEST_CASE("dhd: the velocity is the hand's, in the device frame") {
   CHECK(norm(next_sample(device).velocity_mm_s - Vec3{0.0, -2.0, 1.0}) < 1e-6);
 }
 
-TEST_CASE("dhd: a library that has no velocity yet is no fault, and readiness is true at once") {
-  LoadedDhd fake;
-  device::DhdDevice device = opened(fake);
-  CHECK(device.readiness() == device::DeviceReadiness::ready);
-  (void)ready_sample(device);
-  CHECK(device.fault() == device::DeviceFault::none);
-}
-
 TEST_CASE("dhd: mass, time guard, watchdog and largest force are set, and put back in the end") {
   LoadedDhd fake;
   fake->own_mass_kg = 0.1;

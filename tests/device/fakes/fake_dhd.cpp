@@ -24,7 +24,6 @@ constexpr auto kTimeGuard = std::chrono::milliseconds(2);      // [L]: that of -
 constexpr auto kGravityRamp = std::chrono::milliseconds(250);  // [L]
 
 // [H]: the errors that dhdErrorGetLast tells, of which the driver sees the words alone.
-constexpr int kErrorTimeout = 7;
 constexpr int kErrorExpertModeDisabled = 9;
 
 // [H]: causes for which force went off.
@@ -50,7 +49,6 @@ struct Inside {
   std::atomic<long> gravity_off_at{0};  ///< number of the force
   Vec3 read_mm;                         ///< by the last exchange, on the driver's thread
   long read_at = -1'000'000;            ///< number of the force
-  long readings = 0;
 };
 Inside& inside() {
   static Inside* const kInside = new Inside;
@@ -144,7 +142,6 @@ void exchange() {
 void reset() {
   inside().calls.clear();
   inside().force_on = false;
-  inside().readings = 0;
   inside().read_at = -1'000'000;
   inside().gravity_off_at = -1'000'000;
   state->~FakeDhd();
@@ -257,17 +254,7 @@ int dhdGetPosition(double* x, double* y, double* z, char device) {
   const bool is_guarded = state->time_guard_us != 0 && age < kTimeGuard;
   if (state->exchanges && !is_guarded) exchange();
   give_m(inside().read_mm, x, y, z);
-  ++inside().readings;
   return is_guarded || !state->exchanges ? 1 : 0;
-}
-
-// [D] getLinearVelocity: needs two positions within the estimator's window, 20 ms; without them it
-// fails with the error "timeout".
-int dhdGetLinearVelocity(double* x, double* y, double* z, char device) {
-  if (!answers(device)) return kFailed;
-  if (inside().readings < 2) return fail(kErrorTimeout);
-  give_m(state->hand.velocity.get(), x, y, z);
-  return 0;
 }
 
 // [D] Gravity Compensation: computed on the host, so it only acts whenever a force is sent; the

@@ -3,7 +3,7 @@
 
 #include "core/errors.hpp"
 #include "core/random.hpp"
-#include "device/falcon/falcon_inverse.hpp"
+#include "device/falcon/emulator/falcon_legs.hpp"
 #include "device/falcon/rig/falcon_rig.hpp"
 #include "device/flat_wall.hpp"
 #include "device/servo_fakes.hpp"
@@ -421,18 +421,6 @@ TEST_CASE("closing sends packets without force and switches the lights off") {
   CHECK(rig.emulator.complaints().empty());
 }
 
-TEST_CASE("a Falcon without firmware is loaded from the user's file when it is opened") {
-  const TempFolder folder;
-  FalconEmulator emulator;
-  Lockstep lockstep;
-  device::FalconSettings settings;
-  settings.firmware = write_dummy_firmware(folder.path());
-  const FalconDevice device(std::make_unique<EmulatorTransport>(emulator), settings,
-                            in_lockstep(lockstep));
-  CHECK(emulator.image() == dummy_firmware());
-  CHECK(device.readiness() == device::DeviceReadiness::needs_homing);
-}
-
 TEST_CASE("a firmware that does not run is reported") {
   const TempFolder folder;
   FalconEmulator emulator({.boot_loader = {.image = {1, 2, 3}}});
@@ -458,7 +446,7 @@ TEST_CASE("a Falcon describes itself") {
     for (double rise = -1.5; rise < 1.6; rise += 0.1) {
       const Vec3 place_mm{40.0 * std::cos(rise) * std::cos(turn), 40.0 * std::sin(rise),
                           40.0 * std::cos(rise) * std::sin(turn)};
-      CHECK(inverse_kinematics(to_native_m(place_mm)).has_value());
+      CHECK(reference_theta1(to_native_m(place_mm)).has_value());
     }
   }
 }

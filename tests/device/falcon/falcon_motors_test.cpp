@@ -2,7 +2,6 @@
 
 #include "core/random.hpp"
 #include "device/falcon/emulator/falcon_legs.hpp"
-#include "device/falcon/falcon_inverse.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>

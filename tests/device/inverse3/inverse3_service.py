@@ -2,7 +2,7 @@
 """An emulated Inverse service with one Inverse3 and a hand on it.
 
 Written from Haply's public documentation of the service (the simulation channel, sessions, device
-configuration, events, HTTP; versions 3.1 and 3.5), and not from the driver that is tested with it.
+configuration, events, HTTP; version 3.5), and not from the driver that is tested with it.
 What the documentation leaves open, and is assumed here, is marked "assumed".
 
 Prints "ready PORT EVENTS_PORT HTTP_PORT" once it listens. Commands on standard input, one a line:
@@ -115,10 +115,6 @@ class Service:
         self.full_states = 0
         self.complaints = []
 
-    @property
-    def is_new(self):
-        return self.options.version == "3.5"
-
     def complain(self, text):
         if len(self.complaints) < 20:
             self.complaints.append(text)
@@ -130,7 +126,7 @@ class Service:
         return {"x": values[0], "y": values[1], "z": values[2]}
 
     def centred(self):
-        return self.is_new and self.preset == "arm_front_centered"
+        return self.preset == "arm_front_centered"
 
     def position(self):
         offset = (0.0, 0.0, 0.0) if self.centred() else WORKSPACE_CENTRE_M
@@ -144,12 +140,9 @@ class Service:
             "cursor_position": self.vec(self.position()),
             "cursor_velocity": self.vec(self.hand.velocity),
         }
-        if self.is_new:
-            state["current_cursor_force"] = self.vec(self.delivered())
-            state["control_domain"] = "cartesian"
-            state["control_mode"] = "force"
-        else:
-            state["mode"] = "force"
+        state["current_cursor_force"] = self.vec(self.delivered())
+        state["control_domain"] = "cartesian"
+        state["control_mode"] = "force"
         return state
 
     def status(self, other):
@@ -170,19 +163,18 @@ class Service:
             "handedness": self.options.handedness,
             "torque_scaling": {"enabled": True},
         }
-        if self.is_new:
-            scale = 0.5 if self.options.hub_scale else 1.0
-            config["preset"] = self.preset
-            config["basis"] = {"permutation": "XYZ"}
-            config["mount"] = {
-                "position": self.vec((0.0, 0.0, 0.0)),
-                "rotation": {"w": 1, "x": 0, "y": 0, "z": 0},
-                "scale": self.vec((scale, scale, scale)),
-            }
-            config["filters"] = {
-                "force_gate": {"gain": self.gate},
-                "damping": {"scalar": self.damping[0], "vector": self.vec(self.damping[1:])},
-            }
+        scale = 0.5 if self.options.hub_scale else 1.0
+        config["preset"] = self.preset
+        config["basis"] = {"permutation": "XYZ"}
+        config["mount"] = {
+            "position": self.vec((0.0, 0.0, 0.0)),
+            "rotation": {"w": 1, "x": 0, "y": 0, "z": 0},
+            "scale": self.vec((scale, scale, scale)),
+        }
+        config["filters"] = {
+            "force_gate": {"gain": self.gate},
+            "damping": {"scalar": self.damping[0], "vector": self.vec(self.damping[1:])},
+        }
         return config
 
     def device(self, whole, other=False):
@@ -202,21 +194,16 @@ class Service:
             message["wireless_verse_grip"] = [
                 {"device_id": "61548", "state": {"buttons": {"a": True, "b": False, "c": True}}}
             ]
-        if self.is_new:
-            message["session_id"] = self.session
+        message["session_id"] = self.session
         return message
 
     # What a client says.
 
     def delivered(self):
         """The gate passes the less of a force the higher it is (assumed: a plain factor)."""
-        if not self.is_new:
-            return self.force
         return [(1.0 - self.gate) * f for f in self.force]
 
     def configure(self, what):
-        if not self.is_new:
-            return self.complain("configure: unknown before 3.5")
         if "mount" in what and "preset" in what:
             return self.complain("preset and mount exclude each other")
         for key, value in what.items():
@@ -242,7 +229,7 @@ class Service:
                 for name, body in value.items():
                     if name == "force_render_full_state":
                         whole = True
-                    elif name == "configure" and self.is_new:
+                    elif name == "configure":
                         self.profile = body["profile"]["name"]
                     else:
                         self.complain("session: " + name)
@@ -263,13 +250,12 @@ class Service:
         if "configure" in device:
             self.configure(device["configure"])
         for name, body in device.get("commands", {}).items():
-            key = "vector" if self.is_new else "values"
             if name != "set_cursor_force":
                 self.complain("command " + name)
-            elif list(body) != [key] or sorted(body[key]) != ["x", "y", "z"]:
+            elif list(body) != ["vector"] or sorted(body["vector"]) != ["x", "y", "z"]:
                 self.complain("set_cursor_force: " + ", ".join(body))
             else:
-                self.force = [float(body[key][axis]) for axis in "xyz"]
+                self.force = [float(body["vector"][axis]) for axis in "xyz"]
 
     def garbage(self):
         kind = self.options.garbage
@@ -277,16 +263,8 @@ class Service:
         device = message["inverse3"][0]
         if kind == "text":
             return ["no JSON at all {"]
-        if kind == "null":
-            device["state"]["cursor_position"]["y"] = None
-        elif kind == "missing":
-            del device["state"]["cursor_position"]
-        elif kind == "far":
+        if kind == "far":
             device["state"]["cursor_position"]["z"] = 123.0
-        elif kind == "infinite":
-            device["state"]["cursor_velocity"]["x"] = math.inf  # not JSON, but Python says it
-        elif kind == "list":
-            return ["[" * 100000]
         elif kind == "gone":
             message["inverse3"] = []
         elif kind == "twice":
@@ -332,13 +310,8 @@ class Service:
         finally:
             self.listeners.discard(socket)
 
-    @property
-    def http_is_apart(self):
-        """Until some version 3.5 HTTP had a port of its own."""
-        return self.options.http_apart or not self.is_new
-
     async def answer_on_simulation(self, path, headers):
-        if "Upgrade" in headers or self.http_is_apart:
+        if "Upgrade" in headers or self.options.http_apart:
             return None
         return await self.answer_http(path, headers)
 
@@ -352,21 +325,20 @@ class Service:
             },
             "/devices": self.says(True),
         }
-        if self.is_new:
-            sessions = [{"session_id": self.session, "profile": {"name": self.profile}}]
-            sessions = sessions[: self.clients]
-            if self.options.other_session:
-                sessions.append({"session_id": 3, "profile": {"name": "co.haply.hub::demo-orb"}})
-            bodies["/sessions"] = {
+        sessions = [{"session_id": self.session, "profile": {"name": self.profile}}]
+        sessions = sessions[: self.clients]
+        if self.options.other_session:
+            sessions.append({"session_id": 3, "profile": {"name": "co.haply.hub::demo-orb"}})
+        bodies["/sessions"] = {
+            "ok": True,
+            "data": {"session_count": len(sessions), "sessions": sessions},
+        }
+        if self.options.home_return != "unknown":
+            bodies["/inverse3/" + self.options.id + "/config/home_return"] = {
                 "ok": True,
-                "data": {"session_count": len(sessions), "sessions": sessions},
+                # The form is assumed, after those of torque_scaling and gravity_compensation.
+                "data": {"enabled": self.options.home_return == "on"},
             }
-            if self.options.home_return != "unknown":
-                bodies["/inverse3/" + self.options.id + "/config/home_return"] = {
-                    "ok": True,
-                    # The form is assumed, after those of torque_scaling and gravity_compensation.
-                    "data": {"enabled": self.options.home_return == "on"},
-                }
         if self.options.no_version:
             del bodies["/version"]
         if self.options.http_nonsense:
@@ -422,7 +394,7 @@ def read_options():
     parser.add_argument("--port", type=int, default=0, help="0: any free one")
     parser.add_argument("--events-port", type=int, default=0)
     parser.add_argument("--no-events", action="store_true", help="no events channel")
-    parser.add_argument("--version", choices=["2.9", "3.1", "3.5", "4.0"], default="3.5")
+    parser.add_argument("--version", choices=["3.1", "3.5", "4.0"], default="3.5")
     parser.add_argument("--type", default="inverse3", help="inverse3, inverse3x or minverse")
     parser.add_argument("--id", default="049D")
     parser.add_argument("--twins", action="store_true", help="a second device, 04BB")
@@ -443,7 +415,7 @@ def read_options():
     parser.add_argument("--disconnect-after", type=int, metavar="MESSAGES", default=0)
     parser.add_argument(
         "--garbage",
-        choices="text null missing far infinite list gone twice huge".split(),
+        choices="text far gone twice huge".split(),
         help="what it answers after --garbage-after messages",
     )
     parser.add_argument("--garbage-after", type=int, metavar="MESSAGES", default=100)
@@ -486,7 +458,7 @@ async def main():
         ping_interval=None,
     )
     ports = [simulation.sockets[0].getsockname()[1], 0, simulation.sockets[0].getsockname()[1]]
-    if service.http_is_apart:
+    if options.http_apart:
         web = await websockets.serve(
             service.events,
             "127.0.0.1",

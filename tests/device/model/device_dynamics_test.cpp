@@ -6,12 +6,8 @@
 #include "support/realtime_watch.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <complex>
 #include <limits>
-#include <numbers>
-#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -55,36 +51,6 @@ TEST_CASE("friction of each axis alone holds more than one newton's worth of a d
   per_axis.tick({0.19, 0.25, 0.0}, {});
   CHECK(per_axis.true_velocity_mm_s().x == 0.0);
   CHECK(per_axis.true_velocity_mm_s().y > 0.0);
-}
-
-TEST_CASE("a mass on a spring loses four times F / k of amplitude a cycle to Coulomb friction") {
-  constexpr double kStiffness = 0.4;  // N/mm
-  DeviceModel model = model_of(0.1);
-  model.coulomb_n = 0.06;
-  model.zero_order_hold = true;
-  DeviceDynamics tip(model);
-  tip.place({4.0, 0.0, 0.0});
-  // The spring's own force is computed by the tick and so excites a little; its motion over half a
-  // tick takes that away.
-  std::vector<double> peaks_mm;
-  double before_mm = 4.0;
-  double last_mm = 4.0;
-  for (int i = 0; i < 2000; ++i) {
-    const double seen_mm = tip.true_position_mm().x + 0.5 * kT * tip.true_velocity_mm_s().x;
-    tip.tick({}, {{-kStiffness * seen_mm, 0.0, 0.0}});
-    const double now_mm = tip.true_position_mm().x;
-    if (last_mm > before_mm && last_mm > now_mm) peaks_mm.push_back(last_mm);
-    before_mm = last_mm;
-    last_mm = now_mm;
-  }
-  REQUIRE(peaks_mm.size() >= 3);
-  double expected_mm = 4.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    expected_mm -= 4.0 * 0.06 / kStiffness;
-    CHECK(peaks_mm[i] == Approx(expected_mm).margin(0.05));
-  }
-  CHECK(tip.true_velocity_mm_s() == Vec3{});
-  CHECK(std::abs(kStiffness * last_mm) <= 0.06 + 1e-9);
 }
 
 TEST_CASE("friction falls from static to Coulomb with speed") {
@@ -163,21 +129,6 @@ TEST_CASE("a command acts after the delay, within the peak, in whole steps") {
   CHECK(tip.delivered_force_n() == Vec3{1.25, 1.5, 0.0});  // of (1.2, 1.6)
 }
 
-TEST_CASE("the low-pass answers a step as a resistor and a capacitor do") {
-  DeviceModel model = model_of(0.1);
-  model.lowpass_hz = GENERATE(5.0, 100.0, 1000.0);
-  DeviceDynamics tip(model);
-  for (int i = 1; i <= 50; ++i) {
-    tip.tick({2.0, 0.0, -1.0}, {});
-    const double share = 1.0 - std::exp(-2.0 * kPi * model.lowpass_hz * i * kT);
-    REQUIRE(tip.delivered_force_n().x == Approx(2.0 * share).epsilon(1e-12));
-    REQUIRE(tip.delivered_force_n().z == Approx(-share).epsilon(1e-12));
-  }
-  tip.place({});
-  tip.tick({}, {});
-  CHECK(tip.delivered_force_n() == Vec3{});
-}
-
 TEST_CASE("planted faults turn and scale forces, and let the handle fall") {
   DeviceModel model = model_of(0.1);
   model.planted.force_sign_scale = {-1.0, 1.2, 0.0};
@@ -196,53 +147,6 @@ DeviceModel structured(double stiffness_n_per_mm, double tip_share, double dampi
   DeviceModel model = model_of(0.045);
   model.structure = {stiffness_n_per_mm, tip_share, damping_ratio};
   return model;
-}
-
-TEST_CASE("a stiff structure moves like a rigid device") {
-  DeviceModel rigid = model_of(0.045);
-  rigid.viscous_n_s_per_m = 3.0;
-  rigid.zero_order_hold = true;
-  DeviceModel stiff = rigid;
-  stiff.structure = {1000.0, 0.5, 1.0};
-  DeviceDynamics a(rigid);
-  DeviceDynamics b(stiff);
-  for (int i = 0; i < 500; ++i) {
-    const Vec3 force_n{0.3 * std::sin(0.05 * i), 0.1, -0.2 * std::cos(0.03 * i)};
-    a.tick(force_n, {.mass_kg = 0.1});
-    b.tick(force_n, {.mass_kg = 0.1});
-  }
-  CHECK(norm(a.true_position_mm()) > 1.0);
-  CHECK(norm(a.true_position_mm() - b.true_position_mm()) < 1e-3 * norm(a.true_position_mm()));
-}
-
-TEST_CASE("an undamped structure keeps its energy, and rings at its own frequency") {
-  const double k = GENERATE(1.26, 50.0, 1000.0);
-  DeviceDynamics device(structured(k, 0.5, 0.0));
-  device.tick({2.0, 0.0, 0.0}, {});
-  // The mean of both masses' velocities is what the pulse gave the whole device.
-  const double mean_mm_s = 2.0 * 1000.0 * kT / 0.045;
-  std::vector<double> crossings_s;
-  double last = 0.0;
-  double greatest = 0.0;
-  double late_greatest = 0.0;
-  for (int i = 0; i < 20'000; ++i) {
-    device.tick({}, {});
-    const double relative = device.true_velocity_mm_s().x - mean_mm_s;
-    if (last < 0.0 && relative >= 0.0) {
-      crossings_s.push_back(kT * (i - relative / (relative - last)));
-    }
-    last = relative;
-    (i < 10'000 ? greatest : late_greatest) =
-        std::max(i < 10'000 ? greatest : late_greatest, std::abs(relative));
-  }
-  CHECK(late_greatest == Approx(greatest).epsilon(0.01));
-  REQUIRE(crossings_s.size() > 100);
-  const double measured_hz =
-      static_cast<double>(crossings_s.size() - 1) / (crossings_s.back() - crossings_s.front());
-  const double natural = std::sqrt(k / (0.001 * 0.045 * 0.25));
-  // The trapezium rule bends frequencies as the bilinear transform does.
-  const double expected_hz = std::atan(0.5 * natural * kT) / (kPi * kT);
-  CHECK(measured_hz == Approx(expected_hz).epsilon(1e-3));
 }
 
 TEST_CASE("encoders at the motors do not see a tip that bends while friction holds the motors") {

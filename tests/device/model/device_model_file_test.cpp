@@ -1,8 +1,8 @@
 // Files of device models: the schema against the reader, refusals, and what the program ships.
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "device/known_keys.hpp"
 #include "device/model/device_model.hpp"
+#include "device/schema_against_reader.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
@@ -11,9 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
-#include <map>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -24,69 +22,11 @@ namespace {
 
 using device::DeviceModel;
 using nlohmann::json;
-using Pointer = json::json_pointer;
 namespace fs = std::filesystem;
 
 const fs::path& config() {
   static const fs::path kConfig = fs::path(TOUCHTRIAL_SOURCE_DIR) / "config";
   return kConfig;
-}
-
-const json& schema() {
-  static const json kSchema =
-      json::parse(text_of(read_file(config() / "schema" / "device-model.schema.json")));
-  return kSchema;
-}
-
-struct Place {
-  Pointer pointer;
-  json rule;
-};
-
-/// Every object, and every value that is none, of the schema.
-struct Places {
-  std::vector<Place> objects;
-  std::vector<Place> leaves;
-};
-
-void collect_places(const json& node, const Pointer& pointer, Places& places) {
-  const json rule = node.contains("$ref")
-                        ? schema().at(Pointer(node.at("$ref").get<std::string>().substr(1)))
-                        : node;
-  if (rule.at("type") != "object") {
-    places.leaves.push_back({pointer, rule});
-    return;
-  }
-  CHECK(rule.at("additionalProperties") == false);
-  places.objects.push_back({pointer, rule});
-  for (const auto& [key, property] : rule.at("properties").items()) {
-    collect_places(property, pointer / key, places);
-  }
-}
-
-Places all_places() {
-  Places places;
-  collect_places(schema(), Pointer(), places);
-  return places;
-}
-
-/// A model in which a value may stand at this place: with what the place needs beside it.
-json model_around(const Pointer& pointer) {
-  json model = {{"name", "test"}};
-  const std::string place = pointer.to_string();
-  if (place.starts_with("/workspace")) {
-    model["workspace"] = {{"least_mm", {-1000, -1000, -1000}}, {"greatest_mm", {1000, 1000, 1000}}};
-  }
-  if (place == "/stribeck_mm_s") model["static_n"] = 1;
-  if (place == "/structure/stiffness_n_per_mm") {
-    model["mass_kg"] = 0.1;
-    model["structure"]["tip_share"] = 0.5;
-  }
-  if (place.starts_with("/provenance/")) {
-    const std::string key = place.substr(12, place.find('/', 12) - 12);
-    model["provenance"][key] = {{"source", "test"}, {"confidence", "guess"}};
-  }
-  return model;
 }
 
 /// \return the error for a model with this value; empty if it is accepted
@@ -99,21 +39,31 @@ std::string refusal_of(const json& model) {
   return "";
 }
 
-std::string refusal_at(const Pointer& pointer, const json& value) {
-  json model = model_around(pointer);
-  model[pointer] = value;
-  return refusal_of(model);
+/// What a value needs beside it.
+void complete(const SchemaAgainstReader::Pointer& pointer, json& model) {
+  const std::string place = pointer.to_string();
+  model["name"] = "test";
+  if (place.starts_with("/workspace")) {
+    model["workspace"] = {{"least_mm", {-1000, -1000, -1000}}, {"greatest_mm", {1000, 1000, 1000}}};
+  }
+  if (place == "/stribeck_mm_s") model["static_n"] = 1;
+  if (place == "/structure/stiffness_n_per_mm") {
+    model["mass_kg"] = 0.1;
+    model["structure"]["tip_share"] = 0.5;
+  }
+  if (place.starts_with("/provenance/")) {
+    const std::string key = place.substr(12, place.find('/', 12) - 12);
+    if (!key.starts_with("qqq")) {
+      model["provenance"][key] = {{"source", "test"}, {"confidence", "guess"}};
+    }
+  }
 }
 
-std::set<std::string> keys_of_reader_at(const Pointer& pointer) {
-  return known_keys_in(refusal_at(pointer / "qqqqqqqqqqqqqqqqqqqqqqqqqq", 1));
-}
-
-/// A list of three, of which the first is `number`; the others are valid at this place.
-json three(const Pointer& pointer, double number) {
-  const double other = pointer.back() == "least_mm" ? -1000.0 : 1000.0;
-  const bool scale = pointer.back() == "force_sign_scale";
-  return json::array({number, scale ? 1.0 : other, scale ? 1.0 : other});
+/// A greatest corner at the lowest place is refused beside a least one; one reading has no slope.
+bool is_refused_otherwise(const SchemaAgainstReader::Pointer& place, double number) {
+  return (place.back() == "greatest_mm" && number < 0.0) ||
+         (place.back() == "least_mm" && number > 0.0) ||
+         (place.back() == "velocity_readings" && number == 1.0);
 }
 
 DeviceModel full_model() {
@@ -129,79 +79,22 @@ DeviceModel full_model() {
 
 }  // namespace
 
-TEST_CASE("the schema of device models and the reader know the same keys") {
-  const Places places = all_places();
-  for (const Place& object : places.objects) {
-    INFO("in " << object.pointer.to_string());
-    std::set<std::string> in_schema;
-    for (const auto& [key, unused] : object.rule.at("properties").items()) in_schema.insert(key);
-    CHECK(keys_of_reader_at(object.pointer) == in_schema);
-    for (const json& required : object.rule.value("required", json::array())) {
-      json model = model_around(object.pointer / required.get<std::string>());
-      model[object.pointer].erase(required.get<std::string>());
-      CHECK_THAT(refusal_of(model), holds_text(required.get<std::string>()));
-    }
-  }
+TEST_CASE("the reader keeps keys, bounds, types, words and defaults of the schema of models") {
+  const SchemaAgainstReader both(
+      json::parse(text_of(read_file(config() / "schema" / "device-model.schema.json"))), refusal_of,
+      complete, is_refused_otherwise);
   const std::size_t parameters = 11 + 6;
-  CHECK(places.objects.size() == 1 + 4 + parameters);
-}
-
-TEST_CASE("the reader keeps the bounds and types of the schema of device models") {
-  int bounds = 0;
-  for (const Place& leaf : all_places().leaves) {
-    INFO(leaf.pointer.to_string());
-    const bool listed = leaf.rule.contains("items");
-    const json rule = listed ? leaf.rule.at("items") : leaf.rule;
-    const auto with = [&](double number) {
-      return refusal_at(leaf.pointer, listed ? three(leaf.pointer, number) : json(number));
-    };
-    for (const auto& [word, outwards] : {std::pair{"minimum", -1.0}, std::pair{"maximum", 1.0}}) {
-      if (!rule.contains(word)) continue;
-      const double bound = rule.at(word);
-      const double step =
-          rule.at("type") == "integer" ? 1.0 : 1e-9 * std::max(1.0, std::abs(bound));
-      // A greatest corner at the lowest place is refused for another reason.
-      const bool other_reason = (leaf.pointer.back() == "greatest_mm" && outwards < 0.0) ||
-                                (leaf.pointer.back() == "least_mm" && outwards > 0.0);
-      if (!other_reason) CHECK(with(bound).empty());
-      if (bound < 9e15) CHECK_FALSE(with(bound + outwards * step).empty());
-      ++bounds;
-    }
-    const std::string type = leaf.rule.at("type");
-    for (const json& value : {json("opened"), json(3.5), json(true), json::object(), json()}) {
-      const bool fits = (type == "string" && value.is_string()) ||
-                        (type == "number" && value.is_number()) ||
-                        (type == "boolean" && value.is_boolean());
-      if (fits) continue;
-      CHECK_FALSE(refusal_at(leaf.pointer, value).empty());
-    }
-    if (listed) {
-      CHECK_FALSE(refusal_at(leaf.pointer, json::array({1, 1})).empty());
-      CHECK_FALSE(refusal_at(leaf.pointer, json::array({1, 1, 1, 1})).empty());
-    }
-    if (leaf.rule.contains("enum")) {
-      for (const json& word : leaf.rule.at("enum")) CHECK(refusal_at(leaf.pointer, word).empty());
-      CHECK_FALSE(refusal_at(leaf.pointer, "diagonal").empty());
-    }
-  }
-  CHECK(bounds == 2 * (11 + 2 + 3 + 2 + 4 + 2));
-}
-
-TEST_CASE("the defaults of the schema of device models are the reader's") {
-  json full = {{"name", "test"}};
-  for (const Place& leaf : all_places().leaves) {
-    const bool in_workspace = leaf.pointer.to_string().starts_with("/workspace");
-    if (leaf.rule.contains("default") && !in_workspace)
-      full[leaf.pointer] = leaf.rule.at("default");
-  }
+  CHECK(both.objects().size() == 1 + 4 + parameters);
+  both.check_keys();
+  both.check_values();
+  CHECK(both.check_bounds() == 2 * (11 + 2 + 3 + 2 + 4 + 2));
+  json full = both.defaults();
+  full["name"] = "test";
+  full.erase("workspace");
   const DeviceModel bare = device::parse_device_model(R"({"name": "test"})", "bare");
   CHECK(device::device_model_json(device::parse_device_model(full.dump(), "full")) ==
         device::device_model_json(bare));
   CHECK(device::device_model_json(bare) == "{\n  \"name\": \"test\"\n}\n");
-}
-
-TEST_CASE("examples of the schema of device models are accepted") {
-  for (const json& example : schema().at("examples")) CHECK(refusal_of(example).empty());
 }
 
 TEST_CASE("a model is written as it is read") {
@@ -315,52 +208,6 @@ TEST_CASE("the shipped models are the files in config, and each says where its n
   CHECK(names.size() == device::shipped_device_models().size());
   for (const char* name : {"ideal", "touch", "touch_x", "premium_1_5", "falcon"}) {
     CHECK(names.contains(name));
-  }
-}
-
-TEST_CASE("the table of shipped device models in the docs has the files' numbers and confidences") {
-  const std::map<std::string, std::string> letters = {
-      {"opened", "O"}, {"derived", "D"}, {"memory", "M"}, {"guess", "G"}};
-  const auto text_of_number = [](const json& number) {
-    std::ostringstream text;
-    text << number.get<double>();
-    return text.str();
-  };
-  const auto cell_of = [&](const json& file, const std::string& key) -> std::string {
-    if (!file.contains(key)) return key == "zero_order_hold" ? "no" : "-";
-    const json& value = file.at(key);
-    std::string text;
-    if (value.is_boolean()) {
-      text = "yes";
-    } else if (value.is_object()) {
-      for (const char* part : {"stiffness_n_per_mm", "tip_share", "damping_ratio"}) {
-        text += (text.empty() ? "" : ", ") + text_of_number(value.at(part));
-      }
-    } else {
-      text = text_of_number(value);
-    }
-    return text + " " + letters.at(file.at("provenance").at(key).at("confidence"));
-  };
-  std::map<std::string, std::string> rows;
-  std::string header;
-  std::istringstream page(text_of(read_file(config() / "../docs/devices/models.md")));
-  for (std::string line; std::getline(page, line);) {
-    if (line.starts_with("| | ")) header = line.substr(3);
-    if (line.starts_with("| `")) rows[line.substr(3, line.find('`', 3) - 3)] = line;
-  }
-  REQUIRE(rows.size() >= 10);
-  std::vector<json> files;
-  std::istringstream names(header);
-  for (std::string name; names >> name;) {
-    if (name == "|") continue;
-    files.push_back(json::parse(text_of(read_file(config() / "devices" / (name + ".json")))));
-  }
-  CHECK(files.size() == device::shipped_device_models().size());
-  for (const auto& [key, row] : rows) {
-    std::string cells;
-    for (const json& file : files) cells += " | " + cell_of(file, key);
-    INFO(row);
-    CHECK_THAT(row, holds_text(cells + " |"));
   }
 }
 

@@ -141,17 +141,5 @@ TEST_CASE("a device whose link is lost says so") {
   CHECK(device.dynamics().delivered_force_n().z <= 0.5);
 }
 
-TEST_CASE("a device whose force is turned around drives the hand out of the wall's reach") {
-  device::DeviceModel model = device::device_model("ideal");
-  model.mass_kg = 0.05;
-  model.planted.force_sign_scale = {1.0, 1.0, -1.0};
-  ModelledDevice device(model);
-  KeptSamples kept;
-  static_cast<void>(press_on_wall(device, kept));
-  const auto deepest = std::ranges::min_element(
-      kept.samples, {}, [](const device::ServoSample& sample) { return sample.position_mm.z; });
-  CHECK(deepest->position_mm.z < -5.0);
-}
-
 }  // namespace
 }  // namespace touchtrial

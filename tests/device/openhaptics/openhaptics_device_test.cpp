@@ -261,16 +261,6 @@ TEST_CASE("openhaptics: a device that is lost in the middle of a run ends it wit
   CHECK(fake->force_n.get() == Vec3{});
 }
 
-TEST_CASE("openhaptics: halting sends zero until it is re-armed") {
-  LoadedHd fake;
-  device::OpenHapticsDevice device(settings_of_fake());
-  REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().x == 1.0; }));
-  device.halt();
-  REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->zero_forces_last > 20; }));
-  device.rearm();
-  CHECK(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().x == 1.0; }));
-}
-
 TEST_CASE("openhaptics: closing sends zeros, stops the scheduler first, and disables the device") {
   LoadedHd fake;
   {

@@ -102,26 +102,6 @@ TEST_CASE("a plug-in's mass rests where the wall and its spring hold each other"
   CHECK(kept.samples[1999].force_n.z == Approx(0.08).margin(1e-6));
 }
 
-TEST_CASE("a plug-in gets no force before it is ready, after a halt, or without a servo") {
-  const Vec3 force_n{1.0, 0.0, 0.0};
-  PluginRig rig(example_with(R"({"homing_ticks":20})"));
-  for (int i = 0; i < 20; ++i) {
-    REQUIRE(rig.motors_after(force_n) == Vec3{});
-    CHECK_FALSE(rig.sample().ready);
-    CHECK(rig.device.readiness() == device::DeviceReadiness::needs_homing);
-  }
-  rig.clock.pass_ms(2);
-  CHECK(rig.motors_after(force_n) == force_n);
-  rig.device.halt();
-  for (int i = 0; i < 5; ++i) CHECK(rig.motors_after(force_n) == Vec3{});
-  rig.device.rearm();
-  CHECK(rig.motors_after(force_n) == force_n);
-  rig.clock.pass_ms(8);
-  CHECK(rig.library.observed_force_n() == force_n);
-  rig.clock.pass_ms(4);
-  CHECK(rig.library.observed_force_n() == Vec3{});
-}
-
 TEST_CASE("a plug-in that needs no enabling gets its forces, and zeros, all the same") {
   const EnvironmentVariable broken("BROKEN_DEVICE", "no_enable");
   PluginRig rig({TOUCHTRIAL_BROKEN_PLUGIN, "{}"});
@@ -129,22 +109,6 @@ TEST_CASE("a plug-in that needs no enabling gets its forces, and zeros, all the 
   CHECK(rig.motors_after({0.0, 1.0, 0.0}) == Vec3{0.0, 1.0, 0.0});
   rig.device.halt();
   CHECK(rig.motors_after({0.0, 1.0, 0.0}) == Vec3{});
-}
-
-TEST_CASE("closing a plug-in's device leaves no force, and lets it be opened again") {
-  for (int i = 0; i < 3; ++i) {
-    const device::plugin::Library library(TOUCHTRIAL_EXAMPLE_PLUGIN);
-    {
-      PluginRig rig(example_with());
-      rig.clock.pass_ms(1);
-      REQUIRE(rig.motors_after({1.0, 0.0, 0.0}) == Vec3{1.0, 0.0, 0.0});
-      CHECK_THROWS_WITH(device::PluginDevice(example_with(), rig.clock.plugin_options()),
-                        "plugin example: does not open: the device is open already; close the "
-                        "other program");
-      CHECK(rig.motors_after({1.0, 0.0, 0.0}) == Vec3{1.0, 0.0, 0.0});
-    }
-    CHECK(library.observed_force_n() == Vec3{});
-  }
 }
 
 TEST_CASE("a library that is no plug-in, or half of one, is refused with what it lacks") {

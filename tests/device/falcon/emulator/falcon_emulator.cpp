@@ -130,30 +130,15 @@ bool FalconEmulator::plugged() const {
   return plugged_;
 }
 
-void FalconEmulator::drop_replies(int count) {
-  const std::scoped_lock lock(mutex_);
-  to_drop_ = count;
-}
-
 void FalconEmulator::shorten_replies(int count, std::size_t kept) {
   const std::scoped_lock lock(mutex_);
   to_shorten_ = count;
   kept_of_short_ = std::min<std::size_t>(kept, RunningFalcon::kPacketSize - 1);
 }
 
-void FalconEmulator::delay_replies(int count) {
-  const std::scoped_lock lock(mutex_);
-  to_delay_ = count;
-}
-
 void FalconEmulator::send_garbage(std::span<const std::uint8_t> bytes) {
   const std::scoped_lock lock(mutex_);
   chip_.to_host(bytes);
-}
-
-void FalconEmulator::stick_encoders(bool stuck) {
-  const std::scoped_lock lock(mutex_);
-  if (runs()) running_->stick_encoders(stuck);
 }
 
 void FalconEmulator::unplug() {
@@ -172,16 +157,6 @@ void FalconEmulator::replug(bool keeps_power) {
   boot_loader_ = BootLoader(options_.boot_loader);
 }
 
-void FalconEmulator::forget_homing() {
-  const std::scoped_lock lock(mutex_);
-  if (runs()) running_->forget_homing();
-}
-
-void FalconEmulator::press(std::uint32_t buttons) {
-  const std::scoped_lock lock(mutex_);
-  if (runs()) running_->press(buttons);
-}
-
 void FalconEmulator::set_hand(HandModel hand) {
   const std::scoped_lock lock(mutex_);
   hand_ = std::move(hand);
@@ -191,36 +166,6 @@ void FalconEmulator::set_hand(HandModel hand) {
 bool FalconEmulator::firmware_runs() const {
   const std::scoped_lock lock(mutex_);
   return runs();
-}
-
-bool FalconEmulator::all_homed() const {
-  const std::scoped_lock lock(mutex_);
-  return runs() && running_->all_homed();
-}
-
-std::uint64_t FalconEmulator::exchanges() const {
-  const std::scoped_lock lock(mutex_);
-  return runs() ? running_->exchanges() : 0;
-}
-
-Vec3 FalconEmulator::position_mm() const {
-  const std::scoped_lock lock(mutex_);
-  return runs() ? running_->position_mm() : Vec3{};
-}
-
-Vec3 FalconEmulator::force_n() const {
-  const std::scoped_lock lock(mutex_);
-  return runs() ? running_->force_n() : Vec3{};
-}
-
-std::array<std::int16_t, 3> FalconEmulator::motors() const {
-  const std::scoped_lock lock(mutex_);
-  return runs() ? running_->motors() : std::array<std::int16_t, 3>{};
-}
-
-Lamps FalconEmulator::lamps() const {
-  const std::scoped_lock lock(mutex_);
-  return runs() ? running_->lamps() : Lamps{};
 }
 
 int FalconEmulator::loads() const {

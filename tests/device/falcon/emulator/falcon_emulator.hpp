@@ -14,6 +14,7 @@
 #include "device/falcon/emulator/running_falcon.hpp"
 
 #include <mutex>
+#include <type_traits>
 
 namespace touchtrial::device::falcon {
 
@@ -51,37 +52,46 @@ class FalconEmulator {
 
   /// \name Mishaps. Those of replies begin with the next reply.
   ///@{
-  void drop_replies(int count);
+  void drop_replies(int count) { set(to_drop_, count); }
   /// Cuts the ends off this many replies.
   /// \param kept  bytes of each, 0 to 15
   void shorten_replies(int count, std::size_t kept);
   /// Keeps this many replies back, each until the host has sent one more command. Then it comes in
   /// a USB packet of its own before that command's reply.
-  void delay_replies(int count);
+  void delay_replies(int count) { set(to_delay_, count); }
   /// Sends bytes to the host at once, without a command.
   void send_garbage(std::span<const std::uint8_t> bytes);
-  void stick_encoders(bool stuck);
+  void stick_encoders(bool stuck) {
+    tell([=](RunningFalcon& falcon) { falcon.stick_encoders(stuck); });
+  }
   void unplug();
   /// \param keeps_power  the Falcon has its own supply: then firmware and homing survive
   void replug(bool keeps_power);
-  void forget_homing();
+  void forget_homing() {
+    tell([](RunningFalcon& falcon) { falcon.forget_homing(); });
+  }
   ///@}
 
   /// \name The person
   ///@{
-  void press(std::uint32_t buttons);  ///< bits 0 to 3: plus, forward, centre, minus
+  /// \param buttons  bits 0 to 3: plus, forward, centre, minus
+  void press(std::uint32_t buttons) {
+    tell([=](RunningFalcon& falcon) { falcon.press(buttons); });
+  }
   void set_hand(HandModel hand);
   ///@}
 
-  /// \name For checks of a test
+  /// \name For checks of a test; of the running firmware, zeros before it runs
   ///@{
   [[nodiscard]] bool firmware_runs() const;
-  [[nodiscard]] bool all_homed() const;
-  [[nodiscard]] std::uint64_t exchanges() const;  ///< since the firmware runs
-  [[nodiscard]] Vec3 position_mm() const;         ///< of the grip, device frame
-  [[nodiscard]] Vec3 force_n() const;             ///< of the motors on the hand, device frame
-  [[nodiscard]] std::array<std::int16_t, 3> motors() const;
-  [[nodiscard]] Lamps lamps() const;
+  [[nodiscard]] bool all_homed() const { return ask(&RunningFalcon::all_homed); }
+  [[nodiscard]] std::uint64_t exchanges() const { return ask(&RunningFalcon::exchanges); }
+  /// Of the grip, device frame.
+  [[nodiscard]] Vec3 position_mm() const { return ask(&RunningFalcon::position_mm); }
+  /// Of the motors on the hand, device frame.
+  [[nodiscard]] Vec3 force_n() const { return ask(&RunningFalcon::force_n); }
+  [[nodiscard]] std::array<std::int16_t, 3> motors() const { return ask(&RunningFalcon::motors); }
+  [[nodiscard]] Lamps lamps() const { return ask(&RunningFalcon::lamps); }
   [[nodiscard]] int loads() const;    ///< of firmware, that began since power came on
   [[nodiscard]] Bytes image() const;  ///< of the last load
   /// Every control request that was not stalled, in order.
@@ -101,6 +111,20 @@ class FalconEmulator {
   void deliver_late();
   void complain(const std::string& what);
   [[nodiscard]] bool runs() const { return running_.has_value(); }
+  template <typename Answer>
+  [[nodiscard]] std::decay_t<Answer> ask(Answer (RunningFalcon::*question)() const) const {
+    const std::scoped_lock lock(mutex_);
+    return runs() ? ((*running_).*question)() : std::decay_t<Answer>{};
+  }
+  template <typename Order>
+  void tell(const Order& order) {
+    const std::scoped_lock lock(mutex_);
+    if (runs()) order(*running_);
+  }
+  void set(int& count, int value) {
+    const std::scoped_lock lock(mutex_);
+    count = value;
+  }
 
   mutable std::mutex mutex_;
   EmulatorOptions options_;

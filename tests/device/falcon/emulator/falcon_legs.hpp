@@ -3,11 +3,16 @@
 #pragma once
 
 #include "core/vec.hpp"
+#include "device/falcon/falcon_kinematics.hpp"
 
 #include <array>
 #include <optional>
 
 namespace touchtrial::device::falcon {
+
+[[nodiscard]] constexpr Vec3 to_native_m(Vec3 device_mm) noexcept {
+  return 0.001 * device_mm + kCentreM;
+}
 
 /// \return theta1 of the three legs, rad, at a native position, m; nothing out of reach
 [[nodiscard]] std::optional<std::array<double, 3>> reference_theta1(Vec3 native_m);

@@ -11,13 +11,13 @@
 namespace touchtrial::device::falcon {
 namespace {
 
-constexpr double kCentreM = 0.155;
+constexpr double kCentreHeightM = 0.155;
 constexpr double kNmPerMotorValue = -1.0 / 6616.0;
 /// Where the encoders begin before they are homed.
 constexpr std::array<int, 3> kUnhomedOrigin = {1234, -777, 2468};
 
 Vec3 native_of_mm(Vec3 mm) {
-  return {mm.x / 1000.0, mm.y / 1000.0, mm.z / 1000.0 + kCentreM};
+  return {mm.x / 1000.0, mm.y / 1000.0, mm.z / 1000.0 + kCentreHeightM};
 }
 
 int count_of(double theta1_rad) {
@@ -43,7 +43,7 @@ std::optional<std::int16_t> motor_value(std::span<const std::uint8_t> nibbles) {
 }  // namespace
 
 RunningFalcon::RunningFalcon(HandModel hand, bool homed) : hand_(std::move(hand)) {
-  native_m_ = {0.0, 0.0, kCentreM};
+  native_m_ = {0.0, 0.0, kCentreHeightM};
   move_hand();
   if (homed) {
     homed_.fill(true);
@@ -60,7 +60,7 @@ void RunningFalcon::forget_homing() {
 }
 
 Vec3 RunningFalcon::position_mm() const {
-  return 1000.0 * (native_m_ - Vec3{0.0, 0.0, kCentreM});
+  return 1000.0 * (native_m_ - Vec3{0.0, 0.0, kCentreHeightM});
 }
 
 std::vector<RunningFalcon::Packet> RunningFalcon::receive(std::span<const std::uint8_t> bytes) {

@@ -10,7 +10,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::device::falcon {
@@ -85,16 +87,20 @@ class Lockstep {
 class LockstepDevice : public PassingDevice {
  public:
   /// \param device,lockstep  must outlive this
-  LockstepDevice(device::HapticDevice& device, Lockstep& lockstep) noexcept
-      : PassingDevice(device), lockstep_(lockstep) {}
+  /// \param before_read  on the servo's thread, while the driver's thread rests; may be empty
+  LockstepDevice(device::HapticDevice& device, Lockstep& lockstep,
+                 std::function<void()> before_read = {})
+      : PassingDevice(device), lockstep_(lockstep), before_read_(std::move(before_read)) {}
 
   [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
+    if (before_read_) before_read_();
     lockstep_.step();
     return PassingDevice::read(sample);
   }
 
  private:
   Lockstep& lockstep_;
+  std::function<void()> before_read_;
 };
 
 }  // namespace touchtrial::device::falcon

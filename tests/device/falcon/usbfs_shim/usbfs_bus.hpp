@@ -14,18 +14,6 @@
 
 namespace touchtrial::testing {
 
-struct BusDevice {
-  UsbModel* model = nullptr;
-  UsbIdentity identity;
-  bool permitted = true;
-  bool used_elsewhere = false;
-  bool kernel_driver = false;
-  bool deaf = false;        ///< keeps completed transfers
-  bool out_stuck = false;   ///< the bulk OUT endpoint answers NAK
-  bool out_halted = false;  ///< ... or STALL, until it is cleared
-  int claimed_by = -1;      ///< the handle's descriptor
-};
-
 /// An open node. Its descriptor is the writing end of a pipe that is kept full, so that POLLOUT
 /// comes only with a completed transfer, and POLLERR, by closing the reading end, with unplugging.
 struct BusHandle {

@@ -28,28 +28,8 @@ void ShimmedUsbDevice::plug() {
   UsbfsBus::instance().add(device_);
 }
 
-void ShimmedUsbDevice::allow(bool permitted) {
-  UsbfsBus::instance().change([&] { device_->permitted = permitted; });
-}
-
-void ShimmedUsbDevice::use_elsewhere(bool used) {
-  UsbfsBus::instance().change([&] { device_->used_elsewhere = used; });
-}
-
-void ShimmedUsbDevice::deafen(bool deaf) {
-  UsbfsBus::instance().change([&] { device_->deaf = deaf; });
-}
-
-void ShimmedUsbDevice::stick_out(bool stuck) {
-  UsbfsBus::instance().change([&] { device_->out_stuck = stuck; });
-}
-
-void ShimmedUsbDevice::halt_out() {
-  UsbfsBus::instance().change([&] { device_->out_halted = true; });
-}
-
-void ShimmedUsbDevice::attach_kernel_driver(bool is_attached) {
-  UsbfsBus::instance().change([&] { device_->kernel_driver = is_attached; });
+void ShimmedUsbDevice::set(bool BusDevice::*part, bool value) {
+  UsbfsBus::instance().change([&] { (*device_).*part = value; });
 }
 
 bool ShimmedUsbDevice::has_kernel_driver() const {

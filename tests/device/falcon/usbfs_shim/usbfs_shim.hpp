@@ -13,7 +13,17 @@
 
 namespace touchtrial::testing {
 
-struct BusDevice;
+struct BusDevice {
+  UsbModel* model = nullptr;
+  UsbIdentity identity;
+  bool permitted = true;
+  bool used_elsewhere = false;
+  bool kernel_driver = false;
+  bool deaf = false;        ///< keeps completed transfers
+  bool out_stuck = false;   ///< the bulk OUT endpoint answers NAK
+  bool out_halted = false;  ///< ... or STALL, until it is cleared
+  int claimed_by = -1;      ///< the handle's descriptor
+};
 
 /// A device that may be plugged into the bus. Any thread may use it.
 class ShimmedUsbDevice {
@@ -31,14 +41,12 @@ class ShimmedUsbDevice {
   /// Plugs it in again, at the next address: the old one never works again, as on a real bus.
   void plug();
 
-  void allow(bool permitted);     ///< whether the node may be opened
-  void use_elsewhere(bool used);  ///< whether another program has claimed it
-  void attach_kernel_driver(bool is_attached);
-  void deafen(bool deaf);  ///< whether the bus keeps transfers that ended
-  /// Whether the device takes no packets (it answers NAK): bulk OUT transfers stay under way.
-  void stick_out(bool stuck);
-  /// The device refuses packets (STALL) until its bulk OUT endpoint is cleared.
-  void halt_out();
+  void allow(bool permitted) { set(&BusDevice::permitted, permitted); }
+  void use_elsewhere(bool used) { set(&BusDevice::used_elsewhere, used); }
+  void attach_kernel_driver(bool is_attached) { set(&BusDevice::kernel_driver, is_attached); }
+  void deafen(bool deaf) { set(&BusDevice::deaf, deaf); }
+  void stick_out(bool stuck) { set(&BusDevice::out_stuck, stuck); }
+  void halt_out() { set(&BusDevice::out_halted, true); }
   [[nodiscard]] bool has_kernel_driver() const;
   [[nodiscard]] bool is_claimed() const;
   [[nodiscard]] int open_handles() const;  ///< that libusb has not closed
@@ -47,6 +55,8 @@ class ShimmedUsbDevice {
   void with_model(const std::function<void()>& action);
 
  private:
+  void set(bool BusDevice::*part, bool value);
+
   std::shared_ptr<BusDevice> device_;
 };
 

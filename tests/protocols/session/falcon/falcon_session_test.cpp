@@ -56,37 +56,21 @@ std::unique_ptr<FalconDevice> open_in_lockstep(const device::FalconSettings& set
                                         std::move(options));
 }
 
+/// The driver, and what lets its thread go on.
+struct PacedFalcon {
+  explicit PacedFalcon(const device::FalconSettings& settings)
+      : driver(open_in_lockstep(settings, lockstep)) {}
+
+  Lockstep lockstep;
+  std::unique_ptr<FalconDevice> driver;
+};
+
 /// The real driver, one exchange through libusb a servo tick.
-class SteppedFalcon final : public device::HapticDevice {
+class SteppedFalcon final : private PacedFalcon, public LockstepDevice {
  public:
-  /// \param before_read  on the servo's thread, while the USB thread rests
   SteppedFalcon(const device::FalconSettings& settings, std::function<void()> before_read)
-      : falcon_(open_in_lockstep(settings, lockstep_)), before_read_(std::move(before_read)) {}
-
-  [[nodiscard]] device::DeviceInfo info() const override { return falcon_->info(); }
-  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
-    before_read_();
-    lockstep_.step();
-    return falcon_->read(sample);
-  }
-  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
-    return falcon_->write(force_n);
-  }
-  [[nodiscard]] Vec3 support_force_n(const device::DeviceSample& sample) noexcept override {
-    return falcon_->support_force_n(sample);
-  }
-  void halt() noexcept override { falcon_->halt(); }
-  void rearm() noexcept override { falcon_->rearm(); }
-  [[nodiscard]] device::DeviceFault fault() const noexcept override { return falcon_->fault(); }
-  [[nodiscard]] device::DeviceReadiness readiness() const noexcept override {
-    return falcon_->readiness();
-  }
-  void steps(int count) noexcept { lockstep_.steps(count); }
-
- private:
-  Lockstep lockstep_;
-  std::unique_ptr<FalconDevice> falcon_;
-  std::function<void()> before_read_;
+      : PacedFalcon(settings), LockstepDevice(*driver, lockstep, std::move(before_read)) {}
+  void steps(int count) noexcept { lockstep.steps(count); }
 };
 
 /// Does what the program asks for: plugs the Falcon in, homes its grip, and consents.
