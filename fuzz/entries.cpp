@@ -6,7 +6,6 @@
 #include "device/inverse3/service_messages.hpp"
 #include "engine/image_file.hpp"
 #include "protocols/design/key_protection.hpp"
-#include "protocols/design/recovery_sheet.hpp"
 #include "protocols/design/study.hpp"
 #include "protocols/registration/registration.hpp"
 #include "protocols/simulation/subject_model.hpp"
@@ -76,18 +75,6 @@ void check_head(const store::HeadRecord& record) {
   const std::vector<PublicKey> signers = {fuzzing_signer().public_half()};
   const std::string copy = store::head_copy_of(record, fuzzing_signer(), "study.db.head");
   require(store::read_head_copy(copy, signers).record == record, "a head survives being stored");
-}
-
-/// The study for which sheets of the corpus were printed.
-const design::Study& recovered_study() {
-  registration::register_protocols();
-  static const design::Study study = design::parse_study(
-      R"({"study": "small", "protocol": "classification",
-          "classes": [{"label": "rough", "images": ["rough.png"]},
-                      {"label": "smooth", "images": ["smooth.png"]}],
-          "methods": [{"name": "adaptive"}]})",
-      "folder", "study.json");
-  return study;
 }
 
 /// Adds a bulk transfer without the FTDI's status bytes.
@@ -173,24 +160,6 @@ void read_as_protected(ByteView bytes) {
     if (!signer) return;
     require(text.find("\nsigns " + to_hex(ByteView(*signer)) + "\n") != std::string::npos,
             "a protected file names who signs with it");
-  });
-}
-
-void read_as_recovery(ByteView bytes) {
-  design::RecoveryReader reader;
-  std::istringstream lines(text_of(bytes));
-  for (std::string line; std::getline(lines, line);) {
-    accept_or_refuse([&] { static_cast<void>(reader.take(line)); });
-  }
-  accept_or_refuse([&] {
-    const design::StudyKey key = reader.key_for(recovered_study());
-    require(reader.missing() == 0, "a key takes every line");
-    design::RecoveryReader again;
-    int number = 0;
-    for (const std::string& line : design::recovery_lines(key)) {
-      require(again.take(std::to_string(++number) + ": " + line), "a printed line is read");
-    }
-    require(again.key_for(recovered_study()).master == key.master, "a key survives its sheet");
   });
 }
 

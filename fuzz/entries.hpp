@@ -20,8 +20,6 @@ void read_as_trace(ByteView bytes);
 void read_as_head(ByteView bytes);
 /// A key or a station's file under a passphrase.
 void read_as_protected(ByteView bytes);
-/// The lines of a recovery sheet.
-void read_as_recovery(ByteView bytes);
 /// The data of a Falcon: bulk transfers, each preceded by one byte with its size.
 void read_as_falcon(ByteView bytes);
 /// Any message of the Inverse3's service.
@@ -32,13 +30,12 @@ struct Entry {
   void (*read)(ByteView bytes);
 };
 
-inline constexpr std::array<Entry, 9> kEntries = {{{"image", read_as_image},
+inline constexpr std::array<Entry, 8> kEntries = {{{"image", read_as_image},
                                                    {"study", read_as_study},
                                                    {"subject", read_as_subject},
                                                    {"trace", read_as_trace},
                                                    {"head", read_as_head},
                                                    {"protected", read_as_protected},
-                                                   {"recovery", read_as_recovery},
                                                    {"falcon", read_as_falcon},
                                                    {"inverse3", read_as_inverse3}}};
 

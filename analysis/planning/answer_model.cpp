@@ -323,7 +323,8 @@ AnswerModel answer_model_of(const design::StudyKey& key, const engine::Pack& pac
   const session::StimulusSource source(pack, key.study.rendering);
   const simulation::LabelledFields fields(key, source);
   const simulation::FeltKnowledge knowledge =
-      simulation::typical_knowledge(fields, key.study, subject, options.seed, options.jobs);
+      simulation::learn_by_feeling(fields, subject, key.study.rendering.max_force_n, options.seed,
+                                   options.jobs);
   const simulation::FeltBank bank(
       fields, key.study, subject,
       {.explorations = options.explorations, .seed = options.seed, .jobs = options.jobs}, progress);

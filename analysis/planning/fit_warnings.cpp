@@ -171,12 +171,7 @@ std::string keys_that_fits_ignore(const simulation::SubjectModel& subject) {
   using simulation::Training;
   std::vector<std::string> keys;
   if (subject.training == Training::own) keys.emplace_back("training");
-  if (subject.training != Training::none && subject.memory_noise > 0.0) {
-    keys.emplace_back("memory_noise");
-  }
-  if (subject.training == Training::none && subject.mapping_noise > 0.0) {
-    keys.emplace_back("mapping_noise");
-  }
+  if (subject.memory_noise > 0.0) keys.emplace_back("memory_noise");
   if (subject.learning.factor > 1.0) keys.emplace_back("learning");
   if (subject.period_noise_spread > 0.0) keys.emplace_back("period_noise_spread");
   if (subject.serial.is_on()) keys.emplace_back("serial");

@@ -60,9 +60,6 @@ std::string digest_of(const simulation::SubjectModel& subject) {
 std::string words_of_training(const simulation::SubjectModel& subject) {
   std::string words;
   if (subject.training == simulation::Training::own) words += ", each by a training of their own";
-  if (subject.training == simulation::Training::none) {
-    return fmt::format(", untrained, mapping noise {}", number_text(subject.mapping_noise));
-  }
   if (subject.memory_noise > 0.0) words += ", memory noise " + number_text(subject.memory_noise);
   return words;
 }

@@ -129,7 +129,7 @@ ScheduleDraw StudyKey::draw_of(int enrolment, Draws draws, int visit) const {
   if (own == nullptr) {
     throw UsageError("study " + study.name + ": enrolment number " + std::to_string(enrolment) +
                      " is no station's; hand out more with `touchtrial plan --extend`, as many as "
-                     "then if the key is from before it, or from an older recovery sheet");
+                     "then if the key is from before it");
   }
   return draw_for(study, *own, enrolment, draws, visit);
 }

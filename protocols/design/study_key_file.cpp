@@ -2,7 +2,6 @@
 /// checksum over it, so that a change of any byte is detected.
 #include "core/errors.hpp"
 #include "protocols/design/key_protection.hpp"
-#include "protocols/design/recovery_sheet.hpp"
 #include "protocols/design/study_key.hpp"
 
 #include <algorithm>
@@ -14,6 +13,16 @@ namespace touchtrial::design {
 namespace {
 
 using nlohmann::json;
+
+/// Supplies a stored secret, so that the same code makes and rebuilds a key.
+class StoredEntropy final : public Entropy {
+ public:
+  explicit StoredEntropy(const SecretKey& master) : master_(master) {}
+  [[nodiscard]] SecretKey secret(std::string_view) override { return master_; }
+
+ private:
+  SecretKey master_;
+};
 
 /// Of both files.
 constexpr int kVersion = 3;
@@ -142,8 +151,10 @@ StudyKey key_of(const json& document, const std::filesystem::path& path) {
   for (std::size_t i = 0; i < stations.size(); ++i) {
     stations[i].ranges = ranges_from(document["stations"][i].at("enrolments"));
   }
-  StudyKey key = key_from_master(digest_from(document.at("master")), study_from(document, path),
-                                 std::move(stations), document.at("simulated").get<bool>());
+  StoredEntropy stored(digest_from(document.at("master")));
+  StudyKey key =
+      make_study_key(study_from(document, path), stored, document.at("simulated").get<bool>());
+  divide(key, std::move(stations));
   key.pack_folder = found_from_key(document.at("pack_folder").get<std::string>(), path);
   const bool same = key.study_id == document.at("study_id").get<std::string>() &&
                     stimuli_to_json(key) == document.at("stimuli");

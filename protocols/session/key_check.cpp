@@ -20,12 +20,11 @@ void require_holds(bool holds, const char* what) {
   if (!holds) throw VerificationError(what);
 }
 
-/// The key signed for this station since it was written, or since its recovery sheet was printed.
+/// The key signed for this station since it was written.
 [[noreturn]] void refuse_older_key(const std::string& what) {
   throw VerificationError(what +
-                          ": the key, or the recovery sheet that it was restored from, is from "
-                          "before the last `touchtrial plan`; take a newer one, or run the same "
-                          "`plan` again with this key");
+                          ": the key is from before the last `touchtrial plan`; take a newer "
+                          "copy, or run the same `plan` again with this key");
 }
 
 void require_same_study(const design::StudyKey& key, const design::StationKey& station) {

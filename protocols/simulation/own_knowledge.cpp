@@ -1,15 +1,12 @@
 #include "protocols/simulation/own_knowledge.hpp"
 
 #include "core/random.hpp"
-#include "protocols/simulation/pictured_knowledge.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <map>
 #include <numeric>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace touchtrial::simulation {
@@ -59,17 +56,6 @@ void misremember(FeltKnowledge& known, double noise, RandomStream random) {
   }
 }
 
-/// Each class has errors of its own, because it has one picture.
-void mismatch(FeltKnowledge& known, double noise, RandomStream random) {
-  std::map<std::string, Errors> errors;
-  for (const std::string& label : known.label_of_prototype) {
-    if (!errors.contains(label)) errors[label] = drawn_errors(noise, random);
-  }
-  for (engine::FeltExample& example : known.examples) {
-    shift(example, errors.at(known.label_of_prototype[static_cast<std::size_t>(example.label)]));
-  }
-}
-
 }  // namespace
 
 std::shared_ptr<const FeltKnowledge> learn(const LabelledFields& fields, const design::Study& study,
@@ -77,33 +63,23 @@ std::shared_ptr<const FeltKnowledge> learn(const LabelledFields& fields, const d
                                            int jobs) {
   SubjectModel felt = subject;
   if (subject.training == Training::own) felt.training_passes *= kPassesToDrawFrom;
-  return std::make_shared<const FeltKnowledge>(typical_knowledge(fields, study, felt, seed, jobs));
+  return std::make_shared<const FeltKnowledge>(
+      learn_by_feeling(fields, felt, study.rendering.max_force_n, seed, jobs));
 }
 
 std::shared_ptr<const FeltKnowledge> remembered(const std::shared_ptr<const FeltKnowledge>& learnt,
                                                 const SubjectModel& subject, std::uint64_t seed,
                                                 int number) {
   const bool has_own = subject.training == Training::own;
-  const bool is_untrained = subject.training == Training::none;
-  const double noise = is_untrained ? subject.mapping_noise : subject.memory_noise;
-  if (!has_own && noise == 0.0) return learnt;
+  if (!has_own && subject.memory_noise == 0.0) return learnt;
   const auto index = static_cast<std::uint64_t>(number);
   FeltKnowledge known = has_own ? own_passes(*learnt, subject.training_passes,
                                              RandomStream(seed, "subject: own training", index))
                                 : *learnt;
-  if (is_untrained) {
-    mismatch(known, noise, RandomStream(seed, "subject: mapping", index));
-  } else if (noise > 0.0) {
-    misremember(known, noise, RandomStream(seed, "subject: memory", index));
+  if (subject.memory_noise > 0.0) {
+    misremember(known, subject.memory_noise, RandomStream(seed, "subject: memory", index));
   }
   return std::make_shared<const FeltKnowledge>(std::move(known));
-}
-
-FeltKnowledge typical_knowledge(const LabelledFields& fields, const design::Study& study,
-                                const SubjectModel& subject, std::uint64_t seed, int jobs) {
-  FeltKnowledge felt = learn_by_feeling(fields, subject, study.rendering.max_force_n, seed, jobs);
-  return subject.training == Training::none ? expected_from_pictures(felt, look_at_pictures(study))
-                                            : felt;
 }
 
 }  // namespace touchtrial::simulation

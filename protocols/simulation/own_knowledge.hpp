@@ -12,12 +12,9 @@
 namespace touchtrial::simulation {
 
 /// What a study's participants learn from, by the subject's kind of training: the explorations that
-/// all remember (`shared`); four times as many, of which each remembers some (`own`); or, for
-/// people who have felt none with its picture (`none`), what the pictures make expect, with the
-/// spread of such explorations. A function of its arguments, except for `jobs`. Cost: that of the
-/// explorations, 1.5 ms each for 10 s.
-/// \param study  of the fields; without training, its pictures are read
-/// \throws FileError if a picture is needed and cannot be read
+/// all remember (`shared`), or four times as many, of which each remembers some (`own`). A function
+/// of its arguments, except for `jobs`. Cost: that of the explorations, 1.5 ms each for 10 s.
+/// \param study  of the fields
 [[nodiscard]] std::shared_ptr<const FeltKnowledge> learn(const LabelledFields& fields,
                                                          const design::Study& study,
                                                          const SubjectModel& subject,
@@ -30,12 +27,5 @@ namespace touchtrial::simulation {
 [[nodiscard]] std::shared_ptr<const FeltKnowledge> remembered(
     const std::shared_ptr<const FeltKnowledge>& learnt, const SubjectModel& subject,
     std::uint64_t seed, int number);
-
-/// What somebody knows who remembers everything that a single training teaches, without errors: a
-/// participant in the middle of the population.
-[[nodiscard]] FeltKnowledge typical_knowledge(const LabelledFields& fields,
-                                              const design::Study& study,
-                                              const SubjectModel& subject, std::uint64_t seed,
-                                              int jobs);
 
 }  // namespace touchtrial::simulation

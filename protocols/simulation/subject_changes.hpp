@@ -2,17 +2,13 @@
 /// long they think: parts of a subject model. Source: docs/planning.md.
 #pragma once
 
-#include <string_view>
-
 namespace touchtrial::simulation {
 
 /// How participants come to know which picture belongs to which feeling.
 enum class Training {
   shared,  ///< everybody remembers the same explorations of each stimulus
   own,     ///< everybody remembers explorations of their own
-  none,    ///< nobody has felt a stimulus with its picture: they go by what the pictures show
 };
-[[nodiscard]] std::string_view name_of(Training training) noexcept;
 
 /// Noise is larger at first, and its logarithm falls exponentially with the presentations felt.
 struct Learning {

@@ -24,13 +24,6 @@ constexpr NumberRange kLongestS{0.1, 600.0};
 
 }  // namespace
 
-std::string_view name_of(Training training) noexcept {
-  using enum Training;
-  static constexpr auto kNames =
-      std::to_array<Named<Training>>({{"own", own}, {"none", none}, {"shared", shared}});
-  return name_in(kNames, training);
-}
-
 void read_number(const JsonObject& object, std::string_view key, const NumberRange& range,
                  double& number) {
   if (const auto value = object.find(key)) number = value->number(range);

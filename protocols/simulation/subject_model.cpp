@@ -65,13 +65,11 @@ void read_label_swap(const JsonValue& value, SubjectModel& model) {
 }
 
 constexpr std::array kTrainings{Named<Training>{"shared", Training::shared},
-                                Named<Training>{"own", Training::own},
-                                Named<Training>{"none", Training::none}};
+                                Named<Training>{"own", Training::own}};
 
 void read_training(const JsonObject& object, SubjectModel& model) {
   if (const auto training = object.find("training")) model.training = training->choice(kTrainings);
   read_number(object, "memory_noise", kNoise, model.memory_noise);
-  read_number(object, "mapping_noise", kNoise, model.mapping_noise);
 }
 
 void read_speeds(const JsonObject& object, SubjectModel& model) {
@@ -107,7 +105,6 @@ SubjectModel read_model(const JsonValue& document, const std::string& source) {
                                              "training_passes",
                                              "training",
                                              "memory_noise",
-                                             "mapping_noise",
                                              "learning",
                                              "period_noise_spread",
                                              "serial",
@@ -218,9 +215,8 @@ std::string subject_model_json(const SubjectModel& model) {
                   {"fastest_mm_s", model.fastest_mm_s},
                   {"hand", std::move(hand)},
                   {"training_passes", model.training_passes},
-                  {"training", name_of(model.training)},
+                  {"training", name_in(kTrainings, model.training)},
                   {"memory_noise", model.memory_noise},
-                  {"mapping_noise", model.mapping_noise},
                   {"learning", json_of(model.learning)},
                   {"period_noise_spread", model.period_noise_spread},
                   {"serial", json_of(model.serial)},

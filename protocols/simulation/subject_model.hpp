@@ -64,10 +64,8 @@ struct SubjectModel {
   int training_passes = 8;  ///< explorations of each stimulus before the first trial, >= 1
   Training training = Training::shared;
   /// Standard deviation of the error, in every felt log intensity, with which a participant
-  /// remembers a stimulus, >= 0. Of no effect without training.
+  /// remembers a stimulus, >= 0.
   double memory_noise = 0.0;
-  /// The same for what an untrained participant expects of a picture, >= 0.
-  double mapping_noise = 0.0;
   Learning learning;
   /// Differences between the blocks and visits of a participant: standard deviation of the natural
   /// logarithm of the noise, >= 0.

@@ -1,4 +1,4 @@
-// The investigator's key: checked, printed, restored, copied and protected, as a user does it.
+// The investigator's key: checked, copied and protected, as a user does it.
 #include "app/study_folder.hpp"
 #include "protocols/design/key_protection.hpp"
 #include "support/catch.hpp"
@@ -19,10 +19,9 @@ struct KeyedStudy : StudyFolder {
     done("prepare @cloths.json", options);
   }
   /// `touchtrial key COMMAND ...`
-  [[nodiscard]] ProgramResult key(std::vector<std::string> words,
-                                  const std::string& input = "") const {
+  [[nodiscard]] ProgramResult key(std::vector<std::string> words) const {
     words.insert(words.begin(), "key");
-    return run_touchtrial(path(), words, input);
+    return run_touchtrial(path(), words);
   }
 };
 
@@ -107,53 +106,6 @@ TEST_CASE("key check counts the sessions of a database that the key opens") {
   CHECK(json::parse(torn.output).at("safety") == 3);
   CHECK_THAT(torn.output, holds_text("session 1: the safety key does not open"));
   check_refused(study.type("key check @a.db --key @cloths.key"), 3, {"is not the key of"});
-}
-
-TEST_CASE("a key that was lost is made again from its printed sheet") {
-  const KeyedStudy study;
-  succeeded(study.session("P01"));
-  const std::string key = content(study.path() / "cloths.key");
-  const std::string station = content(study.path() / "cloths.station");
-  study.done("key sheet @cloths.key --out @sheet.txt");
-  CHECK((fs::status(study.path() / "sheet.txt").permissions() & fs::perms(0777)) ==
-        fs::perms(0600));
-  study.done("key sheet @cloths.key --out @sheet.html");
-  const std::string sheet = content(study.path() / "sheet.txt");
-  const std::string master = json::parse(key).at("master");
-  for (std::size_t i = 0; i < master.size(); i += 4) {
-    CHECK_THAT(sheet, holds_text(master.substr(i, 4)));
-    CHECK_THAT(content(study.path() / "sheet.html"), holds_text(master.substr(i, 4)));
-  }
-  check_refused(study.type("key sheet @cloths.key --out @sheet.txt"), 2, {"exists already"});
-  check_refused(study.type("key sheet @cloths.key --out @sheet.doc"), 2, {".html or .txt"});
-
-  fs::remove(study.path() / "cloths.key");
-  fs::remove(study.path() / "cloths.station");
-  const std::vector<std::string> restore = {"restore", study.in("cloths.json"), "--out",
-                                            study.in("cloths.key")};
-  std::string mistyped = sheet;
-  const std::size_t place = mistyped.find("3: ") + 4;
-  mistyped[place] = mistyped[place] == '7' ? '8' : '7';
-  check_refused(study.key(restore, mistyped), 2, {"line 3 is not what the sheet says"});
-  check_refused(study.key(restore, "1: 12\n"), 2, {"line 1 is not what the sheet says"});
-  check_refused(study.key(restore, "nothing\n"), 2, {"line 1 of the sheet is missing"});
-  check_refused(study.key(restore), 2, {"standard input, which is empty"});
-  CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
-
-  const ProgramResult restored = succeeded(study.key(restore, sheet));
-  CHECK(restored.errors.empty());
-  CHECK(content(study.path() / "cloths.key") == key);
-  check_refused(study.key(restore, sheet), 2, {"exists already"});
-  const ProgramResult opened = study.done("key check @study.db --key @cloths.key");
-  CHECK_THAT(opened.output, holds_text("opens 1 session ("));
-  study.done("prepare @cloths.json");
-  CHECK(content(study.path() / "cloths.station") == station);
-}
-
-TEST_CASE("a simulated study's key needs no sheet") {
-  const StudyFolder study;
-  succeeded(study.simulate("a.db"));
-  check_refused(study.type("key sheet @a.db.key --out @sheet.txt"), 2, {"is simulated"});
 }
 
 TEST_CASE("a protected key opens with its passphrase alone, and stays protected") {
@@ -272,25 +224,4 @@ TEST_CASE("a terminal asks for passphrases and shows nothing of them") {
     CHECK(run.finish() == 2);
     CHECK_THAT(run.shown(), holds_text("no passphrase was given"));
   }
-}
-
-TEST_CASE("a terminal asks for the lines of a sheet, and again for one that is mistyped") {
-  const KeyedStudy study;
-  study.done("key sheet @cloths.key --out @sheet.txt");
-  const std::string key = content(study.path() / "cloths.key");
-  fs::remove(study.path() / "cloths.key");
-  const std::string sheet = content(study.path() / "sheet.txt");
-  TerminalRun run({"key", "restore", study.in("cloths.json"), "--out", study.in("cloths.key")});
-  for (int line = 1; line <= 7; ++line) {
-    const std::string label = "  " + std::to_string(line) + ": ";
-    const std::size_t begin = sheet.find(label);
-    REQUIRE(begin != std::string::npos);
-    const std::size_t text = begin + label.size();
-    const std::string typed = sheet.substr(text, sheet.find('\n', text) - text);
-    const std::string prompt = "line " + std::to_string(line) + ": ";
-    if (line == 4) run.answer(prompt, "0" + typed);
-    run.answer(prompt, line % 2 == 0 ? typed : std::to_string(line) + ": " + typed);
-  }
-  CHECK(run.finish() == 0);
-  CHECK(content(study.path() / "cloths.key") == key);
 }

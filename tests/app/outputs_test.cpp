@@ -49,8 +49,6 @@ const std::vector<Output> kNeverReplaced = {
     {"run", "--db", "@cloths.json --participant P01 --subject @quick.json --headless --db @o.db",
      "o.db"},
     {"merge", "--out", "@cloths.db --out @o.db", "o.db"},
-    {"key sheet", "--out", "@cloths.key --out @o.html", "o.html"},
-    {"key restore", "--out", "@cloths.json --out @o.key", "o.key"},
     {"key copy", "--out", "@cloths.key --out @o.key", "o.key"},
     {"device bring-up", "--out", "falcon --out @o.json", "o.json"},
 };

@@ -49,10 +49,10 @@ class IdentifyingParticipant final : public SimulatedParticipant {
   SeenPictures pictures_;
 };
 
-/// Teaches the study's labelled fields as the subject model says: to all alike, to each by passes
-/// of their own, or not at all.
+/// Teaches the study's labelled fields as the subject model says: to all alike, or to each by passes
+/// of their own.
 /// \throws StudyError if the subject names a class that the study does not have
-/// \throws FileError if the pack lacks a stimulus, or a picture is needed and cannot be read
+/// \throws FileError if the pack lacks a stimulus
 [[nodiscard]] std::unique_ptr<const Population> make_population(const PopulationSetting& setting);
 
 }  // namespace touchtrial::simulation::identification

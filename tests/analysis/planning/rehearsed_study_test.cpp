@@ -135,7 +135,6 @@ simulation::SubjectModel changing_subject(simulation::Training training) {
   simulation::SubjectModel subject = hasty_subject();
   subject.training = training;
   subject.memory_noise = 0.3;
-  subject.mapping_noise = 0.4;
   subject.learning = {.factor = 6.0, .trials = 30.0, .forgotten = 0.9, .spread = 0.5};
   subject.period_noise_spread = 0.5;
   subject.serial = {.answer = 1.0, .answer_spread = 0.5, .stimulus = -2.0, .stimulus_spread = 0.5};
@@ -147,8 +146,7 @@ simulation::SubjectModel changing_subject(simulation::Training training) {
 TEST_CASE(
     "the servo path agrees with simulate for people who change, over visits, blocks, breaks, catch "
     "trials and lead-ins") {
-  const auto training =
-      GENERATE(simulation::Training::own, simulation::Training::shared, simulation::Training::none);
+  const auto training = GENERATE(simulation::Training::own, simulation::Training::shared);
   TinyStudyOptions options;
   options.pictures = true;
   options.comparison = true;

@@ -12,7 +12,7 @@ namespace {
 
 using simulation::SubjectModel;
 
-/// Each change alone, and the key that a fit ignores; "" if there is none.
+/// Each change alone, and the key that a fit ignores.
 struct Change {
   std::string ignored;
   std::function<void(SubjectModel&)> make;
@@ -21,12 +21,6 @@ struct Change {
 const std::vector<Change>& changes() {
   static const std::vector<Change> all{
       {"training", [](SubjectModel& one) { one.training = simulation::Training::own; }},
-      {"", [](SubjectModel& one) { one.training = simulation::Training::none; }},
-      {"mapping_noise",
-       [](SubjectModel& one) {
-         one.training = simulation::Training::none;
-         one.mapping_noise = 0.3;
-       }},
       {"memory_noise", [](SubjectModel& one) { one.memory_noise = 0.1; }},
       {"learning", [](SubjectModel& one) { one.learning.factor = 1.5; }},
       {"period_noise_spread", [](SubjectModel& one) { one.period_noise_spread = 0.2; }},
@@ -64,7 +58,7 @@ TEST_CASE("a fit names each key that it ignores") {
     SubjectModel subject;
     change.make(subject);
     CHECK(planning::keys_that_fits_ignore(subject) == change.ignored);
-    if (change.ignored != "mapping_noise" && !change.ignored.empty()) change.make(every);
+    change.make(every);
   }
   CHECK(planning::keys_that_fits_ignore(every) ==
         "training, memory_noise, learning, period_noise_spread, serial, fatigue");

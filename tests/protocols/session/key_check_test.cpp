@@ -67,11 +67,10 @@ TEST_CASE("every station of a divided study is proved, and an older file of one 
                     holds_text("a station that the key does not know; give the station the file"));
   const design::StationKey newer = design::station_key(key, "cellar");
   CHECK_THROWS_WITH(session::require_opens(older_key, newer, study.pack()),
-                    holds_text("enrolment numbers that the key does not know: the key, or the "
-                               "recovery sheet that it was restored from, is from before"));
+                    holds_text("enrolment numbers that the key does not know: the key is from "
+                               "before"));
   CHECK_THROWS_WITH(session::require_opens(study.key(), newer, study.pack()),
-                    holds_text("a station that the key does not know: the key, or the recovery "
-                               "sheet"));
+                    holds_text("a station that the key does not know: the key is from before"));
 }
 
 TEST_CASE("a station's file that differs from the key in anything is refused") {

@@ -3,7 +3,6 @@
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "protocols/session/tiny_study.hpp"
-#include "protocols/simulation/pictured_knowledge.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -119,96 +118,6 @@ TEST_CASE("memory shifts each prototype of each person once, by the noise of the
   }
   REQUIRE(count == 20 * 10 * engine::kFeltFeatures);
   CHECK(std::sqrt(squares / count) == Approx(0.2).epsilon(4.5 / std::sqrt(2.0 * count)));
-}
-
-/// What each class's picture shows: any numbers.
-simulation::PicturedFeatures any_pictures() {
-  simulation::PicturedFeatures pictures;
-  RandomStream random(5, "own_knowledge_test");
-  for (const char* label : {"bark", "cloth", "pebbles", "straw", "brick"}) {
-    for (double& feature : pictures[label]) feature = 3.0 + 2.0 * random.normal();
-    pictures[label][7] = 1.0;  // alike in all pictures
-  }
-  return pictures;
-}
-
-/// Of one feature of the prototypes.
-struct MeanAndDeviation {
-  double mean = 0.0;
-  double deviation = 0.0;
-};
-
-std::vector<double> prototype_means(const simulation::FeltKnowledge& known, std::size_t feature) {
-  std::vector<double> means(known.label_of_prototype.size(), 0.0);
-  for (const engine::FeltExample& example : known.examples) {
-    means[static_cast<std::size_t>(example.label)] += example.features[feature] / 4.0;
-  }
-  return means;
-}
-
-MeanAndDeviation scale_of(const std::vector<double>& values) {
-  MeanAndDeviation scale;
-  const auto n = static_cast<double>(values.size());
-  for (const double value : values) scale.mean += value / n;
-  for (const double value : values) scale.deviation += std::pow(value - scale.mean, 2) / n;
-  scale.deviation = std::sqrt(scale.deviation);
-  return scale;
-}
-
-TEST_CASE("what pictures make expect has the range of what is felt and the order of the pictures") {
-  const LearntStudy study;
-  const auto felt = study.learn();
-  const simulation::PicturedFeatures pictures = any_pictures();
-  const simulation::FeltKnowledge expected = simulation::expected_from_pictures(*felt, pictures);
-  for (std::size_t f = 0; f < engine::kFeltFeatures; ++f) {
-    const std::vector<double> means = prototype_means(expected, f);
-    const MeanAndDeviation range = scale_of(prototype_means(*felt, f));
-    CHECK(scale_of(means).mean == Approx(range.mean));
-    CHECK(scale_of(means).deviation == Approx(f == 7 ? 0.0 : range.deviation).margin(1e-9));
-    for (std::size_t one = 0; one < means.size(); ++one) {
-      for (std::size_t other = 0; other < means.size(); ++other) {
-        const double seen = pictures.at(expected.label_of_prototype[one])[f];
-        const double beside = pictures.at(expected.label_of_prototype[other])[f];
-        if (seen < beside) CHECK(means[one] <= means[other]);
-        if (seen == beside) CHECK(means[one] == Approx(means[other]));
-      }
-    }
-  }
-  // From pass to pass, features vary as they are felt to.
-  for (std::size_t f = 0; f < engine::kFeltFeatures; ++f) {
-    CHECK(expected.examples[1].features[f] - expected.examples[0].features[f] ==
-          Approx(felt->examples[1].features[f] - felt->examples[0].features[f]).margin(1e-9));
-  }
-}
-
-TEST_CASE("a class without a picture cannot be expected") {
-  const LearntStudy study;
-  simulation::PicturedFeatures pictures = any_pictures();
-  pictures.erase("straw");
-  CHECK_THROWS_AS(simulation::expected_from_pictures(*study.learn(), pictures),
-                  std::invalid_argument);
-}
-
-TEST_CASE("mapping noise is the same for all stimuli of a class, and differs between people") {
-  LearntStudy study;
-  const auto learnt = study.learn();
-  study.subject.training = simulation::Training::none;
-  CHECK(simulation::remembered(learnt, study.subject, 3, 1) == learnt);
-  study.subject.mapping_noise = 0.5;
-  const auto one = simulation::remembered(learnt, study.subject, 3, 1);
-  const auto other = simulation::remembered(learnt, study.subject, 3, 2);
-  const auto error_of = [&](const simulation::FeltKnowledge& known, std::size_t prototype) {
-    return known.examples[4 * prototype].features[9] - learnt->examples[4 * prototype].features[9];
-  };
-  CHECK(error_of(*one, 0) == Approx(error_of(*one, 1)));  // the class's other method
-  CHECK(error_of(*one, 0) != Approx(error_of(*one, 2)));
-  CHECK(error_of(*one, 0) != Approx(error_of(*other, 0)));
-}
-
-TEST_CASE("without training the study's pictures must be there") {
-  LearntStudy study;
-  study.subject.training = simulation::Training::none;
-  CHECK_THROWS_AS(study.learn(), FileError);
 }
 
 }  // namespace

@@ -190,9 +190,8 @@ TEST_CASE("times to think that contradict one another are refused") {
              holds_text("/thought") && holds_text("longest_s"));
 }
 
-TEST_CASE("a training has one of three names, and people think alike without the key") {
+TEST_CASE("a training has one of two names, and people think alike without the key") {
   CHECK(parsed({{"training", "own"}}).training == simulation::Training::own);
-  CHECK(parsed({{"training", "none"}}).training == simulation::Training::none);
   CHECK(parsed(json::object()).training == simulation::Training::shared);
   CHECK_THAT(refusal({{"training", "owns"}}), holds_text("/training"));
   CHECK_FALSE(parsed(json::object()).thought.has_value());
@@ -218,7 +217,6 @@ TEST_CASE("a subject model that is written is read back as the same one, to the 
   model.training_passes = 3;
   model.training = simulation::Training::own;
   model.memory_noise = 0.1;
-  model.mapping_noise = 0.3;
   model.learning = {.factor = 1.7, .trials = 33.0, .forgotten = 0.3, .spread = 0.2};
   model.period_noise_spread = 0.15;
   model.serial = {.answer = 0.4, .answer_spread = 0.2, .stimulus = -0.3, .stimulus_spread = 0.05};
@@ -236,7 +234,6 @@ TEST_CASE("a subject model that is written is read back as the same one, to the 
   CHECK(read.training_passes == 3);
   CHECK(read.training == simulation::Training::own);
   CHECK(read.memory_noise == 0.1);
-  CHECK(read.mapping_noise == 0.3);
   CHECK(read.learning == model.learning);
   CHECK(read.period_noise_spread == 0.15);
   CHECK(read.serial == model.serial);
