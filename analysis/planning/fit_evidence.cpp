@@ -137,17 +137,14 @@ Cells cells_of(const AnswerTable& table, const FitCounts& counts) {
   return cells;
 }
 
-Cells zeros(std::size_t layouts, const AnswerTable& table) {
-  const auto cells = static_cast<std::size_t>(table.stimuli()) * table.classes();
-  return {layouts, std::vector<double>(cells, 0.0)};
-}
-
-CountsEvidence::CountsEvidence(const FitCounts& counts, std::span<const CountedPerson> people)
+FitEvidence::FitEvidence(const FitCounts& counts, std::span<const CountedPerson> people)
     : counts_(counts), sums_(by_layout(counts, people)) {}
 
-double CountsEvidence::log_likelihood(const AnswerTable& table, Cells* slopes) const {
+double FitEvidence::log_likelihood(const AnswerTable& table, Cells* slopes) const {
   const auto classes = static_cast<std::size_t>(table.classes());
-  if (slopes != nullptr) *slopes = zeros(sums_.size(), table);
+  if (slopes != nullptr) {
+    slopes->assign(sums_.size(), std::vector<double>(table.stimuli() * classes, 0.0));
+  }
   double sum = 0.0;
   for (std::size_t layout = 0; layout < sums_.size(); ++layout) {
     for (std::size_t cell = 0; cell < sums_[layout].size(); ++cell) {
