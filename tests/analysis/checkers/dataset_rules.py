@@ -4,7 +4,7 @@ specifications, so that no test needs a network; scripts/validate-exports asks t
 
 BIDS 1.11.1 and its schema: "Common principles", "Modality agnostic files", "Behavioral experiments (with no neural
 recordings)", "Motion"."""
-import csv, json, math, os, re, sys
+import json, math, os, re, sys
 
 faults = []
 
