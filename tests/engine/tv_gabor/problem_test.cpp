@@ -4,7 +4,6 @@
 #include "engine/fourier/real_fft.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/mirror.hpp"
-#include "engine/reference/tv_gabor_certificate.hpp"
 #include "engine/reference/tv_gabor_reference.hpp"
 #include "support/catch.hpp"
 
@@ -39,8 +38,6 @@ TEMPLATE_TEST_CASE("extended_to_torus mirrors the image on all sides", "", float
         REQUIRE(torus.at(y, x) == reference::mirrored_sample(image, y - 16, x - 16));
       }
     }
-    CHECK(largest_difference(reference::cropped_from_torus(torus, size.height, size.width),
-                             image) == 0.0);
   }
 }
 
