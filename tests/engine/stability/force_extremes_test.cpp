@@ -118,19 +118,6 @@ TEST_CASE("the paper model's force is finite and limited for gains from 1e-12 to
   }
 }
 
-TEST_CASE("the paper model's tangential force is proportional to its gain until it is limited") {
-  const engine::TextureField field = field_of(noise_image({33, 35}));
-  const Vec3 position_mm{3.3, 3.1, -1.0};
-  const engine::PaperModel unit(field.view(), {}, {1e-6, 0.0});
-  const Vec3 force_n = unit.force_n(position_mm, {});
-  REQUIRE(std::hypot(force_n.x, force_n.y) > 0.0);
-  for (const double factor : {1e-6, 1e-3, 1e3}) {
-    const engine::PaperModel model(field.view(), {}, {1e-6 * factor, 0.0});
-    CHECK(model.force_n(position_mm, {}).x == Approx(factor * force_n.x).epsilon(1e-12));
-    CHECK(model.force_n(position_mm, {}).z == Approx(force_n.z).epsilon(1e-12));
-  }
-}
-
 TEST_CASE("gains of extreme textures are finite, and those of flat ones are zero") {
   const double ramp_n = GENERATE(0.0, 1e-320, 0.2);
   for (const Size size : extreme_sizes()) {
