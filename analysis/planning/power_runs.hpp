@@ -66,7 +66,7 @@ struct PowerSetting {
   [[nodiscard]] bool feels() const { return fields != kNoFields; }
 };
 
-/// \return a subject model on one line: "feature_noise 0.28 (spread 0.2), lapse 0.02 (spread 0), .."
+/// \return a subject model on one line: its file, its main numbers, and a digest of all of them
 [[nodiscard]] std::string words_of(const simulation::SubjectModel& subject);
 
 /// The studies of one size and hypothesis.
