@@ -64,7 +64,7 @@ Picture picture_of_tiles(std::string id, std::string caption, std::string alt, c
   return {std::move(id), std::move(caption), std::move(alt), std::move(svg)};
 }
 
-engine::ArrowPatch middle_of(engine::ArrowPatch patch, int side_px) {
+engine::ArrowPatch middle_of_patch(engine::ArrowPatch patch, int side_px) {
   patch.y += std::max(0, patch.height - side_px) / 2;
   patch.x += std::max(0, patch.width - side_px) / 2;
   patch.height = std::min(patch.height, side_px);

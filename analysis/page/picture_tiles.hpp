@@ -23,6 +23,6 @@ struct Tiles {
                                        const Tiles& tiles);
 
 /// The middle of a patch, at most so many pixels wide and high.
-[[nodiscard]] engine::ArrowPatch middle_of(engine::ArrowPatch patch, int side_px);
+[[nodiscard]] engine::ArrowPatch middle_of_patch(engine::ArrowPatch patch, int side_px);
 
 }  // namespace touchtrial::analysis

@@ -86,7 +86,7 @@ Picture forces_picture(const PaperPicture& picture) {
   wanted.force = true;
   const auto extraction = engine::extract_texture<double>(picture.image, options, wanted);
   const engine::ArrowPatch patch =
-      middle_of(engine::strongest_patch(extraction.force), kForcesPatch_px);
+      middle_of_patch(engine::strongest_patch(extraction.force), kForcesPatch_px);
   Tiles tiles{{"texture", "forces"}, {}, {}, kForcesSide_px};
   tiles.cells = {{engine::png_bytes(middle_of(extraction.picture)),
                   engine::png_bytes(engine::force_arrows(extraction.picture, extraction.force,

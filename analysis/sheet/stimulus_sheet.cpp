@@ -91,7 +91,7 @@ class Stimuli {
         engine::extract_texture<float>(image, design::method_of(key_.study, stimulus)).texture;
     const GreyImage texture = engine::texture_picture(plane);
     const auto [force, n_per_grey] = engine::lateral_field(field.view(), entry.gains);
-    const engine::ArrowPatch patch = middle_of(engine::strongest_patch(force), kPatchSide_px);
+    const engine::ArrowPatch patch = middle_of_patch(engine::strongest_patch(force), kPatchSide_px);
     const engine::FieldStatistics statistics =
         engine::field_statistics(field.view(), entry.gains, key_.study.rendering);
     const PlaneGeometry& geometry = field.view().geometry;
@@ -160,11 +160,12 @@ Document make_stimulus_sheet(const design::StudyKey& key, const engine::Pack& pa
   if (pack.manifest().study_id != key.study_id) {
     stimuli.refuse("is unfinished, or belongs to another key");
   }
-  Document sheet{.title = "Stimuli of the study " + key.study.name,
-                 .stamp = key.simulated ? "SIMULATED" : "",
-                 .banners = {kUnblinds},
-                 .numbered = false,
-                 .about = "This sheet"};
+  Document sheet;
+  sheet.title = "Stimuli of the study " + key.study.name;
+  sheet.stamp = key.simulated ? "SIMULATED" : "";
+  sheet.banners = {kUnblinds};
+  sheet.numbered = false;
+  sheet.about = "This sheet";
   sheet.header.entries = {{"protocol", key.study.protocol_name()}, {"seal", to_hex(key.seal)}};
   const Tiles no_tiles{{"picture", "texture", "lateral force"}, {}, {}, kTileSide_px};
   std::size_t done = 0;
