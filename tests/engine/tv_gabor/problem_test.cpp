@@ -46,28 +46,6 @@ const std::vector<engine::GaborComponent>& default_components() {
   return components;
 }
 
-TEST_CASE("gabor_spectrum lies between 0 and 1, reaches 1, and is 0 at frequency zero") {
-  const Plane<double> spectrum = engine::gabor_spectrum(default_components(), 48, 42);
-  REQUIRE(spectrum.height() == 48);
-  REQUIRE(spectrum.width() == 22);
-  const auto [least, largest] =
-      std::minmax_element(spectrum.samples().begin(), spectrum.samples().end());
-  CHECK(*least >= 0.0);
-  CHECK(*largest == 1.0);
-  CHECK(spectrum.at(0, 0) == 0.0);
-}
-
-TEST_CASE("gabor_spectrum of one component peaks at its frequency and direction") {
-  const Plane<double> along_x =
-      engine::gabor_spectrum(std::vector<engine::GaborComponent>{{0.25, 0.0}}, 48, 48);
-  CHECK(along_x.at(0, 12) > 0.99);
-  CHECK(along_x.at(12, 0) < 0.01);
-  const Plane<double> along_y =
-      engine::gabor_spectrum(std::vector<engine::GaborComponent>{{0.25, 90.0}}, 48, 48);
-  CHECK(along_y.at(12, 0) > 0.99);
-  CHECK(along_y.at(0, 12) < 0.01);
-}
-
 TEST_CASE("gabor_spectrum is what the convolution with M's kernel multiplies by") {
   const GreyImage image(10, 8);
   const reference::TvGabor by_convolution(image, engine::TvGaborOptions{});
