@@ -40,6 +40,7 @@ void add_paper_command(CLI::App& program, Action& action);
 void add_stimuli_command(CLI::App& program, Action& action);
 /// The commands of "stimuli".
 void add_stimuli_sheet_command(CLI::App& stimuli, Action& action);
+void add_stimuli_measure_command(CLI::App& stimuli, Action& action);
 void add_new_command(CLI::App& program, Action& action);
 /// examples, demo.
 void add_examples_commands(CLI::App& program, Action& action);

@@ -208,6 +208,7 @@ void add_stimuli_command(CLI::App& program, Action& action) {
   stimuli->require_subcommand(1);
   add_import_command(*stimuli, action);
   add_stimuli_sheet_command(*stimuli, action);
+  add_stimuli_measure_command(*stimuli, action);
   add_generate_command(*stimuli, action);
 }
 

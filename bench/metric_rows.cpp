@@ -1,12 +1,14 @@
-// Co-occurrence statistics and TV-Gabor, beside OpenCV, plain code and other solvers.
+// MS-SSIM, co-occurrence statistics and TV-Gabor, beside OpenCV, plain code and other solvers.
 #include "bench/inputs.hpp"
 #include "bench/peers/opencv.hpp"
 #include "bench/rows.hpp"
+#include "engine/metrics/ssim.hpp"
 #include "engine/tv_gabor/problem.hpp"
 #include "engine/tv_gabor/solver.hpp"
 #include "engine/tv_gabor/tv_gabor.hpp"
 #include "tests/engine/plane_comparison.hpp"
 #include "tests/engine/reference/glcm_reference.hpp"
+#include "tests/engine/reference/ssim_reference.hpp"
 #include "tests/engine/reference/tv_gabor_fixed_point.hpp"
 
 #include <algorithm>
@@ -23,6 +25,7 @@
 namespace touchtrial::bench {
 namespace {
 
+constexpr double kMsSsimTolerance = 1e-4;
 /// All statistics except contrast are at most a few units.
 constexpr double kGlcmTolerance = 1e-9;
 /// Relative to v; solvers that stop early are far from it.
@@ -32,6 +35,54 @@ constexpr double kGoalOfV = 1e-3;
 constexpr int kAdmmRhythm = 10;
 constexpr int kMostAdmmSteps = 300;
 constexpr int kQuickPictures = 2;
+
+/// The two pictures that `evaluate` compares: the adaptive texture and that of a fixed order.
+struct TexturePair {
+  GreyImage a, b;
+  double similarity = 0.0;
+  OpenCvMsSsim opencv{};
+};
+
+TexturePair timed_pair() {
+  const GreyImage image = timed_image(kUsualSize_px);
+  engine::ExtractionOptions fixed;
+  fixed.method = engine::Method::fixed;
+  fixed.order = kFixedOrder;
+  return {engine::texture_picture(engine::extract_texture<float>(image, {}).texture),
+          engine::texture_picture(engine::extract_texture<float>(image, fixed).texture)};
+}
+
+/// \param measure  the similarity of a TexturePair
+template <class Measure>
+Case ms_ssim(const std::string& who, Measure measure) {
+  return timed(
+      who, timed_pair, [=](TexturePair& pair) { pair.similarity = measure(pair); },
+      [](const TexturePair& pair) {
+        return std::abs(pair.similarity - reference::ms_ssim(pair.a, pair.b).unit);
+      },
+      kMsSsimTolerance);
+}
+
+Row ms_ssim_row() {
+  return {.what = "MS-SSIM, five scales",
+          .ours = ms_ssim(
+              "touchtrial",
+              [](const TexturePair& pair) { return engine::ms_ssim<float>(pair.a, pair.b).unit; }),
+          .peers = {ms_ssim("OpenCV GaussianBlur, u8",
+                            [](TexturePair& pair) {
+                              return pair.opencv.run(mat_of(pair.a), mat_of(pair.b));
+                            }),
+                    ms_ssim("touchtrial, double",
+                            [](const TexturePair& pair) {
+                              return engine::ms_ssim<double>(pair.a, pair.b).unit;
+                            }),
+                    ms_ssim("windows one by one, double",
+                            [](const TexturePair& pair) {
+                              return reference::ms_ssim(pair.a, pair.b).unit;
+                            })},
+          .goal = {"ratio", 0.25},
+          .error_unit = "of MS-SSIM"};
+}
 
 double relative(double value, double truth) {
   return std::abs(value - truth) / std::max(1.0, std::abs(truth));
@@ -200,7 +251,7 @@ Rows tv_gabor_rows(bool quick) {
 }  // namespace
 
 Rows metric_rows(const Scope& scope) {
-  Rows rows = {glcm_row()};
+  Rows rows = {ms_ssim_row(), glcm_row()};
   for (Row& row : tv_gabor_rows(scope.quick)) rows.push_back(std::move(row));
   return rows;
 }

@@ -103,7 +103,7 @@ struct Scope {
 
 /// Fractional filters, sub-bands and whole extractions.
 [[nodiscard]] Rows extraction_rows(const Scope& scope);
-/// Co-occurrence statistics and TV-Gabor.
+/// MS-SSIM, co-occurrence statistics and TV-Gabor.
 [[nodiscard]] Rows metric_rows(const Scope& scope);
 /// What the servo computes in a tick: forces, kinematics, and all of it together.
 [[nodiscard]] Rows servo_rows();

@@ -44,7 +44,7 @@ OrderFigures figures_of_order(const GreyImage& image, double order, const GreyIm
   options.method = Method::fixed;
   options.order = order;
   const GreyImage picture = picture_of(image, options);
-  const MsSsim likeness = ms_ssim(picture, adaptive);
+  const MsSsim likeness = ms_ssim<double>(picture, adaptive);
   return {order, entropy(picture), likeness.unit, likeness.wang};
 }
 

@@ -60,7 +60,7 @@ MethodMeasures measures_of_methods(const PaperPicture& picture) {
   const Plane<double> tv_gabor = texture_by(picture.image, options);
   return {
       picture.name, strength_of(adaptive), strength_of(tv_gabor),
-      engine::ms_ssim(engine::texture_picture(adaptive), engine::texture_picture(tv_gabor))
+      engine::ms_ssim<double>(engine::texture_picture(adaptive), engine::texture_picture(tv_gabor))
           .unit};
 }
 

@@ -1,4 +1,4 @@
-/// \file The extraction and co-occurrence statistics by OpenCV, as an experienced user would
+/// \file The extraction, MS-SSIM and co-occurrence statistics by OpenCV, as an experienced user would
 /// write them. Every matrix is kept from image to image.
 #pragma once
 
@@ -93,6 +93,27 @@ class OpenCvRingSums {
   cv::Mat slope_x_, slope_y_, slope_, csgv_, steep_, branch_, half_orders_, orders_;
   cv::Mat padded_u8_, padded_, nine_, column_sums_, ring_, difference_, decay_;
   cv::Mat texture_;
+};
+
+/// MS-SSIM by Gaussian blurs of both images, their squares and their product, in single precision.
+class OpenCvMsSsim {
+ public:
+  /// \param a,b  8 bit, of equal size, every side >= 161
+  /// \return the product over five scales
+  [[nodiscard]] double run(const cv::Mat& a, const cv::Mat& b);
+
+ private:
+  struct Means {
+    double structure;
+    double luminance;
+  };
+  [[nodiscard]] Means means_of_scale(bool with_luminance);
+  void blur(const cv::Mat& from, cv::Mat& to);
+  void halve(cv::Mat& image);
+
+  cv::Mat a_, b_, half_, product_, blurred_;
+  cv::Mat mean_a_, mean_b_, square_a_, square_b_, both_;
+  cv::Mat variance_a_, variance_b_, covariance_, above_, below_;
 };
 
 /// Statistics of the co-occurrence matrix, which a plain loop over pairs counts.

@@ -10,6 +10,11 @@
 namespace touchtrial::bench {
 namespace {
 
+constexpr int kScales = 5;
+constexpr int kReach = 5;  // of the 11 x 11 window
+constexpr double kC1 = 0.01 * 255 * 0.01 * 255;
+constexpr double kC2 = 0.03 * 255 * 0.03 * 255;
+
 cv::Mat counts_of(const cv::Mat& image, int dy, int dx) {
   cv::Mat counts = cv::Mat::zeros(256, 256, CV_32S);
   for (int y = std::max(0, -dy); y < image.rows - std::max(0, dy); ++y) {
@@ -62,6 +67,65 @@ engine::GlcmStatistics statistics_of(const cv::Mat& counts) {
 }
 
 }  // namespace
+
+double OpenCvMsSsim::run(const cv::Mat& a, const cv::Mat& b) {
+  a.convertTo(a_, CV_32F);
+  b.convertTo(b_, CV_32F);
+  double similarity = 1.0;
+  for (int scale = 0; scale < kScales; ++scale) {
+    if (scale > 0) halve(a_);
+    if (scale > 0) halve(b_);
+    const Means means = means_of_scale(scale == kScales - 1);
+    similarity *= means.structure * means.luminance;
+  }
+  return similarity;
+}
+
+void OpenCvMsSsim::halve(cv::Mat& image) {
+  const int odd_row = image.rows % 2;
+  const int odd_column = image.cols % 2;
+  if (odd_row + odd_column > 0) {
+    cv::copyMakeBorder(image, half_, 0, odd_row, 0, odd_column, cv::BORDER_REPLICATE);
+    cv::swap(image, half_);
+  }
+  cv::resize(image, half_, {image.cols / 2, image.rows / 2}, 0, 0, cv::INTER_AREA);
+  cv::swap(image, half_);
+}
+
+/// Only the windows that lie inside the image.
+void OpenCvMsSsim::blur(const cv::Mat& from, cv::Mat& to) {
+  cv::GaussianBlur(from, blurred_, {2 * kReach + 1, 2 * kReach + 1}, 1.5);
+  blurred_(cv::Rect(kReach, kReach, from.cols - 2 * kReach, from.rows - 2 * kReach)).copyTo(to);
+}
+
+OpenCvMsSsim::Means OpenCvMsSsim::means_of_scale(bool with_luminance) {
+  blur(a_, mean_a_);
+  blur(b_, mean_b_);
+  cv::multiply(a_, a_, product_);
+  blur(product_, variance_a_);
+  cv::multiply(b_, b_, product_);
+  blur(product_, variance_b_);
+  cv::multiply(a_, b_, product_);
+  blur(product_, covariance_);
+  cv::multiply(mean_a_, mean_a_, square_a_);
+  cv::multiply(mean_b_, mean_b_, square_b_);
+  cv::multiply(mean_a_, mean_b_, both_);
+  cv::subtract(covariance_, both_, covariance_);
+  cv::add(variance_a_, variance_b_, below_);
+  cv::add(square_a_, square_b_, square_a_);
+  cv::subtract(below_, square_a_, below_);
+  covariance_.convertTo(above_, CV_32F, 2.0, kC2);
+  cv::add(below_, kC2, below_);
+  cv::divide(above_, below_, above_);
+  Means means{cv::mean(above_)[0], 1.0};
+  if (with_luminance) {
+    both_.convertTo(above_, CV_32F, 2.0, kC1);
+    cv::add(square_a_, kC1, below_);
+    cv::divide(above_, below_, above_);
+    means.luminance = cv::mean(above_)[0];
+  }
+  return means;
+}
 
 engine::GlcmTable pair_loop_glcm(const cv::Mat& image) {
   engine::GlcmTable table{};

@@ -1,20 +1,20 @@
 #include "engine/metrics/ssim.hpp"
 
+#include "engine/metrics/ssim_deficits.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace touchtrial::engine {
 namespace {
 
 constexpr std::array<double, 5> kWangWeights = {0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
-constexpr std::size_t kTaps = 11;
-constexpr double kC1 = 0.01 * 255 * 0.01 * 255;
-constexpr double kC2 = 0.03 * 255 * 0.03 * 255;
 
 std::string size_of(const GreyImage& image) {
   return std::to_string(image.height()) + " x " + std::to_string(image.width());
@@ -32,128 +32,135 @@ void check_sizes(const GreyImage& a, const GreyImage& b) {
   }
 }
 
-/// One side of the Gaussian window, of sum 1.
-std::array<double, kTaps> window_weights() {
-  std::array<double, kTaps> weights{};
-  double sum = 0.0;
-  for (std::size_t i = 0; i < kTaps; ++i) {
-    const double distance = static_cast<double>(i) - 5.0;
-    weights[i] = std::exp(-distance * distance / (2 * 1.5 * 1.5));
-    sum += weights[i];
+std::int64_t total_of(const GreyImage& image) {
+  std::int64_t total = 0;
+  for (int y = 0; y < image.height(); ++y) {
+    const auto row = image.row(y);
+    total += std::accumulate(row.begin(), row.end(), std::uint32_t{0});
   }
-  for (double& weight : weights) weight /= sum;
-  return weights;
+  return total;
 }
 
-/// x, y, x^2, y^2 and x y of one row.
-using Moments = std::array<std::vector<double>, 5>;
-
-template <typename Sample>
-Moments moments_of_row(const Plane<Sample>& x, const Plane<Sample>& y, int row) {
-  Moments moments;
-  for (std::vector<double>& moment : moments) moment.resize(static_cast<std::size_t>(x.width()));
-  const auto row_x = x.row(row), row_y = y.row(row);
-  for (std::size_t i = 0; i < row_x.size(); ++i) {
-    const double a = row_x[i], b = row_y[i];
-    moments[0][i] = a;
-    moments[1][i] = b;
-    moments[2][i] = a * a;
-    moments[3][i] = b * b;
-    moments[4][i] = a * b;
-  }
-  return moments;
+double weighted(double mean, double weight) {
+  return std::pow(std::max(mean, 0.0), weight);
 }
 
-/// Means over all windows.
-struct Means {
-  double structure = 0.0;  ///< of c s
-  double luminance = 0.0;  ///< of l
-};
-
-/// Adds one row of windows from the moments' weighted means.
-void add_windows(const Moments& means, Means& sum) {
-  for (std::size_t i = 0; i < means[0].size(); ++i) {
-    const double a = means[0][i], b = means[1][i];
-    const double variances = (means[2][i] - a * a) + (means[3][i] - b * b);
-    const double covariance = means[4][i] - a * b;
-    sum.structure += (2 * covariance + kC2) / (variances + kC2);
-    sum.luminance += (2 * (a * b) + kC1) / ((a * a + b * b) + kC1);
-  }
-}
-
-/// Filters along x and then, over the last rows, along y, so that memory is that of eleven rows.
-template <typename Sample>
-Means means_of(const Plane<Sample>& x, const Plane<Sample>& y) {
-  const std::array<double, kTaps> weights = window_weights();
-  const auto windows = static_cast<std::size_t>(x.width()) - (kTaps - 1);
-  std::array<Moments, kTaps> filtered;  // row y is in slot y mod kTaps
-  Means sum;
-  for (int row = 0; row < x.height(); ++row) {
-    const Moments moments = moments_of_row(x, y, row);
-    Moments& slot = filtered[static_cast<std::size_t>(row) % kTaps];
-    for (std::size_t m = 0; m < moments.size(); ++m) {
-      slot[m].assign(windows, 0.0);
-      for (std::size_t tap = 0; tap < kTaps; ++tap) {
-        for (std::size_t i = 0; i < windows; ++i) slot[m][i] += weights[tap] * moments[m][i + tap];
-      }
-    }
-    if (row + 1 < static_cast<int>(kTaps)) continue;
-    Moments means;
-    for (std::size_t m = 0; m < means.size(); ++m) {
-      means[m].assign(windows, 0.0);
-      for (std::size_t tap = 0; tap < kTaps; ++tap) {
-        const auto& from = filtered[(static_cast<std::size_t>(row) + 1 + tap) % kTaps][m];
-        for (std::size_t i = 0; i < windows; ++i) means[m][i] += weights[tap] * from[i];
-      }
-    }
-    add_windows(means, sum);
-  }
-  const double count = static_cast<double>(windows) * (x.height() - static_cast<int>(kTaps) + 1);
-  return {sum.structure / count, sum.luminance / count};
-}
-
-/// The means of blocks of 2 x 2 samples; an odd last row or column is repeated.
-template <typename Sample>
-Plane<double> halved(const Plane<Sample>& plane) {
-  Plane<double> half((plane.height() + 1) / 2, (plane.width() + 1) / 2);
-  for (int y = 0; y < half.height(); ++y) {
-    const auto upper = plane.row(2 * y);
-    const auto lower = plane.row(std::min(2 * y + 1, plane.height() - 1));
-    for (int x = 0; x < half.width(); ++x) {
-      const auto left = static_cast<std::size_t>(2 * x);
-      const auto right = static_cast<std::size_t>(std::min(2 * x + 1, plane.width() - 1));
-      const auto of = [&](const auto& row) {
-        return static_cast<double>(row[left]) + static_cast<double>(row[right]);
-      };
-      half.at(y, x) = 0.25 * (of(upper) + of(lower));
-    }
-  }
-  return half;
+/// For the last scale, which is small: in float, an l near 0 would lose its digits.
+template <typename Real>
+SumDifference<double> in_double(const SumDifference<Real>& pair) {
+  return {converted<double>(pair.sum), converted<double>(pair.difference), pair.offsets};
 }
 
 /// Multiplies the product by the mean of one scale.
 void include_scale(MsSsim& product, std::size_t scale, double mean) {
   product.unit *= mean;
-  product.wang *= std::pow(std::max(mean, 0.0), kWangWeights[scale]);
+  product.wang *= weighted(mean, kWangWeights[scale]);
+}
+
+/// The two rows of a line of blocks. An odd last row is used twice.
+template <typename Sample>
+struct RowPair {
+  RowPair(const Plane<Sample>& plane, int block_y)
+      : upper(plane.row(2 * block_y).data()),
+        lower(plane.row(std::min(2 * block_y + 1, plane.height() - 1)).data()) {}
+
+  /// The sum of a block.
+  /// \tparam Sum  represents the sum of four samples without loss
+  template <typename Sum>
+  [[nodiscard]] Sum block(std::size_t left, std::size_t right) const {
+    return (Sum{upper[left]} + Sum{upper[right]}) + (Sum{lower[left]} + Sum{lower[right]});
+  }
+
+  const Sample* upper;
+  const Sample* lower;
+};
+
+/// Calls set(block, left column, right column) for a line of blocks across `width` columns.
+template <typename Set>
+void for_each_block(int width, Set&& set) {
+  const auto whole = static_cast<std::size_t>(width / 2);
+  for (std::size_t x = 0; x < whole; ++x) set(x, 2 * x, 2 * x + 1);
+  if (width % 2 != 0) set(whole, 2 * whole, 2 * whole);
+}
+
+template <typename Real>
+SumDifference<Real> blocks_of(int height, int width, PairOffsets offsets) {
+  const int rows = (height + 1) / 2;
+  const int columns = (width + 1) / 2;
+  return {Plane<Real>(rows, columns), Plane<Real>(rows, columns), offsets};
+}
+
+/// The means of blocks of 2 x 2 samples; an odd last row or column is repeated.
+template <typename Real>
+SumDifference<Real> halved(const GreyPair& pair) {
+  const int width = pair.x.width();
+  auto result = blocks_of<Real>(pair.x.height(), width, pair.offsets);
+  constexpr auto kQuarter = static_cast<Real>(0.25);
+  for (int y = 0; y < result.sum.height(); ++y) {
+    const RowPair<std::uint8_t> of_x(pair.x, y);
+    const RowPair<std::uint8_t> of_y(pair.y, y);
+    Real* const sum = result.sum.row(y).data();
+    Real* const difference = result.difference.row(y).data();
+    for_each_block(width, [&](std::size_t x, std::size_t left, std::size_t right) {
+      const auto a = of_x.block<int>(left, right);
+      const auto b = of_y.block<int>(left, right);
+      sum[x] = kQuarter * static_cast<Real>(a + b - 4 * pair.offsets.sum);
+      difference[x] = kQuarter * static_cast<Real>(a - b - 4 * pair.offsets.difference);
+    });
+  }
+  return result;
+}
+
+template <typename Real>
+SumDifference<Real> halved(const SumDifference<Real>& pair) {
+  const int width = pair.sum.width();
+  auto result = blocks_of<Real>(pair.sum.height(), width, pair.offsets);
+  constexpr auto kQuarter = static_cast<Real>(0.25);
+  for (int y = 0; y < result.sum.height(); ++y) {
+    const RowPair<Real> of_sum(pair.sum, y);
+    const RowPair<Real> of_difference(pair.difference, y);
+    Real* const sum = result.sum.row(y).data();
+    Real* const difference = result.difference.row(y).data();
+    for_each_block(width, [&](std::size_t x, std::size_t left, std::size_t right) {
+      sum[x] = kQuarter * of_sum.template block<Real>(left, right);
+      difference[x] = kQuarter * of_difference.template block<Real>(left, right);
+    });
+  }
+  return result;
 }
 
 }  // namespace
 
+// Ties are rounded away from zero: swapping the images only changes the sign of the difference.
+GreyPair centred(const GreyImage& x, const GreyImage& y) {
+  const auto pixels = static_cast<double>(x.size());
+  const std::int64_t total_x = total_of(x);
+  const std::int64_t total_y = total_of(y);
+  const PairOffsets offsets{
+      static_cast<int>(std::lround(static_cast<double>(total_x + total_y) / pixels)),
+      static_cast<int>(std::lround(static_cast<double>(total_x - total_y) / pixels))};
+  return {x, y, offsets};
+}
+
+template <typename Real>
 MsSsim ms_ssim(const GreyImage& a, const GreyImage& b) {
   check_sizes(a, b);
-  MsSsim product{1.0, 1.0};
-  include_scale(product, 0, means_of(a, b).structure);
-  Plane<double> x = halved(a), y = halved(b);
   constexpr std::size_t kLast = kWangWeights.size() - 1;
+  const GreyPair pair = centred(a, b);
+  MsSsim product{1.0, 1.0};
+  include_scale(product, 0, 1.0 - mean_deficits<Real>(pair, Luminance::skip).structure);
+  SumDifference<Real> scaled = halved<Real>(pair);
   for (std::size_t scale = 1; scale < kLast; ++scale) {
-    include_scale(product, scale, means_of(x, y).structure);
-    x = halved(x);
-    y = halved(y);
+    include_scale(product, scale, 1.0 - mean_deficits(scaled, Luminance::skip).structure);
+    scaled = halved(scaled);
   }
-  const Means last = means_of(x, y);
-  include_scale(product, kLast, last.structure);
-  include_scale(product, kLast, last.luminance);
+  const MeanDeficits last = mean_deficits(in_double(scaled), Luminance::include);
+  include_scale(product, kLast, 1.0 - last.structure);
+  include_scale(product, kLast, 1.0 - last.luminance);
   return product;
 }
+
+template MsSsim ms_ssim<float>(const GreyImage&, const GreyImage&);
+template MsSsim ms_ssim<double>(const GreyImage&, const GreyImage&);
 
 }  // namespace touchtrial::engine

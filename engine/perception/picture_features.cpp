@@ -1,5 +1,6 @@
 #include "engine/perception/picture_features.hpp"
 
+#include "engine/fourier/faded_picture.hpp"
 #include "engine/fourier/real_fft.hpp"
 
 #include <algorithm>
@@ -18,28 +19,6 @@ using Coefficient = std::complex<double>;
 
 /// Mean squares below this are none: a thousandth of a grey level, root mean square.
 constexpr double kFaintest = 1e-6;
-
-std::vector<double> hann(int count) {
-  std::vector<double> window(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) {
-    window[i] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (i + 0.5) / count);
-  }
-  return window;
-}
-
-/// Fills the transform's plane with a picture less its mean, under a Hann window in both
-/// directions, so that opposite edges meet without a step.
-void load_faded(const GreyImage& picture, RealFft<double>& fft) {
-  const double mean = mean_of(picture);
-  const std::vector<double> down = hann(picture.height());
-  const std::vector<double> across = hann(picture.width());
-  double* to = fft.plane().data();
-  for (int y = 0; y < picture.height(); ++y) {
-    for (int x = 0; x < picture.width(); ++x) {
-      *to++ = (picture.at(y, x) - mean) * down[y] * across[x];
-    }
-  }
-}
 
 double log_root(double mean_square) {
   return 0.5 * std::log(mean_square + kFaintest);

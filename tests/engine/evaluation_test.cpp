@@ -73,8 +73,8 @@ TEST_CASE("a sweep compares the adaptive texture with every fixed order") {
     const engine::OrderFigures& figures = evaluation.orders[i];
     const GreyImage fixed = fixed_picture(image, figures.order);
     CHECK(figures.entropy == engine::entropy(fixed));
-    CHECK(figures.ms_ssim == engine::ms_ssim(adaptive, fixed).unit);
-    CHECK(figures.ms_ssim_wang == engine::ms_ssim(adaptive, fixed).wang);
+    CHECK(figures.ms_ssim == engine::ms_ssim<double>(adaptive, fixed).unit);
+    CHECK(figures.ms_ssim_wang == engine::ms_ssim<double>(adaptive, fixed).wang);
   }
   for (const engine::OrderFigures& figures : evaluation.orders) {
     CHECK(engine::closest_order(evaluation).ms_ssim >= figures.ms_ssim);

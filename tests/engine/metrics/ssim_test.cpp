@@ -1,6 +1,8 @@
 #include "engine/metrics/ssim.hpp"
 
+#include "engine/every_simd_target.hpp"
 #include "engine/example_images.hpp"
+#include "engine/metrics/ssim_deficits.hpp"
 #include "engine/reference/ssim_reference.hpp"
 #include "engine/refusal.hpp"
 #include "support/catch.hpp"
@@ -12,7 +14,15 @@ namespace touchtrial {
 namespace {
 
 constexpr double kC1 = 0.01 * 255 * 0.01 * 255;
-constexpr double kTolerance = 1e-11;
+constexpr double kC2 = 0.03 * 255 * 0.03 * 255;
+constexpr double kDoubleTolerance = 1e-11;
+/// The promised errors of float on textures, and on any images.
+constexpr double kTextureTolerance = 2e-7;
+constexpr double kAnyTolerance = 2e-5;
+
+/// The smallest sizes, odd ones, and those around the width of a tile in floats and in doubles.
+const std::vector<Size> kSizes = {{11, 11}, {11, 12}, {12, 11},  {13, 29},  {64, 63},
+                                  {11, 74}, {15, 75}, {12, 138}, {11, 139}, {37, 271}};
 
 /// A worn state of the same texture: less contrast, and noise.
 GreyImage worn(const GreyImage& image) {
@@ -25,59 +35,151 @@ GreyImage worn(const GreyImage& image) {
   return result;
 }
 
-TEST_CASE("ms_ssim of an image and itself is exactly 1") {
-  for (const Size size : {Size{161, 161}, Size{161, 300}, Size{175, 163}}) {
-    for (const auto& [name, image] : example_images(size)) {
-      INFO(name << ", " << size.height << " x " << size.width);
-      CHECK(engine::ms_ssim(image, image).unit == 1.0);
-      CHECK(engine::ms_ssim(image, image).wang == 1.0);
-    }
+template <typename Visit>
+void for_each_pair(Size size, const Visit& visit) {
+  const std::vector<NamedImage> images = example_images(size);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const NamedImage& other = images[(i + 1) % images.size()];
+    INFO(images[i].name << " and " << other.name << ", " << size.height << " x " << size.width);
+    visit(images[i].image, other.image);
+    visit(images[i].image, worn(images[i].image));
+    visit(images[i].image, negative_of(images[i].image));
   }
 }
 
-TEST_CASE("ms_ssim of different images is below 1, however little they differ") {
-  const GreyImage image = cloth_image({170, 180});
-  GreyImage other = image;
-  ++other.at(60, 60);
-  CHECK(engine::ms_ssim(image, other).unit < 1.0);
-  CHECK(engine::ms_ssim(image, other).unit > 1.0 - 1e-4);
+/// The deficits of the first scale, as ms_ssim() computes them.
+template <typename Real>
+engine::MeanDeficits deficits_of(const GreyImage& a, const GreyImage& b) {
+  return engine::mean_deficits<Real>(engine::centred(a, b), engine::Luminance::include);
+}
+
+TEMPLATE_TEST_CASE("the deficits of an image and itself are exactly 0", "", float, double) {
+  on_every_simd_target([] {
+    for (const Size size : kSizes) {
+      for (const auto& [name, image] : example_images(size)) {
+        INFO(name);
+        CHECK(deficits_of<TestType>(image, image).structure == 0.0);
+        CHECK(deficits_of<TestType>(image, image).luminance == 0.0);
+      }
+    }
+  });
+}
+
+TEMPLATE_TEST_CASE("different images have a structural deficit, however little they differ", "",
+                   float, double) {
+  on_every_simd_target([] {
+    const GreyImage image = cloth_image({120, 150});
+    GreyImage other = image;
+    ++other.at(60, 60);
+    CHECK(deficits_of<TestType>(image, other).structure > 0.0);
+    CHECK(deficits_of<TestType>(image, other).structure < 1e-5);
+  });
+}
+
+TEMPLATE_TEST_CASE("two flat images differ in luminance alone", "", float, double) {
+  on_every_simd_target([] {
+    for (const auto& [a, b] : {std::pair{0, 255}, {100, 101}, {7, 200}}) {
+      const double l = (2.0 * a * b + kC1) / (a * a + b * b + kC1);
+      const double tolerance = sizeof(TestType) == sizeof(float) ? 3e-7 : 1e-14;
+      const engine::MeanDeficits deficits =
+          deficits_of<TestType>(flat_image({30, 31}, a), flat_image({30, 31}, b));
+      CHECK(std::abs(1.0 - deficits.luminance - l) < tolerance);
+      CHECK(deficits.structure == 0.0);
+    }
+  });
+}
+
+TEST_CASE("the deficits of a checkerboard and its negative follow from the window") {
+  double alternating = 0.0;  // the window's weighted mean of +1 and -1 by turns
+  const auto window = reference::ssim_window();
+  for (std::size_t j = 0; j < window.size(); ++j) {
+    for (std::size_t i = 0; i < window.size(); ++i) {
+      alternating += (i + j) % 2 == 0 ? window[j][i] : -window[j][i];
+    }
+  }
+  const double power = 127.5 * 127.5;
+  const double shift = alternating * alternating;
+  const double l = (2 * power * (1 - shift) + kC1) / (2 * power * (1 + shift) + kC1);
+  const double cs = (-2 * power * (1 - shift) + kC2) / (2 * power * (1 - shift) + kC2);
+  on_every_simd_target([&] {
+    const GreyImage board = checkerboard({40, 150});
+    const engine::MeanDeficits exact = deficits_of<double>(board, negative_of(board));
+    CHECK(1.0 - exact.luminance == Approx(l).epsilon(1e-12));
+    CHECK(1.0 - exact.structure == Approx(cs).epsilon(1e-12));
+    const engine::MeanDeficits single = deficits_of<float>(board, negative_of(board));
+    CHECK(std::abs(1.0 - single.luminance - l) < 1e-5);
+    CHECK(std::abs(1.0 - single.structure - cs) < 1e-5);
+  });
+}
+
+TEST_CASE("the deficits agree with their definition on every pair, size and target") {
+  for (const Size size : kSizes) {
+    for_each_pair(size, [](const GreyImage& a, const GreyImage& b) {
+      const reference::Similarity expected =
+          reference::similarity(converted<double>(a), converted<double>(b));
+      on_every_simd_target([&] {
+        const engine::MeanDeficits exact = deficits_of<double>(a, b);
+        CHECK(std::abs(1.0 - exact.structure - expected.cs) < kDoubleTolerance);
+        CHECK(std::abs(1.0 - exact.luminance - expected.l) < kDoubleTolerance);
+        const engine::MeanDeficits single = deficits_of<float>(a, b);
+        CHECK(std::abs(1.0 - single.structure - expected.cs) < kAnyTolerance);
+        CHECK(std::abs(1.0 - single.luminance - expected.l) < kAnyTolerance);
+      });
+    });
+  }
 }
 
 TEST_CASE("ms_ssim of two flat images is l of the last scale") {
   const double l = (2.0 * 90 * 120 + kC1) / (90 * 90 + 120 * 120 + kC1);
-  const engine::MsSsim result =
-      engine::ms_ssim(flat_image({161, 162}, 90), flat_image({161, 162}, 120));
-  CHECK(result.unit == Approx(l).epsilon(kTolerance));
-  CHECK(result.wang == Approx(std::pow(l, 0.1333)).epsilon(kTolerance));
+  on_every_simd_target([&] {
+    const engine::MsSsim result =
+        engine::ms_ssim<double>(flat_image({161, 162}, 90), flat_image({161, 162}, 120));
+    CHECK(result.unit == Approx(l).epsilon(1e-14));
+    CHECK(result.wang == Approx(std::pow(l, 0.1333)).epsilon(1e-14));
+  });
 }
 
 TEST_CASE("a negative mean counts in ms_ssim with unit exponents, and as 0 with Wang's") {
   const GreyImage board = checkerboard({162, 176});  // flat from the second scale on
-  const engine::MsSsim result = engine::ms_ssim(board, negative_of(board));
+  const engine::MsSsim result = engine::ms_ssim<double>(board, negative_of(board));
   CHECK(result.unit < -0.99);
   CHECK(result.wang == 0.0);
 }
 
-TEST_CASE("ms_ssim agrees with its definition, window by window") {
-  const std::vector<NamedImage> images = example_images({161, 171});
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const NamedImage& one = images[i];
-    const NamedImage& next = images[(i + 1) % images.size()];
-    INFO(one.name << " and " << next.name);
-    for (const GreyImage& other : {next.image, worn(one.image), negative_of(one.image)}) {
-      const reference::MsSsim expected = reference::ms_ssim(one.image, other);
-      const engine::MsSsim found = engine::ms_ssim(one.image, other);
-      CHECK(std::abs(found.unit - expected.unit) < kTolerance);
-      CHECK(std::abs(found.wang - expected.wang) < kTolerance);
+TEST_CASE("ms_ssim agrees with its definition on every pair and target") {
+  for_each_pair({161, 171}, [](const GreyImage& a, const GreyImage& b) {
+    const reference::MsSsim expected = reference::ms_ssim(a, b);
+    on_every_simd_target([&] {
+      const engine::MsSsim exact = engine::ms_ssim<double>(a, b);
+      CHECK(std::abs(exact.unit - expected.unit) < kDoubleTolerance);
+      CHECK(std::abs(exact.wang - expected.wang) < kDoubleTolerance);
+      CHECK(std::abs(engine::ms_ssim<float>(a, b).unit - expected.unit) < kAnyTolerance);
+      CHECK(std::abs(engine::ms_ssim<float>(a, b).wang - expected.wang) < kAnyTolerance);
+    });
+  });
+}
+
+TEST_CASE("ms_ssim in floats keeps its precision on textures") {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const GreyImage texture = cloth_image({500, 499}, seed);
+    for (const GreyImage& other : {worn(texture), cloth_image({500, 499}, seed + 1)}) {
+      on_every_simd_target([&] {
+        const engine::MsSsim exact = engine::ms_ssim<double>(texture, other);
+        const engine::MsSsim quick = engine::ms_ssim<float>(texture, other);
+        CHECK(std::abs(quick.unit - exact.unit) < kTextureTolerance);
+        CHECK(std::abs(quick.wang - exact.wang) < kTextureTolerance);
+      });
     }
   }
 }
 
 TEST_CASE("ms_ssim refuses images of different or too small sizes") {
-  CHECK(refusal_of([] { (void)engine::ms_ssim(GreyImage(200, 210), GreyImage(210, 200)); }) ==
-        "ms_ssim: the images differ in size, 200 x 210 and 210 x 200 pixels");
-  CHECK(refusal_of([] { (void)engine::ms_ssim(GreyImage(500, 160), GreyImage(500, 160)); }) ==
-        "ms_ssim: the images are 500 x 160 pixels, and both sides must be at least 161");
+  CHECK(refusal_of([] {
+          (void)engine::ms_ssim<float>(GreyImage(200, 210), GreyImage(210, 200));
+        }) == "ms_ssim: the images differ in size, 200 x 210 and 210 x 200 pixels");
+  CHECK(refusal_of([] {
+          (void)engine::ms_ssim<float>(GreyImage(500, 160), GreyImage(500, 160));
+        }) == "ms_ssim: the images are 500 x 160 pixels, and both sides must be at least 161");
 }
 
 }  // namespace

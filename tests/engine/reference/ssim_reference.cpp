@@ -1,7 +1,6 @@
 #include "engine/reference/ssim_reference.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace touchtrial::reference {
@@ -11,12 +10,7 @@ constexpr double kC1 = 0.01 * 255 * 0.01 * 255;
 constexpr double kC2 = 0.03 * 255 * 0.03 * 255;
 constexpr double kC3 = kC2 / 2;
 
-using Window = std::array<std::array<double, 11>, 11>;  // sum 1
-
-struct Similarity {
-  double l;
-  double cs;
-};
+using Window = std::array<std::array<double, 11>, 11>;
 
 /// Calls visit(weight, a, b) for every sample of the window whose corner is at (y, x).
 template <typename Visit>
@@ -48,7 +42,7 @@ Similarity similarity_at(const Window& window, const Plane<double>& a, const Pla
   const double l = (2 * mean_a * mean_b + kC1) / (mean_a * mean_a + mean_b * mean_b + kC1);
   const double c = (2 * sigma_a * sigma_b + kC2) / (variance_a + variance_b + kC2);
   const double s = (covariance + kC3) / (sigma_a * sigma_b + kC3);
-  return {l, c * s};
+  return {l, c * s, l * c * s};
 }
 
 Plane<double> halved(const Plane<double>& plane) {
@@ -67,6 +61,8 @@ Plane<double> halved(const Plane<double>& plane) {
   return half;
 }
 
+}  // namespace
+
 Window ssim_window() {
   Window window{};
   double sum = 0.0;
@@ -84,19 +80,18 @@ Window ssim_window() {
 
 Similarity similarity(const Plane<double>& a, const Plane<double>& b) {
   const Window window = ssim_window();
-  Similarity sum{0.0, 0.0};
+  Similarity sum{0.0, 0.0, 0.0};
   for (int y = 0; y + 11 <= a.height(); ++y) {
     for (int x = 0; x + 11 <= a.width(); ++x) {
       const Similarity here = similarity_at(window, a, b, y, x);
       sum.l += here.l;
       sum.cs += here.cs;
+      sum.lcs += here.lcs;
     }
   }
   const double windows = static_cast<double>(a.height() - 10) * (a.width() - 10);
-  return {sum.l / windows, sum.cs / windows};
+  return {sum.l / windows, sum.cs / windows, sum.lcs / windows};
 }
-
-}  // namespace
 
 MsSsim ms_ssim(const GreyImage& a, const GreyImage& b) {
   constexpr std::array<double, 5> kWeights = {0.0448, 0.2856, 0.3001, 0.2363, 0.1333};

@@ -1,10 +1,12 @@
-// How much textures and pictures may differ between single precision and double.
+// How much textures, pictures and MS-SSIM may differ between single precision and double.
 #include "engine/extraction.hpp"
+#include "engine/metrics/ssim.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/extraction_reference.hpp"
 #include "engine/stability/extreme_cases.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -63,6 +65,24 @@ TEST_CASE("8-bit textures of both precisions are equal except at branch points a
     CHECK(noisy.differ_at_tie * 1000 < noisy.pixels);
     CHECK(smooth.at_branch_point * 100 < smooth.pixels);
     CHECK(smooth.differ_at_tie * 1000 < smooth.pixels);
+  });
+}
+
+double ms_ssim_error(const GreyImage& a, const GreyImage& b) {
+  const engine::MsSsim exact = engine::ms_ssim<double>(a, b);
+  const engine::MsSsim single = engine::ms_ssim<float>(a, b);
+  return std::max(std::abs(single.unit - exact.unit), std::abs(single.wang - exact.wang));
+}
+
+TEST_CASE("MS-SSIM of extreme images in single precision is within 1e-4 of double") {
+  const std::vector<NamedImage> images = extreme_images({161, 178});
+  on_every_simd_target([&] {
+    for (const auto& [name, image] : images) {
+      for (const auto& [other_name, other] : images) {
+        INFO(name << " and " << other_name);
+        CHECK(ms_ssim_error(image, other) < 1e-4);
+      }
+    }
   });
 }
 

@@ -1,0 +1,174 @@
+#include "analysis/measures/picture_set.hpp"
+
+#include "analysis/statistics/descriptive.hpp"
+#include "engine/extraction.hpp"
+#include "engine/metrics/picture_statistics.hpp"
+#include "engine/metrics/ssim.hpp"
+#include "engine/rendering/field_statistics.hpp"
+#include "engine/rendering/gains.hpp"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+namespace touchtrial::analysis {
+namespace {
+
+/// A picture with its texture and field.
+struct Worked {
+  const LabelledPicture* picture;
+  GreyImage texture;
+  engine::TextureField field;
+};
+
+engine::GlcmStatistics mean_over_directions(const GreyImage& image) {
+  engine::GlcmStatistics mean{};
+  const engine::GlcmTable table = engine::glcm_statistics(image);
+  const double share = 1.0 / static_cast<double>(table.size());
+  for (const engine::GlcmStatistics& statistics : table) {
+    mean.angular_second_moment += share * statistics.angular_second_moment;
+    mean.energy += share * statistics.energy;
+    mean.entropy += share * statistics.entropy;
+    mean.contrast += share * statistics.contrast;
+    mean.correlation += share * statistics.correlation;
+  }
+  return mean;
+}
+
+Worked worked(const LabelledPicture& picture, const engine::ExtractionOptions& method,
+              const engine::RenderingOptions& rendering) {
+  const engine::Extraction<double> extraction =
+      engine::extract_texture<double>(picture.image, method);
+  return {&picture, engine::texture_picture(extraction.texture),
+          engine::make_texture_field(extraction.texture, rendering)};
+}
+
+PictureMeasures measures_of(const Worked& work, engine::Gains gains) {
+  PictureMeasures measures;
+  measures.set = work.picture->set;
+  measures.label = work.picture->label;
+  measures.name = work.picture->name;
+  const Plane<double> greys = converted<double>(work.picture->image);
+  measures.mean = mean_of(greys);
+  measures.deviation =
+      standard_deviation(greys.samples(), measures.mean, static_cast<double>(greys.size()));
+  measures.slope = engine::spectrum_slope(work.picture->image);
+  measures.original = mean_over_directions(work.picture->image);
+  measures.texture = mean_over_directions(work.texture);
+  const engine::FieldStatistics statistics = engine::field_statistics(work.field.view(), gains);
+  measures.force_rms_n = statistics.tangential_rms_n;
+  measures.renderable_share = 1.0 - statistics.share_below_1_mm;
+  return measures;
+}
+
+GreyImage corner_of(const GreyImage& image, int height, int width) {
+  if (image.height() == height && image.width() == width) return image;
+  GreyImage corner(height, width);
+  for (int y = 0; y < height; ++y) {
+    std::ranges::copy(image.row(y).first(static_cast<std::size_t>(width)), corner.row(y).begin());
+  }
+  return corner;
+}
+
+double likeness_of(const GreyImage& a, const GreyImage& b) {
+  const int height = std::min(a.height(), b.height());
+  const int width = std::min(a.width(), b.width());
+  return engine::ms_ssim<float>(corner_of(a, height, width), corner_of(b, height, width)).unit;
+}
+
+void add_pair(PairMean& mean, double value) {
+  ++mean.pairs;
+  mean.mean += (value - mean.mean) / mean.pairs;
+}
+
+using WorkedSet = std::vector<const Worked*>;
+
+bool large_enough(const WorkedSet& set) {
+  return std::ranges::all_of(set, [](const Worked* work) {
+    const GreyImage& image = work->picture->image;
+    return std::min(image.height(), image.width()) >= engine::kMsSsimSmallestSide;
+  });
+}
+
+template <typename PairDone>
+Likeness likeness_in(const WorkedSet& set, const PairDone& pair_done) {
+  Likeness likeness;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const bool within = set[i]->picture->label == set[j]->picture->label;
+      add_pair(within ? likeness.original_within : likeness.original_between,
+               likeness_of(set[i]->picture->image, set[j]->picture->image));
+      add_pair(within ? likeness.texture_within : likeness.texture_between,
+               likeness_of(set[i]->texture, set[j]->texture));
+      pair_done();
+    }
+  }
+  return likeness;
+}
+
+std::vector<std::pair<std::string, WorkedSet>> sets_of(const std::vector<Worked>& all) {
+  std::vector<std::pair<std::string, WorkedSet>> sets;
+  for (const Worked& work : all) {
+    const auto has_name = [&](const auto& set) { return set.first == work.picture->set; };
+    auto set = std::ranges::find_if(sets, has_name);
+    if (set == sets.end()) set = sets.insert(set, {work.picture->set, {}});
+    set->second.push_back(&work);
+  }
+  return sets;
+}
+
+engine::Gains gains_of(const WorkedSet& set, const engine::RenderingOptions& rendering) {
+  std::vector<engine::FieldView> fields;
+  for (const Worked* work : set) fields.push_back(work->field.view());
+  return engine::choose_gains(fields, rendering).of_field.front();
+}
+
+template <typename PairDone>
+SetMeasures measures_of_set(const std::string& name, const WorkedSet& set,
+                            const PairDone& pair_done) {
+  SetMeasures measures;
+  measures.set = name;
+  measures.pictures = static_cast<int>(set.size());
+  std::set<std::string> labels;
+  for (const Worked* work : set) labels.insert(work->picture->label);
+  measures.classes = static_cast<int>(labels.size());
+  if (large_enough(set)) measures.likeness = likeness_in(set, pair_done);
+  return measures;
+}
+
+int pairs_in(const std::vector<std::pair<std::string, WorkedSet>>& sets) {
+  int pairs = 0;
+  for (const auto& [name, set] : sets) {
+    const auto count = static_cast<int>(set.size());
+    if (large_enough(set)) pairs += count * (count - 1) / 2;
+  }
+  return pairs;
+}
+
+}  // namespace
+
+MeasuredPictures measure_pictures(std::span<const LabelledPicture> pictures,
+                                  const engine::ExtractionOptions& method,
+                                  engine::RenderingOptions rendering,
+                                  const std::function<void(int done, int of)>& progress) {
+  if (pictures.empty()) throw std::invalid_argument("measure_pictures: there is no picture");
+  rendering.equalise = engine::Equalise::none;
+  std::vector<Worked> all;
+  for (const LabelledPicture& picture : pictures) all.push_back(worked(picture, method, rendering));
+  const auto sets = sets_of(all);
+  const int steps = pairs_in(sets);
+  int done = 0;
+  const auto pair_done = [&] {
+    if (progress) progress(++done, steps);
+  };
+  const engine::Gains gains = gains_of(sets.front().second, rendering);
+  MeasuredPictures measured;
+  measured.tangential_gain_n = gains.tangential_n;
+  for (const Worked& work : all) measured.pictures.push_back(measures_of(work, gains));
+  for (const auto& [name, set] : sets) {
+    measured.sets.push_back(measures_of_set(name, set, pair_done));
+  }
+  return measured;
+}
+
+}  // namespace touchtrial::analysis

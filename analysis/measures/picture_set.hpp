@@ -1,0 +1,79 @@
+/// \file Measures of sets of pictures: of each picture, and of how alike pictures are. Definitions: docs/stimuli.md, "Measures".
+#pragma once
+
+#include "core/plane.hpp"
+#include "engine/extraction_options.hpp"
+#include "engine/metrics/glcm.hpp"
+#include "engine/rendering/rendering_options.hpp"
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// A picture to be measured.
+struct LabelledPicture {
+  std::string set;    ///< measures of a set never include other sets
+  std::string label;  ///< the picture's class in the set
+  std::string name;   ///< for reports
+  GreyImage image;
+};
+
+/// The measures of one picture.
+struct PictureMeasures {
+  std::string set, label, name;
+  double mean = 0.0;                  ///< grey levels
+  double deviation = 0.0;             ///< standard deviation, grey levels
+  double slope = 0.0;                 ///< spectrum_slope() of the picture
+  engine::GlcmStatistics original{};  ///< mean over the four directions
+  engine::GlcmStatistics texture{};   ///< the same of the texture picture
+  double force_rms_n = 0.0;           ///< of the tangential force, with the gain of the first set
+  double renderable_share = 0.0;      ///< of the tangential force's power, at wavelengths >= 1 mm
+};
+
+/// Mean MS-SSIM (unit exponents) over pairs of pictures.
+struct PairMean {
+  int pairs = 0;
+  double mean = 0.0;  ///< 0 without a pair
+};
+
+/// How alike two pictures of one class are, and two of different classes.
+struct Likeness {
+  PairMean original_within, original_between;
+  PairMean texture_within, texture_between;
+};
+
+struct SetMeasures {
+  std::string set;
+  int classes = 0;
+  int pictures = 0;
+  /// Empty if a picture is too small for MS-SSIM.
+  std::optional<Likeness> likeness;
+};
+
+struct MeasuredPictures {
+  double tangential_gain_n = 0.0;
+  std::vector<PictureMeasures> pictures;  ///< in the order given
+  std::vector<SetMeasures> sets;          ///< by first appearance
+};
+
+/// Measures pictures under a method and rendering. The gain is that of the first picture's set, by
+/// the stiffness budget or as the rendering sets it; `equalise` is ignored, because it would hide
+/// what is measured. Pairs of different sizes are compared over the corner that they share.
+/// \param progress  called after each pair with the number of pairs done and their total; may be
+///   empty
+/// \throws std::invalid_argument if there is no picture, or one is below kSlopeSmallestSide
+/// Thread-safe. A pair of 500 x 500 pictures takes about 20 ms.
+[[nodiscard]] MeasuredPictures measure_pictures(
+    std::span<const LabelledPicture> pictures, const engine::ExtractionOptions& method,
+    engine::RenderingOptions rendering, const std::function<void(int done, int of)>& progress = {});
+
+/// Tables for a terminal.
+[[nodiscard]] std::string measures_text(const MeasuredPictures& measured);
+/// docs/stimuli.md, "Measures", explains the keys.
+[[nodiscard]] std::string measures_json(const MeasuredPictures& measured);
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,108 @@
+#include "analysis/json_figures.hpp"
+#include "analysis/measures/picture_set.hpp"
+#include "analysis/text_figures.hpp"
+#include "analysis/text_table.hpp"
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+/// The file's name without its folders, which would take the numbers' room.
+std::string file_of(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
+}
+
+std::string pictures_text(const MeasuredPictures& measured) {
+  TextTable table({"picture", "mean", "deviation", "slope", "ASM", "entropy", "contrast",
+                   "correlation", "contrast T", "correlation T", "rms mN", "over 1 mm"});
+  for (const PictureMeasures& p : measured.pictures) {
+    table.add(
+        {file_of(p.name), fmt::format("{:.1f}", p.mean), fmt::format("{:.1f}", p.deviation),
+         fmt::format("{:.2f}", p.slope), fmt::format("{:.6f}", p.original.angular_second_moment),
+         fmt::format("{:.2f}", p.original.entropy), fmt::format("{:.0f}", p.original.contrast),
+         fmt::format("{:.3f}", p.original.correlation), fmt::format("{:.0f}", p.texture.contrast),
+         fmt::format("{:.3f}", p.texture.correlation), fmt::format("{:.1f}", 1e3 * p.force_rms_n),
+         percent_of_share(p.renderable_share)});
+  }
+  constexpr std::size_t kOneBlock = 140;
+  return table.text(kOneBlock);
+}
+
+std::string pair_mean(const PairMean& mean) {
+  return mean.pairs == 0 ? "-" : fmt::format("{:.4f} ({})", mean.mean, mean.pairs);
+}
+
+std::string likeness_text(const MeasuredPictures& measured) {
+  TextTable table(
+      {"MS-SSIM, mean (pairs)", "original within", "between", "texture within", "between"});
+  for (const SetMeasures& set : measured.sets) {
+    if (!set.likeness) {
+      table.add({set.set, "too small", "", "", ""});
+      continue;
+    }
+    table.add({set.set, pair_mean(set.likeness->original_within),
+               pair_mean(set.likeness->original_between), pair_mean(set.likeness->texture_within),
+               pair_mean(set.likeness->texture_between)});
+  }
+  return table.text();
+}
+
+using Json = nlohmann::ordered_json;
+
+Json pair_json(const PairMean& mean) {
+  return {{"pairs", mean.pairs}, {"mean", mean.pairs == 0 ? Json() : Json(mean.mean)}};
+}
+
+Json picture_json(const PictureMeasures& picture) {
+  return {{"set", picture.set},
+          {"class", picture.label},
+          {"picture", picture.name},
+          {"mean", picture.mean},
+          {"deviation", picture.deviation},
+          {"spectrum_slope", picture.slope},
+          {"original", statistics_json(picture.original)},
+          {"texture", statistics_json(picture.texture)},
+          {"force_rms_n", picture.force_rms_n},
+          {"renderable_share", picture.renderable_share}};
+}
+
+Json likeness_json(const Likeness& likeness) {
+  return {{"original",
+           {{"within", pair_json(likeness.original_within)},
+            {"between", pair_json(likeness.original_between)}}},
+          {"texture",
+           {{"within", pair_json(likeness.texture_within)},
+            {"between", pair_json(likeness.texture_between)}}}};
+}
+
+Json set_json(const SetMeasures& set) {
+  return {{"set", set.set},
+          {"classes", set.classes},
+          {"pictures", set.pictures},
+          {"ms_ssim", set.likeness ? likeness_json(*set.likeness) : Json()}};
+}
+
+}  // namespace
+
+std::string measures_text(const MeasuredPictures& measured) {
+  return pictures_text(measured) + "\n" + likeness_text(measured) + "\n" +
+         wrapped("  ",
+                 fmt::format(
+                     "Forces are those of a tangential gain of {:.4g} N per grey level and pixel. "
+                     "Co-occurrence numbers are means over four directions; T: of the texture. "
+                     "Slope: of log power over log frequency. MS-SSIM with exponents 1.",
+                     measured.tangential_gain_n));
+}
+
+std::string measures_json(const MeasuredPictures& measured) {
+  Json pictures = Json::array();
+  for (const PictureMeasures& picture : measured.pictures)
+    pictures.push_back(picture_json(picture));
+  Json sets = Json::array();
+  for (const SetMeasures& set : measured.sets) sets.push_back(set_json(set));
+  return json_text(Json{
+      {"tangential_gain_n", measured.tangential_gain_n}, {"pictures", pictures}, {"sets", sets}});
+}
+
+}  // namespace touchtrial::analysis

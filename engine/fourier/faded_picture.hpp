@@ -1,0 +1,14 @@
+/// \file A picture made ready for a Fourier transform. Private to engine.
+#pragma once
+
+#include "core/plane.hpp"
+#include "engine/fourier/real_fft.hpp"
+
+namespace touchtrial::engine {
+
+/// Fills the transform's plane with a picture less its mean, under a Hann window in both
+/// directions, so that opposite edges meet without a step.
+/// \param fft  of the picture's size
+void load_faded(const GreyImage& picture, RealFft<double>& fft);
+
+}  // namespace touchtrial::engine
