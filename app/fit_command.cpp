@@ -12,6 +12,7 @@
 #include "core/errors.hpp"
 #include "core/outputs.hpp"
 #include "core/strict_json.hpp"
+#include "core/text.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/identification/analysis/cues/study_plane.hpp"
 #include "protocols/simulation/subject_model.hpp"
@@ -19,11 +20,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::app {
@@ -32,14 +36,16 @@ namespace {
 namespace fs = std::filesystem;
 
 struct FitArguments {
-  fs::path database;
+  fs::path source;  ///< database; a study file with --accuracies
   fs::path key;
   fs::path pack;
   fs::path subject;
   std::string on;
   fs::path out;
+  std::vector<std::string> accuracies;
   std::vector<std::string> fixed;
   planning::FeltStudyOptions felt;
+  int participants = 20;
   int bootstraps = 499;
   bool json = false;
 };
@@ -91,7 +97,7 @@ void refuse_to_replace(const FitArguments& arguments) {
   const std::string place = "fit: -o " + one_line(arguments.out.string());
   std::vector<fs::path> inputs{arguments.key};
   for (const char* ending : {"", "-wal", "-shm", "-journal", ".key"}) {
-    inputs.emplace_back(arguments.database.string() + ending);
+    inputs.emplace_back(arguments.source.string() + ending);
   }
   const auto is_out = [&](const fs::path& input) {
     return !input.empty() && same_file(arguments.out, input);
@@ -131,13 +137,13 @@ planning::FitCounts counts_of(const FitArguments& arguments, const design::Study
   try {
     return planning::count_answers(outcomes, schedules, planning::stimuli_of(key));
   } catch (const StudyError& error) {
-    throw StudyError(one_line(arguments.database.string()) + ": " + error.what());
+    throw StudyError(one_line(arguments.source.string()) + ": " + error.what());
   }
 }
 
 int fit_study(const FitArguments& arguments) {
-  const store::StudyStore store = unblinded(arguments.database);
-  const design::StudyKey key = key_of_database(store, arguments.database, arguments.key);
+  const store::StudyStore store = unblinded(arguments.source);
+  const design::StudyKey key = key_of_database(store, arguments.source, arguments.key);
   const simulation::SubjectModel subject = subject_for(arguments.subject, key.study, arguments.on);
   design::require_choice_of_classes(key.study, "fit");
   const analysis::Outcomes outcomes = analysis::load_outcomes(store, key);
@@ -161,19 +167,83 @@ int fit_study(const FitArguments& arguments) {
   return 0;
 }
 
+/// "bark=0.87"
+std::pair<std::string, double> accuracy_of(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  const auto share = equals == std::string::npos
+                         ? std::nullopt
+                         : number_in<double>(std::string_view(text).substr(equals + 1));
+  if (!share || !(*share >= 0.0 && *share <= 1.0)) {
+    throw UsageError("fit: --accuracies: " + in_quotes(text) +
+                     " is not an accuracy; give CLASS=SHARE, for instance bark=0.87");
+  }
+  return {text.substr(0, equals), *share};
+}
+
+std::vector<double> accuracies_of(const FitArguments& arguments, const design::Study& study) {
+  std::map<std::string, double> given;
+  for (const std::string& text : arguments.accuracies) {
+    if (!given.insert(accuracy_of(text)).second) {
+      throw UsageError("fit: --accuracies: a class occurs twice, in " + in_quotes(text));
+    }
+  }
+  std::vector<double> accuracies;
+  for (const design::StudyClass& one : study.classes) {
+    const auto found = given.find(one.label);
+    if (found == given.end()) {
+      throw UsageError("fit: --accuracies: the study's class " + in_quotes(one.label) +
+                       " is missing; give one accuracy for each class");
+    }
+    accuracies.push_back(found->second);
+    given.erase(found);
+  }
+  if (given.empty()) return accuracies;
+  throw UsageError("fit: --accuracies: the study has no class " + in_quotes(given.begin()->first));
+}
+
+void refuse_database(const fs::path& path) {
+  constexpr std::string_view kStart = "SQLite format 3";
+  std::string start(kStart.size(), ' ');
+  std::ifstream file(path, std::ios::binary);
+  if (file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kStart) {
+    throw UsageError(one_line(path.string()) +
+                     ": is a database; fit --accuracies needs the study file");
+  }
+}
+
+int fit_published(const FitArguments& arguments) {
+  refuse_database(arguments.source);
+  const design::Study study = design::load_study(arguments.source);
+  design::require_choice_of_classes(study, "fit");
+  const simulation::SubjectModel subject = subject_for(arguments.subject, study, arguments.on);
+  const std::vector<double> wanted = accuracies_of(arguments, study);
+  const design::StudyKey key = simulated_key(study, arguments.source);
+  prepare_simulated_pack(key);
+  const planning::AnswerModel model = planning::answer_model_of(
+      key, engine::Pack(key.pack_folder), subject, arguments.felt, progress_bar("feeling"));
+  const planning::AccuracyFit fit =
+      planning::fit_accuracies(model, wanted, planning::layouts_of(study, arguments.participants),
+                               subject, free_of(arguments));
+  const planning::FitOrigin origin = origin_of(arguments, study, subject);
+  finish(arguments, fit.subject,
+         arguments.json ? planning::fit_json(fit, origin) : planning::fit_text(fit, origin));
+  return 0;
+}
+
 }  // namespace
 
 void add_fit_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<FitArguments>();
   CLI::App* command = program.add_subcommand(
       "fit", "Estimate noise, lapses, biases and label swaps of a subject model from answers");
-  add_database_argument(*command, arguments->database, "Database of an unblinded study");
+  add_database_argument(*command, arguments->source,
+                        "Database of an unblinded study; with --accuracies a study file");
   command->add_option("--subject", arguments->subject,
                       "Subject model with the fixed parameters and the starting values (default: "
                       "built in)");
   add_on_option(*command, arguments->on);
-  add_key_option(*command, arguments->key);
-  command->add_option("--pack", arguments->pack, "Pack of the study");
+  CLI::Option* key = add_key_option(*command, arguments->key);
+  CLI::Option* pack = command->add_option("--pack", arguments->pack, "Pack of the study");
   command->add_option("-o,--out", arguments->out, "Subject file to write");
   add_force_flag(*command);
   command
@@ -184,6 +254,21 @@ void add_fit_command(CLI::App& program, Action& action) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"feature_noise", "lapse", "position", "classes", "swaps", "spread"}));
+  CLI::Option* accuracies =
+      command
+          ->add_option("--accuracies", arguments->accuracies,
+                       "Fit to published accuracies instead: CLASS=SHARE for each class")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->excludes(key)
+          ->excludes(pack);
+  command
+      ->add_option(
+          "--participants", arguments->participants,
+          "Number of participants whose orders of pictures the published accuracies average")
+      ->check(CLI::Range(1, 1000))
+      ->needs(accuracies)
+      ->capture_default_str();
   add_count_option(*command, "--explorations", arguments->felt.explorations,
                    "Explorations of each stimulus from which answers are predicted", 8, 20000);
   add_count_option(*command, "--bootstraps", arguments->bootstraps,
@@ -195,7 +280,7 @@ void add_fit_command(CLI::App& program, Action& action) {
   command->callback([=, &action] {
     action = [=] {
       refuse_to_replace(*arguments);
-      return fit_study(*arguments);
+      return arguments->accuracies.empty() ? fit_study(*arguments) : fit_published(*arguments);
     };
   });
 }

@@ -342,4 +342,15 @@ std::vector<design::StimulusIndex> stimuli_of(const design::StudyKey& key) {
   return stimuli;
 }
 
+std::vector<PictureLayout> layouts_of(const design::Study& study, int participants) {
+  std::vector<PictureLayout> layouts;
+  const design::StudyKey key = design::simulated_study_key(study);
+  for (int number = 1; number <= participants; ++number) {
+    PictureLayout layout =
+        design::make_schedule(study, key.draw_of(number, design::Draws::rehearsal)).layout;
+    if (std::ranges::find(layouts, layout) == layouts.end()) layouts.push_back(std::move(layout));
+  }
+  return layouts;
+}
+
 }  // namespace touchtrial::planning

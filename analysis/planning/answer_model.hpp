@@ -131,4 +131,7 @@ struct FeltStudyOptions {
 /// \return the study's stimuli, in the order of banks
 [[nodiscard]] std::vector<design::StimulusIndex> stimuli_of(const design::StudyKey& key);
 
+/// \return the different layouts of the first participants
+[[nodiscard]] std::vector<PictureLayout> layouts_of(const design::Study& study, int participants);
+
 }  // namespace touchtrial::planning

@@ -137,14 +137,17 @@ Cells cells_of(const AnswerTable& table, const FitCounts& counts) {
   return cells;
 }
 
-FitEvidence::FitEvidence(const FitCounts& counts, std::span<const CountedPerson> people)
+Cells zeros(std::size_t layouts, const AnswerTable& table) {
+  const auto cells = static_cast<std::size_t>(table.stimuli()) * table.classes();
+  return {layouts, std::vector<double>(cells, 0.0)};
+}
+
+CountsEvidence::CountsEvidence(const FitCounts& counts, std::span<const CountedPerson> people)
     : counts_(counts), sums_(by_layout(counts, people)) {}
 
-double FitEvidence::log_likelihood(const AnswerTable& table, Cells* slopes) const {
+double CountsEvidence::log_likelihood(const AnswerTable& table, Cells* slopes) const {
   const auto classes = static_cast<std::size_t>(table.classes());
-  if (slopes != nullptr) {
-    slopes->assign(sums_.size(), std::vector<double>(table.stimuli() * classes, 0.0));
-  }
+  if (slopes != nullptr) *slopes = zeros(sums_.size(), table);
   double sum = 0.0;
   for (std::size_t layout = 0; layout < sums_.size(); ++layout) {
     for (std::size_t cell = 0; cell < sums_[layout].size(); ++cell) {

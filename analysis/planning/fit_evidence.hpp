@@ -61,6 +61,17 @@ using Confusions = std::vector<std::vector<std::vector<double>>>;
 /// saturated model.
 [[nodiscard]] double g_squared(const Confusions& observed, const Confusions& expected);
 
+/// The likelihood of an observation, given probabilities of answers.
+class FitEvidence {
+ public:
+  virtual ~FitEvidence() = default;
+
+  [[nodiscard]] virtual std::span<const PictureLayout> layouts() const noexcept = 0;
+  /// \param table  the probabilities for those layouts
+  /// \param slopes  null, or receives the derivatives by the table's probabilities
+  [[nodiscard]] virtual double log_likelihood(const AnswerTable& table, Cells* slopes) const = 0;
+};
+
 /// The least probability that an observed answer is taken to have.
 inline constexpr double kLeastProbability = 1e-12;
 
@@ -70,18 +81,21 @@ inline constexpr double kLeastProbability = 1e-12;
 /// \return the table's probabilities
 [[nodiscard]] Cells cells_of(const AnswerTable& table, const FitCounts& counts);
 
-/// The likelihood of multinomial answers, independent given stimulus and layout.
-class FitEvidence {
+/// \return a zero for every cell of the table
+[[nodiscard]] Cells zeros(std::size_t layouts, const AnswerTable& table);
+
+/// Multinomial answers, independent given stimulus and layout. The log likelihood leaves out
+/// constants.
+class CountsEvidence final : public FitEvidence {
  public:
   /// \param counts  layouts, classes and stimuli; must outlive this object
   /// \param people  the people whose answers count
-  FitEvidence(const FitCounts& counts, std::span<const CountedPerson> people);
+  CountsEvidence(const FitCounts& counts, std::span<const CountedPerson> people);
 
-  [[nodiscard]] std::span<const PictureLayout> layouts() const noexcept { return counts_.layouts; }
-  /// Leaves out constants.
-  /// \param table  the probabilities for those layouts
-  /// \param slopes  null, or receives the derivatives by the table's probabilities
-  [[nodiscard]] double log_likelihood(const AnswerTable& table, Cells* slopes) const;
+  [[nodiscard]] std::span<const PictureLayout> layouts() const noexcept override {
+    return counts_.layouts;
+  }
+  [[nodiscard]] double log_likelihood(const AnswerTable& table, Cells* slopes) const override;
 
  private:
   const FitCounts& counts_;

@@ -93,6 +93,16 @@ std::string goodness_text(const SubjectFit& fit) {
   return analysis::wrapped("  ", text);
 }
 
+std::string biases_text(const simulation::SubjectModel& subject) {
+  std::string text =
+      fmt::format("feature_noise {:.4f}, lapse {:.4f}, bias for the first position {:+.3f}",
+                  subject.feature_noise, subject.lapse, subject.position_bias);
+  for (const simulation::ClassBias& bias : subject.class_bias) {
+    text += fmt::format(", for {} {:+.3f}", bias.label, bias.log_odds);
+  }
+  return text;
+}
+
 /// For which device the numbers hold: the answers', if they are simulated, and that of the
 /// explorations, which always are.
 std::string device_lines(const FitOrigin& origin) {
@@ -162,6 +172,18 @@ Json device_json(const device::DeviceModel& model) {
   return model.name.empty() ? Json() : Json::parse(device::device_model_json(model));
 }
 
+/// Each simulated study's subject by the keys that are its own.
+Json draws_json(const SubjectFit& fit) {
+  Json all = Json::array();
+  for (const simulation::SubjectModel& subject : fit.draws) {
+    const Json whole = Json::parse(simulation::subject_model_json(subject));
+    Json own;
+    for (const std::string_view key : kDrawnKeys) own[std::string(key)] = whole.at(key);
+    all.push_back(std::move(own));
+  }
+  return all;
+}
+
 Json swaps_json(const SubjectFit& fit) {
   Json tried = Json::array();
   for (const SwapCandidate& one : fit.swaps) {
@@ -198,6 +220,24 @@ std::string fit_text(const SubjectFit& fit, const FitOrigin& origin) {
   return text + analysis::simulated_line(origin.simulated);
 }
 
+std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin) {
+  std::string text = device_lines(origin) + origin.study + ": a subject for published accuracies\n";
+  analysis::TextTable table({"class", "published", "expected of the fit", "difference, points"});
+  for (std::size_t c = 0; c < fit.classes.size(); ++c) {
+    table.add({fit.classes[c], analysis::percent_of_share(fit.wanted[c]),
+               analysis::percent_of_share(fit.reached[c]),
+               fmt::format("{:+.2f}", 100.0 * (fit.reached[c] - fit.wanted[c]))});
+  }
+  text += table.text() + analysis::wrapped("  ", biases_text(fit.subject));
+  const bool others_fit = fit.warnings.empty();
+  text += analysis::wrapped(
+      "  ", fmt::format("{} parameters for {} numbers{}", fit.parameters, fit.classes.size(),
+                        others_fit ? ": other subjects fit as well, see docs/fitting.md" : ""));
+  if (!fit.warnings.empty()) text += analysis::heading("to bear in mind", origin.simulated);
+  for (const std::string& warning : fit.warnings) text += analysis::wrapped("  - ", warning);
+  return text;
+}
+
 std::string fit_json(const SubjectFit& fit, const FitOrigin& origin) {
   Json object = origin_json(origin);
   object["participants"] = fit.participants;
@@ -206,6 +246,7 @@ std::string fit_json(const SubjectFit& fit, const FitOrigin& origin) {
   object["classes"] = fit.classes;
   object["fitted"] = Json::parse(simulation::subject_model_json(fit.subject));
   object["device"] = device_json(fit.subject.device);
+  object["draws"] = draws_json(fit);
   object["estimates"] = estimates_json(fit);
   object["noise_lapse_correlation"] = number(fit.noise_lapse_correlation);
   object["differences_between_people"] = people_json(fit);
@@ -217,6 +258,22 @@ std::string fit_json(const SubjectFit& fit, const FitOrigin& origin) {
                                {"bootstraps", fit.bootstraps}};
   object["confusions"] = confusions_json(fit);
   object["warnings"] = fit.warnings;
+  return json_text(object);
+}
+
+std::string fit_json(const AccuracyFit& fit, const FitOrigin& origin) {
+  Json object = origin_json(origin);
+  Json classes = Json::array();
+  for (std::size_t c = 0; c < fit.classes.size(); ++c) {
+    classes.push_back(
+        {{"class", fit.classes[c]}, {"wanted", fit.wanted[c]}, {"reached", fit.reached[c]}});
+  }
+  object["accuracies"] = std::move(classes);
+  object["parameters"] = fit.parameters;
+  object["log_likelihood"] = number(fit.log_likelihood);
+  object["best_log_likelihood"] = number(fit.best_log_likelihood);
+  object["warnings"] = fit.warnings;
+  object["fitted"] = Json::parse(simulation::subject_model_json(fit.subject));
   return json_text(object);
 }
 

@@ -3,10 +3,15 @@
 
 #include "analysis/planning/subject_fit.hpp"
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace touchtrial::planning {
+
+/// The keys of a subject file that differ from draw to draw of a fit; its JSON has them by draw.
+inline constexpr std::array<std::string_view, 3> kDrawnKeys{"feature_noise", "lapse", "bias"};
 
 /// What a fit was made from.
 struct FitOrigin {
@@ -24,8 +29,10 @@ struct FitOrigin {
 
 /// Tables for a terminal; ends with a line feed.
 [[nodiscard]] std::string fit_text(const SubjectFit& fit, const FitOrigin& origin);
+[[nodiscard]] std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin);
 
 /// One indented JSON object; ends with a line feed. Missing values are null.
 [[nodiscard]] std::string fit_json(const SubjectFit& fit, const FitOrigin& origin);
+[[nodiscard]] std::string fit_json(const AccuracyFit& fit, const FitOrigin& origin);
 
 }  // namespace touchtrial::planning

@@ -103,6 +103,9 @@ void add_bootstrap(const Fitted& fitted, const FitBootstrap& bootstrap, SubjectF
   const auto at_least = std::ranges::count_if(bootstrap.g_squared,
                                               [&](double value) { return value >= fit.g_squared; });
   fit.p = (1.0 + static_cast<double>(at_least)) / (1.0 + fit.bootstraps);
+  for (const std::vector<double>& numbers : bootstrap.numbers) {
+    fit.draws.push_back(fitted.problem.subject_at(numbers));
+  }
   for (ParameterEstimate& estimate : fit.estimates) {
     std::vector<double> values;
     for (const std::vector<double>& numbers : bootstrap.numbers) {
@@ -212,7 +215,7 @@ void estimate(const Fitted& fitted, const Fitted& otherwise, const FitProgress& 
 SubjectFit fit_subject(const AnswerModel& model, const FitCounts& counts,
                        const simulation::SubjectModel& subject, const FitOptions& options,
                        const FitProgress& progress) {
-  const FitEvidence evidence(counts, counts.people);
+  const CountsEvidence evidence(counts, counts.people);
   FreeParameters used = options.free;
   if (counts.layouts.size() < 2 && used.classes) used.position = false;
   const SwapSearch search = search_swaps(model, evidence, subject, used);

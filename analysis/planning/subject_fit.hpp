@@ -1,4 +1,5 @@
-/// \file A subject model fitted to a study's answers. Source: docs/fitting.md.
+/// \file A subject model fitted to a study's answers, or to published accuracies.
+/// Source: docs/fitting.md.
 #pragma once
 
 #include "analysis/planning/fit_evidence.hpp"
@@ -43,6 +44,8 @@ struct SwapCandidate {
 
 struct SubjectFit {
   simulation::SubjectModel subject;  ///< fitted; fixed parameters are the given subject's
+  /// Refitted to each of the simulated studies: what the answers leave open.
+  std::vector<simulation::SubjectModel> draws;
   std::vector<ParameterEstimate> estimates;
   std::vector<SwapCandidate> swaps;  ///< the most likely ones, best first
   double swap_threshold = 0.0;       ///< gain that a swap needs
@@ -90,5 +93,28 @@ using FitProgress = std::function<void(double share)>;
 [[nodiscard]] std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit& fit,
                                                     const FreeParameters& free,
                                                     const FreeParameters& used);
+
+struct AccuracyFit {
+  simulation::SubjectModel subject;
+  std::vector<std::string> classes;
+  std::vector<double> wanted;   ///< by class, 0 .. 1
+  std::vector<double> reached;  ///< by class, expected of the fitted subject
+  int parameters = 0;           ///< number of estimated parameters
+  double log_likelihood = 0.0;
+  double best_log_likelihood = 0.0;  ///< of a model that reaches the accuracies exactly
+  std::vector<std::string> warnings;
+};
+
+/// The subject whose accuracies are the most likely, by a binomial likelihood with equally many
+/// trials for each class. With as many parameters as classes, many subjects usually reach the
+/// accuracies exactly, and this is one of them. Label swaps are not searched.
+/// Source: docs/fitting.md, "Published accuracies".
+/// \param wanted  by class, 0 .. 1
+/// \param layouts  of the participants
+/// \throws std::invalid_argument unless there is one accuracy in range for each class
+[[nodiscard]] AccuracyFit fit_accuracies(const AnswerModel& model, std::vector<double> wanted,
+                                         std::vector<PictureLayout> layouts,
+                                         const simulation::SubjectModel& subject,
+                                         const FreeParameters& free);
 
 }  // namespace touchtrial::planning

@@ -79,6 +79,26 @@ TEST_CASE("fit refuses blind studies, strange labels, and absurd numbers, in one
   succeeded(fit(study, {"--key", study.in("moved.key")}));
 }
 
+TEST_CASE("fit --accuracies makes a subject for published accuracies, and refuses others") {
+  const StudyFolder study;
+  const auto published = [&](const std::string& text) {
+    return study.run({"fit", study.in("cloths.json"), "--accuracies", text, "--subject",
+                      study.in("quick.json"), "--explorations", "40", "--participants", "4",
+                      "--fix", "lapse,position", "--json"});
+  };
+  const ProgramResult ran = succeeded(published("granite=0.9,linen=0.7,corduroy=0.8"));
+  const json object = json::parse(ran.output);
+  CHECK(object.at("parameters") == 3);
+  for (const json& one : object.at("accuracies")) {
+    CHECK(one.at("reached").get<double>() == Approx(one.at("wanted").get<double>()).margin(0.03));
+  }
+  check_refused(published("granite=0.9,linen=0.7"), 2, {"corduroy"});
+  check_refused(published("granite=0.9,linen=0.7,corduroy=1.8"), 2, {"corduroy=1.8"});
+  check_refused(published("granite=0.9,linen=0.7,corduroy=0.8,velvet=0.5"), 2, {"velvet"});
+  check_refused(published("granite=0.9,granite=0.8,linen=0.7,corduroy=0.8"), 2, {"twice"});
+  check_refused(published("granite"), 2, {"granite"});
+}
+
 TEST_CASE("fit replaces subject files only, and nothing that it reads") {
   const StudyFolder study;
   succeeded(study.simulate("s.db"));
@@ -101,6 +121,12 @@ TEST_CASE("fit replaces subject files only, and nothing that it reads") {
   unharmed("linked.db", {"fit", study.in("s.db"), "-o", study.in("linked.db")},
            "is one of the inputs");
   unharmed("cloths.json", {"fit", study.in("s.db"), "-o", study.in("cloths.json")}, "--force", 1);
+  const std::string accuracies = "granite=0.9,linen=0.7,corduroy=0.8";
+  unharmed(
+      "cloths.json",
+      {"fit", study.in("cloths.json"), "--accuracies", accuracies, "-o", study.in("cloths.json")},
+      "is one of the inputs");
+  unharmed("s.db", {"fit", study.in("s.db"), "--accuracies", accuracies}, "study file");
   fs::copy_file(study.path() / "quick.json", study.path() / "old.json");
   check_refused(fit(study, {"-o", study.in("old.json")}), 1, {"old.json", "--force"});
   succeeded(fit(study, {"-o", study.in("old.json"), "--force"}));

@@ -5,25 +5,10 @@
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
-#include <algorithm>
-#include <utility>
-
 namespace touchtrial {
 namespace {
 
 const std::filesystem::path kConfig = std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config";
-
-/// The different layouts of the first participants.
-std::vector<planning::PictureLayout> layouts_of(const design::Study& study, int participants) {
-  std::vector<planning::PictureLayout> layouts;
-  const design::StudyKey key = design::simulated_study_key(study);
-  for (int number = 1; number <= participants; ++number) {
-    planning::PictureLayout layout =
-        design::make_schedule(study, key.draw_of(number, design::Draws::rehearsal)).layout;
-    if (std::ranges::find(layouts, layout) == layouts.end()) layouts.push_back(std::move(layout));
-  }
-  return layouts;
-}
 
 TEST_CASE(
     "the paper's subject nearly has the paper's accuracies, and so has a very different subject") {
@@ -42,7 +27,7 @@ TEST_CASE(
   const planning::AnswerModel model =
       planning::answer_model_of(key, engine::Pack(folder.path() / "pack"), paper,
                                 {.explorations = 250, .directions = 4, .jobs = 2});
-  const std::vector<planning::PictureLayout> layouts = layouts_of(key.study, 20);
+  const std::vector<planning::PictureLayout> layouts = planning::layouts_of(key.study, 20);
   const std::vector<double> published = {0.87, 0.72, 0.81, 0.91, 0.83};
   std::vector<double> cloth_for_bark;
   for (const simulation::SubjectModel& subject : {paper, other}) {
