@@ -72,7 +72,7 @@ std::vector<TrialColumn> ProtocolAnalysis::trial_columns() const {
 std::vector<std::filesystem::path> ProtocolAnalysis::export_model(
     const store::StudyStore&, const Outcomes& outcomes, const std::filesystem::path&) const {
   throw UsageError("--format r: the protocol " + outcomes.design.protocol_name() +
-                   " has no model for R; choose csv, json or bids");
+                   " has no model for R; choose csv, json, bids or psych-ds");
 }
 
 void add_analysis(std::string_view protocol, const ProtocolAnalysis& analysis) {

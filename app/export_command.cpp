@@ -1,5 +1,6 @@
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/export_people.hpp"
+#include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/outcomes.hpp"
 #include "analysis/results.hpp"
@@ -42,17 +43,21 @@ struct ExportArguments {
 /// Refuses options that the format would silently ignore.
 void require_fitting(const ExportArguments& arguments) {
   const analysis::DatasetOptions& dataset = arguments.dataset;
-  const bool for_bids = dataset.traces || dataset.stimuli || arguments.with_database ||
-                        arguments.with_texts || !dataset.authors.empty() ||
-                        !dataset.license.empty() || !dataset.institution.empty();
+  const bool for_bids =
+      dataset.traces || dataset.stimuli || arguments.with_database || !dataset.institution.empty();
   if (for_bids && arguments.format != "bids") {
     throw UsageError(
-        "--traces, --with-stimuli, --with-database, --with-texts, --author, --license and "
-        "--institution belong to --format bids");
+        "--traces, --with-stimuli, --with-database and --institution belong to --format bids");
   }
   const bool is_csv = arguments.format == "csv" && arguments.participant.empty();
   if (arguments.for_excel && (!is_csv || arguments.safety)) {
     throw UsageError("--for-excel belongs to --format csv");
+  }
+  const bool for_datasets =
+      !dataset.authors.empty() || !dataset.license.empty() || arguments.with_texts;
+  if (for_datasets && arguments.format != "bids" && arguments.format != "psych-ds") {
+    throw UsageError(
+        "--author, --license and --with-texts belong to --format bids and --format psych-ds");
   }
 }
 
@@ -105,6 +110,7 @@ std::vector<fs::path> write_files(const ExportArguments& arguments, const store:
   analysis::DatasetOptions options = arguments.dataset;
   options.typed = arguments.with_texts ? analysis::Typed::shown : analysis::Typed::left_out;
   options.consents = consents;
+  if (format == "psych-ds") return analysis::export_psych_ds(study, options, arguments.folder);
   if (arguments.with_database) options.database = arguments.database;
   if (options.traces) options.progress = progress_bar("export");
   return analysis::export_bids(study, options, arguments.folder);
@@ -169,10 +175,10 @@ void add_dataset_options(CLI::App& command, ExportArguments& arguments) {
   command.add_flag("--with-database", arguments.with_database,
                    "bids: a copy of the database in sourcedata/, never its key");
   command.add_flag("--with-texts", arguments.with_texts,
-                   "bids: what people typed (answers in words, ages, notes, reasons), which may name "
-                   "somebody");
-  command.add_option("--author", dataset.authors, "bids: an author; may be repeated");
-  command.add_option("--license", dataset.license, "bids: license, for instance CC0");
+                   "bids, psych-ds: what people typed (answers in words, ages, notes, reasons), "
+                   "which may name somebody");
+  command.add_option("--author", dataset.authors, "bids, psych-ds: an author; may be repeated");
+  command.add_option("--license", dataset.license, "bids, psych-ds: license, for instance CC0");
   command.add_option("--institution", dataset.institution, "bids: where the data were collected");
 }
 
@@ -183,7 +189,7 @@ void add_export_command(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("export", "Write a study's data for other programs");
   add_database_argument(*command, arguments->database);
   CLI::Option* format = command->add_option("--format", arguments->format, "What to write");
-  format->check(CLI::IsMember({"csv", "json", "bids", "r", "events"}))
+  format->check(CLI::IsMember({"csv", "json", "bids", "psych-ds", "r", "events"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->folder, "Folder to write into")
       ->check(place_validator())

@@ -48,7 +48,7 @@ touchtrial_package(program touchtrial science "psychophysics runner for textures
 force-feedback device, records what participants answer in SQLite, and reports
 how well they told the textures apart. Runs classification and comparison
 studies, measures thresholds, simulates participants, plans the size of a
-study, and exports to CSV, BIDS and R.
+study, and exports to CSV, BIDS, Psych-DS and R.
 .
 The command demo runs simulated participants through two studies.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)

@@ -62,6 +62,7 @@ Meanings of_trials() {
       {"trial", {"Number of the trial in its session, from 1"}},
       {"block", {"Number of the trial's block, from 0"}},
       {"method", {"Method by which the texture was taken from its image"}},
+      {"class", {"Texture that was presented"}},
       {"trial_type", {"Texture that was presented"}},
       {"exemplar", {"Image that the presented texture was taken from"}},
       {"stim_file", {"Image that the presented texture was taken from, below stimuli/"}},
@@ -72,6 +73,7 @@ Meanings of_trials() {
       {"correct", yes_or_no("Whether the response is the right one; a trial without a "
                             "response is wrong")},
       {"confidence", {"Confidence in the response, from 1 (a guess) upwards"}},
+      {"reaction_time_s", {"From the moment the plane can be felt to the response", "s"}},
       {"response_time", {"From the moment the plane can be felt to the response", "s"}},
       {"from_contact_s", {"From first contact with the plane to the response", "s"}},
       {"contact_s", {"Time in contact with the plane", "s"}},
@@ -126,19 +128,71 @@ Meanings of_sessions() {
          {"stopped", "ended before that"},
          {"open", "not ended"}}}},
       {"excluded", yes_or_no("Whether the session was excluded")},
+      {"withdrawn", yes_or_no("Whether the participant withdrew")},
+      {"erased", yes_or_no("Whether the participant had the data erased")},
       {"pilot", yes_or_no("Whether the session is a pilot")},
       {"simulated", yes_or_no("Whether the participant was simulated and is no person")},
       {"counted_session", yes_or_no("Whether the session's trials enter the report")},
       {"device", {"Driver of the haptic device"}},
-      {"interruptions", {"Presentations that were interrupted, repeated or not"}},
-      {"pauses", {"Times that the session was paused"}},
       {"replaced_by", {"Participant who took this one's place in the order of enrolment"}},
+      {"after_look",
+       {"What was decided about the session after its outcomes had been seen: excluded, replaced, "
+        "erased"}},
+      {"shown", yes_or_no("Whether outcomes of the session may be shown yet")},
   };
 }
 
-Meanings of_events() {
+Meanings of_collection() {
   return {
+      {"practice_rounds", {"Rounds of practice"}},
+      {"practice_presentations", {"Textures presented in practice"}},
+      {"practice_correct", {"Of them: named correctly"}},
+      {"order_block",
+       {"Block within which the order of methods was dealt at random; negative: none"}},
+      {"practice_passed", yes_or_no("Whether practice was passed")},
+      {"resumed", {"Times that the session was taken up again after the program had ended"}},
+      {"stop_reason", {"Why the session was stopped"}},
+      {"exclusion_reason", {"Why the session was excluded"}},
+      {"replacement_reason", {"Why the participant was replaced"}},
+      {"withdrawal_reason", {"Why the participant withdrew"}},
+      {"largest_force_n", {"Largest force sent in the session's presentations", "N"}},
+      {"station", {"Station that the session was collected from; empty in a station's own file"}},
+      {"device_serial", {"Serial number of the haptic device"}},
+      {"device_model", {"Model of the haptic device, as it tells it"}},
+      {"device_firmware", {"Firmware of the haptic device, as it tells it"}},
+      {"device_max_force_n", {"Largest force of the haptic device", "N"}},
+      {"device_force_scale",
+       {"Felt newtons for one of the driver's, to the right, up and towards the person, as the lab "
+        "set them"}},
+      {"device_length_scale", {"True millimetres for one of the driver's, likewise"}},
+      {"certificate",
+       {"SHA-256 of the certificate of the device's acceptance, or UNVERIFIED DEVICE"}},
+      {"servo_hz", {"Servo rate that was asked for", "Hz"}},
+      {"scheduling", {"Scheduling that the servo's thread obtained"}},
+      {"visual", yes_or_no("Whether textures were shown on a screen instead of felt")},
+      {"interruptions", {"Presentations that were interrupted, repeated or not"}},
+      {"pauses", {"Times that the session was paused"}},
+      {"notes", {"Notes that were taken during the session"}},
+      {"answers", {"Answers of a session that has ended"}},
+      {"one_key",
+       yes_or_no("Whether 95 % of 20 answers or more came from one key, where that is no outcome")},
+  };
+}
+
+Meanings of_what_was_said() {
+  return {
+      {"questionnaire", {"Name of the questionnaire"}},
+      {"question", {"Id of the question"}},
+      {"question_kind",
+       {"What answers the question",
+        "",
+        {{"choice", "one of several options"}, {"number", "a number"}, {"text", "words"}}}},
+      {"wording", {"The question as it was asked"}},
+      {"answer", {"A number, or the place of the chosen option, from 0"}},
+      {"words", {"Text of the chosen option, or what was typed"}},
+      {"event", {"Place of the event in its chain"}},
       {"incident", {"What happened", "", incident_levels()}},
+      {"at_s", {"Time since the session's opening", "s"}},
       {"onset",
        {"Time since the session's opening; in motion/, since the first sample of the run", "s"}},
       {"duration", {"How long it lasted; n/a: not recorded", "s"}},
@@ -148,17 +202,24 @@ Meanings of_events() {
       {"code",
        {"Why: the reason of an interruption, the program's reason for a stop, the code of a "
         "deviation, what a session was resumed after"}},
+      {"mark", {"Event that other instruments were told of"}},
       {"value", {"Code of the event that other instruments were told of"}},
+      {"latency_s", {"From the event to the end of the write on the serial line", "s"}},
       {"lsl_time", {"Time of the event on the Lab Streaming Layer's clock", "s"}},
+      {"lsl_s", {"Time of the event on the Lab Streaming Layer's clock", "s"}},
+      {"lsl_uncertainty_s", {"Uncertainty of that clock's reading", "s"}},
       {"safety_fault", {"Fault that the safety chain found"}},
       {"device_fault", {"Fault that the device reported"}},
       {"text", {"What was typed"}},
+      {"consent", {"Number of the participant's consent, from 1"}},
       {"consent_version", {"Version of the consent form that was signed"}},
   };
 }
 
 Meanings of_participants() {
   return {
+      {"participant_id", {"The participant's label in this dataset"}},
+      {"session_id", {"The session's label in this dataset"}},
       {"filename", {"File, below the folder of the participant's session"}},
       {"acq_time",
        {"When the first sample was taken. Every first session opens on 1920-01-01 at 00:00:00, "
@@ -178,8 +239,9 @@ Meanings of_participants() {
 Meanings all_meanings() {
   Meanings all = of_trials();
   all.merge(of_sessions());
+  all.merge(of_collection());
   all.merge(of_participants());
-  all.merge(of_events());
+  all.merge(of_what_was_said());
   return all;
 }
 

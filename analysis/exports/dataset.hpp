@@ -1,5 +1,5 @@
-/// \file What a dataset for archives is made from: its source, the options that its publisher
-/// chooses, labels, and the meanings of its columns.
+/// \file What the datasets for archives share: their source, the options that their publisher
+/// chooses, labels, and the meanings of columns.
 #pragma once
 
 #include "analysis/exports/said_tables.hpp"
@@ -40,7 +40,7 @@ struct DatasetOptions {
 /// The letters and digits of a name; "study" if it has none.
 [[nodiscard]] std::string plain_label(const std::string& name);
 
-/// The first part of a README: how the data were collected, and what is still
+/// The part of a README that every format has: how the data were collected, and what is still
 /// sealed.
 [[nodiscard]] std::string about_study(const DatasetSource& study);
 
@@ -48,15 +48,15 @@ struct DatasetOptions {
 /// \param typed  left_out: without answers in words
 [[nodiscard]] std::string report_in_dataset(const DatasetSource& study, Typed typed);
 
-/// What a column of BIDS means; docs/data-dictionary.md, "Exports", says the same.
+/// What an exported column means; docs/data-dictionary.md, "Exports", says the same.
 struct ColumnMeaning {
   std::string description;
   std::string unit{};                                         ///< a BIDS unit; empty: none
   std::vector<std::pair<std::string, std::string>> levels{};  ///< values and what they mean
 };
 
-/// \param column  its name in BIDS
-/// \throws std::out_of_range if no dataset has such a column
+/// \param column  its name in the CSV files or in BIDS
+/// \throws std::out_of_range if no export has such a column
 [[nodiscard]] const ColumnMeaning& meaning_of(const std::string& column);
 
 }  // namespace touchtrial::analysis

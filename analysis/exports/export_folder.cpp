@@ -73,12 +73,15 @@ FolderMark mark_of(const fs::path& folder, const ExportMark& mark) {
 }
 
 /// An export may replace a file that another format of this study wrote under the same name.
-/// BIDS is the exception: beside other files it would not be valid.
+/// Datasets are the exception: two of them in one folder would leave neither valid.
 void require_no_other_dataset(const fs::path& folder, const ExportMark& mark,
                               const FolderMark& found) {
+  const auto is_dataset = [](const std::string& format) {
+    return format == "bids" || format == "psych-ds";
+  };
   for (const auto& [format, files] : found.files) {
     if (format == mark.format || files.empty()) continue;
-    if (format != "bids" && mark.format != "bids") continue;
+    if (!is_dataset(format) && !is_dataset(mark.format)) continue;
     throw FileError(one_line(folder.string()) + ": holds this study's export as " + format +
                     ", and a dataset needs a folder of its own; give another folder");
   }

@@ -3,6 +3,7 @@
 #include "analysis/checkers/checkers.hpp"
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/csv_reading.hpp"
+#include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/fake_study.hpp"
 #include "analysis/quality.hpp"
@@ -183,8 +184,10 @@ TEST_CASE("datasets for archives tell visits, and groups once outcomes are shown
       with(R"({"visits": {"count": 2}, "groups": {"labels": ["trained", "control"]}})"));
   add_three(study);
   const auto bids = study.folder() / "bids";
+  const auto psych = study.folder() / "psych";
   const auto groups_in = [&] {
     CHECK(bids_faults(bids).empty());
+    CHECK(psych_ds_faults(psych).empty());
     CHECK_THAT(text_of(read_file(bids / "sub-P1/sub-P1_sessions.tsv")),
                holds_text("\tpauses\tvisit\n"));
     const std::string people = text_of(read_file(bids / "participants.tsv"));
@@ -194,11 +197,13 @@ TEST_CASE("datasets for archives tell visits, and groups once outcomes are shown
   };
   const analysis::DatasetSource blind{study.store()};
   static_cast<void>(analysis::export_bids(blind, {}, bids));
+  static_cast<void>(analysis::export_psych_ds(blind, {}, psych));
   CHECK_FALSE(groups_in());
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const analysis::DatasetSource shown{study.store(), &outcomes, &study.key()};
   static_cast<void>(analysis::export_bids(shown, {}, bids));
+  static_cast<void>(analysis::export_psych_ds(shown, {}, psych));
   CHECK(groups_in());
 }
 

@@ -88,7 +88,7 @@ TEST_CASE("merged stations report and export what one station with all participa
   CHECK(json::parse(merged.output).at("participants") == 4);
   CHECK(json::parse(merged.output).at("/primary/stations/stations"_json_pointer) == 2);
   CHECK(without_strata(merged.output) == without_strata(one.output));
-  for (const std::string format : {"csv", "json", "r", "bids", "events"}) {
+  for (const std::string format : {"csv", "json", "r", "psych-ds", "events"}) {
     for (const std::string name : {"one", "C"}) {
       const ProgramResult ran = study.run({"export", study.in(name + ".db"), "--format", format,
                                            "-o", study.in(name + "-" + format)});

@@ -29,7 +29,11 @@ std::vector<std::string> printed_by(const std::vector<std::string>& checker,
 }  // namespace
 
 std::vector<std::string> bids_faults(const std::filesystem::path& dataset) {
-  return printed_by({"dataset_rules.py", dataset.string()});
+  return printed_by({"dataset_rules.py", "bids", dataset.string()});
+}
+
+std::vector<std::string> psych_ds_faults(const std::filesystem::path& dataset) {
+  return printed_by({"dataset_rules.py", "psych-ds", dataset.string()});
 }
 
 std::vector<std::string> faults_of_page(const std::string& html) {

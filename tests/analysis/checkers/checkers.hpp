@@ -10,6 +10,8 @@ namespace touchtrial {
 
 /// dataset_rules.py on a BIDS dataset of behaviour.
 [[nodiscard]] std::vector<std::string> bids_faults(const std::filesystem::path& dataset);
+/// dataset_rules.py on a Psych-DS dataset.
+[[nodiscard]] std::vector<std::string> psych_ds_faults(const std::filesystem::path& dataset);
 /// page_rules.py on a page.
 [[nodiscard]] std::vector<std::string> faults_of_page(const std::string& html);
 

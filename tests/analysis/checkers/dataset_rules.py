@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Prints what is wrong with a dataset, one fault a line: dataset_rules.py FOLDER. Written from the
+"""Prints what is wrong with a dataset, one fault a line: dataset_rules.py bids|psych-ds FOLDER. Written from the
 specifications, so that no test needs a network; scripts/validate-exports asks the official validators.
 
 BIDS 1.11.1 and its schema: "Common principles", "Modality agnostic files", "Behavioral experiments (with no neural
-recordings)", "Motion"."""
-import json, math, os, re, sys
+recordings)", "Motion". Psych-DS schema 1.5.1."""
+import csv, json, math, os, re, sys
 
 faults = []
 
@@ -328,5 +328,61 @@ def check_bids(dataset):
             check_sessions(dataset, path)
 
 
-check_bids(sys.argv[1])
+# --- Psych-DS. A fault has the code of the schema's rule (rules/errors). ---
+
+KEYWORDS = {"study", "site", "subject", "session", "task", "condition", "trial", "stimulus", "description"}
+
+
+def measured_in(path):
+    found = parsed(path)
+    for key in ("name", "description", "variableMeasured"):
+        if key not in found:
+            fault(path, f"JSON_KEY_REQUIRED: {key}")
+    if found.get("@type") != "Dataset":
+        fault(path, "INCORRECT_DATASET_TYPE")
+    if found.get("@context", "").rstrip("/") != "https://schema.org":
+        fault(path, "UNKNOWN_NAMESPACE")
+    names = []
+    for variable in found.get("variableMeasured", []):
+        if isinstance(variable, dict) and variable.get("@type") != "PropertyValue":
+            fault(path, "INVALID_OBJECT_TYPE")
+        names.append(variable["name"] if isinstance(variable, dict) else variable)
+    if len(set(names)) != len(names):
+        fault(path, "measures something twice")
+    return set(names)
+
+
+def check_psych_ds(dataset):
+    measured = measured_in(os.path.join(dataset, "dataset_description.json"))
+    for name in ("README.md", "CHANGES.md", "data"):
+        if not os.path.exists(os.path.join(dataset, name)):
+            fault(name, "is missing")
+    seen = set()
+    for path in files_below(os.path.join(dataset, "data")):
+        name = os.path.basename(path)
+        if not re.fullmatch(r"([a-z]+-[a-zA-Z0-9]+)(_[a-z]+-[a-zA-Z0-9]+)*_data\.csv", name):
+            fault(name, "FILENAME_KEYWORD_FORMATTING_ERROR")
+        if not set(re.findall("([a-z]+)-[a-zA-Z0-9]+", name)).issubset(KEYWORDS):
+            fault(name, "FILENAME_UNOFFICIAL_KEYWORD")
+        with open(path, encoding="utf-8", newline="") as file:
+            records = list(csv.reader(file, strict=True))
+        if not records or not records[0] or not records[0][0]:
+            fault(name, "CSV_HEADER_MISSING")
+            continue
+        header = records[0]
+        if len(set(header)) != len(header):
+            fault(name, "CSV_HEADER_REPEATED")
+        if any(len(record) != len(header) for record in records):
+            fault(name, "CSV_HEADER_LENGTH_MISMATCH")
+        ids = [record[header.index("row_id")] for record in records] if "row_id" in header else []
+        if len(set(ids)) != len(ids):
+            fault(name, "ROWID_VALUES_NOT_UNIQUE")
+        seen.update(header)
+    for name in seen - measured:
+        fault(name, "CSV_COLUMN_MISSING_FROM_METADATA")
+    for name in measured - seen:
+        fault(name, "VARIABLE_MISSING_FROM_CSV_COLUMNS")
+
+
+{"bids": check_bids, "psych-ds": check_psych_ds}[sys.argv[1]](sys.argv[2])
 print("\n".join(one.replace("\n", " ") for one in faults))

@@ -2,6 +2,7 @@
 #include "analysis/exports/bids/bids_motion.hpp"
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/csv_reading.hpp"
+#include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/fake_study.hpp"
 #include "analysis/text_matching.hpp"
 #include "core/errors.hpp"
@@ -248,8 +249,11 @@ TEST_CASE("Datasets have what people said, and what they typed only if that is w
   analysis::DatasetOptions options;
   options.consents = {{.participant = "P01", .consent_version = "2"}};
   const fs::path bids = study.folder() / "bids";
+  const fs::path psych = study.folder() / "psych";
   analysis::export_bids(open.source, options, bids);
+  analysis::export_psych_ds(open.source, options, psych);
   CHECK(bids_faults(bids) == kNoFaults);
+  CHECK(psych_ds_faults(psych) == kNoFaults);
   CHECK(text_of_file(bids / "phenotype/closing.tsv") ==
         "participant_id\thow_hard\twhich\nsub-P01\t7\t1\nsub-P02\tn/a\t0\n");
   const auto sidecar = nlohmann::json::parse(text_of_file(bids / "phenotype/closing.json"));
@@ -265,16 +269,23 @@ TEST_CASE("Datasets have what people said, and what they typed only if that is w
   const std::string people = text_of_file(bids / "participants.tsv");
   CHECK(contains(people, "interruptions\tpauses"));
   CHECK(contains(people, "consent_version"));
-  for (const auto& [name, text] : contents(bids)) {
-    INFO(name);
-    for (const char* words : {"Anna", "phone", "wears"}) CHECK_FALSE(contains(text, words));
+  for (const fs::path& folder : {bids, psych}) {
+    for (const auto& [name, text] : contents(folder)) {
+      INFO(name);
+      for (const char* words : {"Anna", "phone", "wears"}) {
+        CHECK_FALSE(contains(text, words));
+      }
+    }
   }
   options.typed = analysis::Typed::shown;
   analysis::export_bids(open.source, options, bids);
+  analysis::export_psych_ds(open.source, options, psych);
   CHECK(bids_faults(bids) == kNoFaults);
+  CHECK(psych_ds_faults(psych) == kNoFaults);
   CHECK(contains(text_of_file(bids / "phenotype/closing.tsv"), "it is Anna's"));
   CHECK(
       contains(text_of_file(bids / "sub-P01/beh/sub-P01_task-single_events.tsv"), "a phone rang"));
+  CHECK(contains(text_of_file(psych / "data/study-single_description-answers_data.csv"), "Anna"));
 }
 
 TEST_CASE("Before unblinding datasets have no word of what was presented or answered") {
@@ -282,17 +293,37 @@ TEST_CASE("Before unblinding datasets have no word of what was presented or answ
   fill(study);
   const analysis::DatasetSource source{study.store()};
   const fs::path bids = study.folder() / "bids";
+  const fs::path psych = study.folder() / "psych";
   analysis::export_bids(source, {.database = study.database()}, bids);
+  analysis::export_psych_ds(source, {}, psych);
   CHECK(bids_faults(bids) == kNoFaults);
-  for (const auto& [name, text] : contents(bids)) {
-    INFO(name);
-    if (name == "sourcedata/study.db") continue;  // other tests check what a database reveals
-    for (const char* secret : {"petrified", "cloth", "straw", "tv-gabor", "trial_type"}) {
-      CHECK_FALSE(contains(text, secret));
+  CHECK(psych_ds_faults(psych) == kNoFaults);
+  for (const fs::path& folder : {bids, psych}) {
+    for (const auto& [name, text] : contents(folder)) {
+      INFO(name);
+      if (name == "sourcedata/study.db") continue;  // other tests check what a database reveals
+      for (const char* secret : {"petrified", "cloth", "straw", "tv-gabor", "trial_type"}) {
+        CHECK_FALSE(contains(text, secret));
+      }
     }
   }
   CHECK_THROWS_AS(analysis::export_bids(source, {.traces = true}, bids), UsageError);
   CHECK_THROWS_AS(analysis::export_bids(source, {.stimuli = true}, bids), UsageError);
+}
+
+TEST_CASE("A study as Psych-DS keeps to the schema") {
+  FakeStudy study(design::identification::comparison(),
+                  {.label = "bark, \"old\"", .trials = R"({"lead_in": 1, "catch": 1})"});
+  fill(study);
+  study.store().withdraw(3, milliseconds(900), "asked to");
+  study.close_and_unblind();
+  const fs::path out = study.folder() / "psych";
+  analysis::export_psych_ds(OpenStudy(study).source, {.authors = {"A. Author"}, .license = "CC0"},
+                            out);
+  CHECK(psych_ds_faults(out) == kNoFaults);
+  for (const auto& [name, text] : contents(out)) CHECK_FALSE(contains(text, "P03"));
+  const std::string description = text_of_file(out / "dataset_description.json");
+  CHECK(contains(description, "SIMULATED"));
 }
 
 TEST_CASE("A dataset names the program that exported it, and the one that recorded it") {
@@ -301,56 +332,65 @@ TEST_CASE("A dataset names the program that exported it, and the one that record
   study.close_and_unblind();
   const OpenStudy open(study);
   const fs::path bids = study.folder() / "bids";
+  const fs::path psych = study.folder() / "psych";
   analysis::export_bids(open.source, {}, bids);
+  analysis::export_psych_ds(open.source, {}, psych);
   const std::string exporter(program_version());
   for (const fs::path& folder : {bids, bids / "derivatives/touchtrial"}) {
     const auto description =
         nlohmann::json::parse(text_of_file(folder / "dataset_description.json"));
     CHECK(description["GeneratedBy"][0]["Version"] == exporter);
   }
+  CHECK(contains(text_of_file(psych / "CHANGES.md"), "Exported by Touchtrial " + exporter + "."));
   const std::string recorder =
       "recorded with Touchtrial " + open.source.store.commitment().program_version;
   CHECK(contains(text_of_file(bids / "README"), recorder));
+  CHECK(contains(text_of_file(psych / "README.md"), recorder));
 }
 
-TEST_CASE("The checker of BIDS finds what is wrong") {
+TEST_CASE("The checkers of datasets find what is wrong") {
   FakeStudy study(design::identification::classification());
   fill(study);
   study.close_and_unblind();
   const OpenStudy open(study);
   const fs::path bids = study.folder() / "bids";
+  const fs::path psych = study.folder() / "psych";
   analysis::export_bids(open.source, {.traces = true}, bids);
-  const auto spoilt = [&](const fs::path& file, const std::string& text) {
+  analysis::export_psych_ds(open.source, {}, psych);
+  const auto spoilt = [](const fs::path& file, const std::string& text, const auto& faults_of) {
     const std::string before = text_of_file(file);
     replace_file(file, text);
-    const bool found = !bids_faults(bids).empty();
+    const bool found = !faults_of(file).empty();
     replace_file(file, before);
     return found;
   };
+  const auto in_bids = [&](const fs::path&) { return bids_faults(bids); };
+  const auto in_psych = [&](const fs::path&) { return psych_ds_faults(psych); };
   const fs::path trials = bids / "sub-P03/beh/sub-P03_task-single_beh.tsv";
-  CHECK(spoilt(trials, text_of_file(trials) + "1\t2\n"));
-  CHECK(spoilt(trials, "colour\nred\n"));
-  CHECK(spoilt(trials, "stim_file\nnone.png\n"));
-  CHECK(spoilt(bids / "participants.tsv", "participant_id\nsub-other\n"));
-  CHECK(spoilt(bids / "task-single_beh.json", "{}"));
-  CHECK(spoilt(bids / "README", "short"));
+  CHECK(spoilt(trials, text_of_file(trials) + "1\t2\n", in_bids));
+  CHECK(spoilt(trials, "colour\nred\n", in_bids));
+  CHECK(spoilt(trials, "stim_file\nnone.png\n", in_bids));
+  CHECK(spoilt(bids / "participants.tsv", "participant_id\nsub-other\n", in_bids));
+  CHECK(spoilt(bids / "task-single_beh.json", "{}", in_bids));
+  CHECK(spoilt(bids / "README", "short", in_bids));
   const fs::path motion = bids / "sub-P03/motion";
   const fs::path run = motion / "sub-P03_task-single_tracksys-stylus_run-001_motion.tsv";
   const std::string rows = text_of_file(run);
-  CHECK(spoilt(run, "latency\tx\ty\tz\tforce_x\tforce_y\tforce_z\n" + rows));
-  CHECK(spoilt(run, "0\t1\t2\n"));
-  CHECK(spoilt(run, "0.5\t0\t0\t0\t0\t0\t0\n"));
-  CHECK(spoilt(run, "0\t0\t0\t0\t0\t0\t0\n1e-3\t0\t0\t0\t0\t0\t0\n"));
+  CHECK(spoilt(run, "latency\tx\ty\tz\tforce_x\tforce_y\tforce_z\n" + rows, in_bids));
+  CHECK(spoilt(run, "0\t1\t2\n", in_bids));
+  CHECK(spoilt(run, "0.5\t0\t0\t0\t0\t0\t0\n", in_bids));
+  CHECK(spoilt(run, "0\t0\t0\t0\t0\t0\t0\n1e-3\t0\t0\t0\t0\t0\t0\n", in_bids));
   const fs::path channels = bids / "task-single_channels.tsv";
   const std::string names = text_of_file(channels);
-  CHECK(spoilt(channels, std::regex_replace(names, std::regex("POS"), "pos")));
-  CHECK(spoilt(channels, std::regex_replace(names, std::regex("MISC"), "VEL")));
+  CHECK(spoilt(channels, std::regex_replace(names, std::regex("POS"), "pos"), in_bids));
+  CHECK(spoilt(channels, std::regex_replace(names, std::regex("MISC"), "VEL"), in_bids));
   CHECK(spoilt(channels,
-               std::regex_replace(names, std::regex("name\tcomponent"), "component\tname")));
-  CHECK(spoilt(bids / "task-single_channels.json", "{}"));
+               std::regex_replace(names, std::regex("name\tcomponent"), "component\tname"),
+               in_bids));
+  CHECK(spoilt(bids / "task-single_channels.json", "{}", in_bids));
   const fs::path sidecar = motion / "sub-P03_task-single_tracksys-stylus_run-001_motion.json";
-  CHECK(spoilt(sidecar, R"({"TaskName": "single"})"));
-  CHECK(spoilt(bids / "sub-P03/sub-P03_scans.tsv", "filename\tacq_time\n"));
+  CHECK(spoilt(sidecar, R"({"TaskName": "single"})", in_bids));
+  CHECK(spoilt(bids / "sub-P03/sub-P03_scans.tsv", "filename\tacq_time\n", in_bids));
   const fs::path second = bids / "task-single_tracksys-stylus_events.json";
   replace_file(second, "{}");
   CHECK_FALSE(bids_faults(bids).empty());
@@ -358,6 +398,11 @@ TEST_CASE("The checker of BIDS finds what is wrong") {
   REQUIRE(bids_faults(bids) == kNoFaults);
   replace_file(bids / "stray.tsv", "a\n1\n");
   CHECK_FALSE(bids_faults(bids).empty());
+  const fs::path table = psych / "data/study-single_description-trials_data.csv";
+  CHECK(spoilt(table, "colour\nred\n", in_psych));
+  CHECK(spoilt(psych / "dataset_description.json", "{}", in_psych));
+  replace_file(psych / "data/notes.csv", "a\n1\n");
+  CHECK_FALSE(psych_ds_faults(psych).empty());
 }
 
 }  // namespace touchtrial

@@ -1,5 +1,6 @@
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/csv_reading.hpp"
+#include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/fake_study.hpp"
 #include "protocols/identification/analysis/mixed_model.hpp"
@@ -46,6 +47,7 @@ void export_everything(FakeStudy& study, const fs::path& out) {
   analysis::export_csv(study.store(), outcomes, out / "csv");
   analysis::export_json(study.store(), outcomes, out / "json");
   analysis::export_bids(source, {.traces = true}, out / "bids");
+  analysis::export_psych_ds(source, {}, out / "psych");
   analysis::identification::export_mixed_model(study.store(), outcomes, out / "r");
 }
 

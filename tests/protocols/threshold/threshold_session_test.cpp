@@ -2,6 +2,7 @@
 #include "analysis/checkers/checkers.hpp"
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/csv_reading.hpp"
+#include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/sealed_sessions.hpp"
 #include "analysis/verification/verification.hpp"
 #include "core/errors.hpp"
@@ -118,14 +119,17 @@ TEST_CASE("an adaptive threshold study is complete and passes every check") {
   CHECK(scored == 2 * 5 * 8);
 }
 
-TEST_CASE("datasets of a threshold study keep to BIDS, and tell intervals apart") {
+TEST_CASE("datasets of a threshold study keep to BIDS and Psych-DS, and tell intervals apart") {
   SimulatedThresholds study(threshold_options(kTinyDetection), 1);
   const analysis::Outcomes outcomes = study.outcomes();
   const analysis::DatasetSource source{study.store(), &outcomes, &study.tiny().key()};
   const TempFolder folder;
   const std::filesystem::path bids = folder.path() / "bids";
+  const std::filesystem::path psych = folder.path() / "psych";
   analysis::export_bids(source, {.traces = true}, bids);
+  analysis::export_psych_ds(source, {}, psych);
   CHECK(bids_faults(bids) == std::vector<std::string>{});
+  CHECK(psych_ds_faults(psych) == std::vector<std::string>{});
   const store::PersonKeys keys =
       analysis::person_keys(study.store(), study.tiny().key(), study.store().sessions().at(0));
   int trials = 0;
