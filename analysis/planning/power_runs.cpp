@@ -75,10 +75,6 @@ void settle(PowerPlan& plan) {
   require_range("--runs", plan.runs, 1, kMostPowerRuns);
   require_range("--explorations", plan.explorations, 1, kMostExplorations);
   require_range("--trainings", plan.trainings, 1, kMostTrainings);
-  if (!(plan.effect >= -1.0 && plan.effect <= 1.0)) {
-    throw UsageError(
-        fmt::format("--effect: {:.4g} is out of range; give a share from -1 to 1", plan.effect));
-  }
   const std::int64_t all =
       static_cast<std::int64_t>(plan.participants.size()) * std::int64_t{plan.runs};
   if (all > kMostPowerRunsInAll) {

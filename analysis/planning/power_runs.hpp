@@ -32,7 +32,6 @@ struct PowerPlan {
   int trainings = 16;       ///< BankedFeelingsOptions
   double level = 0.05;      ///< of the primary test
   double margin = 0.0;      ///< of the primary test; 0: none
-  double effect = 0.0;      ///< RehearsalOptions; 0: the subject's own
 };
 
 /// Sorts the sizes and checks the plan.
@@ -57,7 +56,6 @@ struct PowerSetting {
   std::string fields;    ///< SHA-256 of the force fields that are felt, hexadecimal; or kNoFields
   std::string subject;   ///< words_of the subject model, or of the stated people
   std::string program;   ///< version
-  int draws = 0;         ///< of a fit, from which each study takes one; 0: nothing is uncertain
   /// Whether every participant's order presents every class equally often. Otherwise the right
   /// answers that a bias gives, and so all numbers, depend on the orders that the study's seed
   /// draws.
