@@ -3,7 +3,6 @@
 #include "analysis/planning/power_runs.hpp"
 #include "analysis/planning/rehearsed_study.hpp"
 #include "analysis/planning/stated_people.hpp"
-#include "analysis/planning/uncertain_subject.hpp"
 #include "analysis/text_figures.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
@@ -38,12 +37,10 @@ namespace fs = std::filesystem;
 struct PowerArguments {
   fs::path study;
   fs::path subject;
-  fs::path fit;
   std::string on;
   std::vector<std::string> methods;
   std::string sizes = "8,12,16,20,30";
   std::optional<double> margin;
-  std::optional<double> effect;
   std::optional<double> mean;
   double sd_between = 0.0;
   std::optional<double> accuracy;
@@ -73,10 +70,8 @@ struct PowerPreparation {
       : study(std::move(loaded)),
         test(test_for(study, arguments)),
         stated(stated_by(arguments, test)),
-        fitted(fitted_by(arguments, study)),
-        subject(stated   ? simulation::SubjectModel{}
-                : fitted ? fitted->subject
-                         : subject_for(arguments.subject, study, arguments.on)),
+        subject(stated ? simulation::SubjectModel{}
+                       : subject_for(arguments.subject, study, arguments.on)),
         key(simulated_key(study, arguments.study)) {
     if (stated) return;
     prepare_simulated_pack(key);
@@ -97,20 +92,6 @@ struct PowerPreparation {
     return people;
   }
 
-  static std::optional<planning::UncertainSubject> fitted_by(const PowerArguments& arguments,
-                                                             const design::Study& study) {
-    if (arguments.fit.empty()) return std::nullopt;
-    planning::UncertainSubject fitted = planning::load_uncertain_subject(arguments.fit);
-    fitted.subject.check_labels(study);
-    for (const simulation::SubjectModel& draw : fitted.draws) draw.check_labels(study);
-    return fitted;
-  }
-
-  [[nodiscard]] std::string assumed_words() const {
-    if (stated) return planning::words_of(*stated);
-    return fitted ? planning::words_of(*fitted) : planning::words_of(subject);
-  }
-
   static std::optional<planning::MethodLabels> labels(const PowerArguments& arguments) {
     if (arguments.methods.empty()) return std::nullopt;
     if (arguments.methods.size() == 2)
@@ -125,9 +106,8 @@ struct PowerPreparation {
             planning::estimate_words(test),
             to_hex(key.seal),
             pack ? fields_digest(key, *pack) : std::string(planning::kNoFields),
-            assumed_words(),
+            stated ? planning::words_of(*stated) : planning::words_of(subject),
             std::string(program_version()),
-            fitted ? static_cast<int>(fitted->draws.size()) : 0,
             study.trials.order != design::TrialOrder::uniform,
             analysis::device_words(
                 {stated ? analysis::kStatedPeople : simulation::recorded_device(subject)})};
@@ -136,7 +116,6 @@ struct PowerPreparation {
   design::Study study;
   planning::PrimaryTest test;
   std::optional<planning::StatedPeople> stated;  ///< then nobody feels, and there is no pack
-  std::optional<planning::UncertainSubject> fitted;
   simulation::SubjectModel subject;
   design::StudyKey key;
   std::optional<engine::Pack> pack;
@@ -161,18 +140,9 @@ planning::PowerRuns made_runs(const PowerPreparation& prepared, const planning::
   const session::StimulusSource source(*prepared.pack, prepared.key.study.rendering);
   const simulation::LabelledFields fields(prepared.key, source);
   const auto feelings = feelings_for(prepared, plan, jobs, fields);
-  planning::RehearsalOptions options;
-  if (plan.effect != 0.0) options.effect = plan.effect;
-  if (prepared.fitted) options.draws = prepared.fitted->draws;
   const planning::RehearsedStudy study(prepared.study, prepared.subject, prepared.test, *feelings,
-                                       largest, std::move(options));
+                                       largest);
   return planning::make_runs(study, prepared.test, prepared.setting(), plan, jobs, bar);
-}
-
-/// \throws UsageError if there would be no effect
-double require_effect(double effect) {
-  if (effect != 0.0) return effect;
-  throw UsageError("--effect: 0 is no effect; give another share");
 }
 
 /// Options of studies whose thresholds are planned, and those that such studies share with others.
@@ -198,7 +168,6 @@ void refuse_options_of_others(const design::Study& study, const PowerArguments& 
 int power(PowerArguments arguments) {
   planning::PowerPlan plan = arguments.plan;
   plan.participants = numbers_named(arguments.sizes, "--participants", "a number of participants");
-  if (arguments.effect) plan.effect = require_effect(*arguments.effect);
   planning::settle(plan);
   design::Study loaded = design::load_study(arguments.study);
   refuse_options_of_others(loaded, arguments);
@@ -208,11 +177,6 @@ int power(PowerArguments arguments) {
                            arguments.of_thresholds, arguments.jobs, arguments.json);
   }
   const PowerPreparation prepared(arguments, std::move(loaded));
-  if (plan.effect != 0.0 && prepared.test.margin) {
-    throw UsageError(
-        "--effect: the study registers a margin, and then power is that for methods that are "
-        "alike; leave it out");
-  }
   plan.level = prepared.test.alpha;
   plan.margin = prepared.test.margin.value_or(0.0);
   const planning::PowerReport report =
@@ -276,14 +240,6 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
   add_seed_option(command, plan.seed, "Seed of everything random");
   add_subject_option(command, arguments.subject);
   add_on_option(command, arguments.on);
-  CLI::Option* fit =
-      command
-          .add_option("--fit", arguments.fit,
-                      "In place of a subject model: a fit as `fit DB --json` prints it, for the "
-                      "assurance over what it leaves open")
-          ->type_name("FILE")
-          ->excludes(command.get_option("--subject"))
-          ->excludes(command.get_option("--on"));
   add_stated_options(command, arguments);
   command
       .add_option("--methods", arguments.methods,
@@ -300,16 +256,9 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
       ->capture_default_str();
   command.add_option("--trainings", plan.trainings, "Trainings from which studies draw")
       ->capture_default_str();
-  command
-      .add_option("--effect", arguments.effect,
-                  "The smallest effect of interest in place of the assumed people's: a mean "
-                  "accuracy, or of two methods a difference of accuracies, as a share")
-      ->type_name("SHARE")
-      ->excludes(command.get_option("--margin"));
   add_threshold_options(command, arguments.of_thresholds);
-  command.get_option("--mean")->excludes(fit);
   // They describe people who feel.
-  for (const char* option : {"--subject", "--on", "--explorations", "--trainings", "--effect"}) {
+  for (const char* option : {"--subject", "--on", "--explorations", "--trainings"}) {
     command.get_option("--mean")->excludes(command.get_option(option));
   }
 }

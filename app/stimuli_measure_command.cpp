@@ -136,9 +136,7 @@ int measure(const MeasureArguments& arguments) {
 void add_stimuli_measure_command(CLI::App& stimuli, Action& action) {
   auto arguments = std::make_shared<MeasureArguments>();
   CLI::App* command = stimuli.add_subcommand(
-      "measure",
-      "Measure pictures: co-occurrence, spectrum, similarity, force, and how well force alone "
-      "distinguishes classes");
+      "measure", "Measure pictures: co-occurrence, spectrum, similarity, force");
   command
       ->add_option("STUDY|IMAGE|FOLDER", arguments->inputs,
                    "Study files, pictures (each a class), or folders of pictures (folders in a "

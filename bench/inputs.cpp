@@ -2,9 +2,9 @@
 
 #include "engine/image_file.hpp"
 #include "engine/symmetric_extension.hpp"
+#include "engine/tv_gabor/solver.hpp"
 #include "stimuli/generator.hpp"
 #include "tests/engine/reference/extraction_reference.hpp"
-#include "tests/engine/reference/tv_gabor_course.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -81,9 +81,9 @@ double ExtractionTruth::texture_error(const Plane<float>& texture) const {
 }
 
 Plane<double> tv_gabor_truth(const GreyImage& image) {
-  reference::TvGaborCourse<double> course(image, {}, reference::TvGaborAlgorithm::admm);
-  course.advance(kTvGaborSteps);
-  return course.point().texture;
+  engine::TvGaborSolver<double> solver(image, kEndless);
+  static_cast<void>(solver.run(kTvGaborSteps, engine::Patience::unlimited));
+  return solver.texture();
 }
 
 }  // namespace touchtrial::bench

@@ -33,6 +33,9 @@ class ExtractionTruth {
   engine::Extraction<double> truth_;
 };
 
+/// TV-Gabor's default options, but for a gap that no solver reaches.
+inline const engine::TvGaborOptions kEndless{.gap = -1.0};
+
 /// TV-Gabor's v under the default options after hundreds of steps in double.
 /// \param image  not flat
 [[nodiscard]] Plane<double> tv_gabor_truth(const GreyImage& image);

@@ -9,7 +9,7 @@
 #include "tests/engine/plane_comparison.hpp"
 #include "tests/engine/reference/glcm_reference.hpp"
 #include "tests/engine/reference/ssim_reference.hpp"
-#include "tests/engine/reference/tv_gabor_course.hpp"
+#include "tests/engine/reference/tv_gabor_fixed_point.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,8 +24,6 @@
 
 namespace touchtrial::bench {
 namespace {
-
-using Algorithm = reference::TvGaborAlgorithm;
 
 constexpr double kMsSsimTolerance = 1e-4;
 /// All statistics except contrast are at most a few units.
@@ -129,10 +127,10 @@ Row glcm_row() {
 /// After how many steps ADMM in single precision comes as close to v as the goal asks for.
 int steps_to_goal(const GreyImage& image) {
   const Plane<double> truth = tv_gabor_truth(image);
-  reference::TvGaborCourse<float> course(image, {}, Algorithm::admm);
+  engine::TvGaborSolver<float> solver(image, kEndless);
   for (int steps = kAdmmRhythm; steps <= kMostAdmmSteps; steps += kAdmmRhythm) {
-    course.advance(kAdmmRhythm);
-    if (distance_relative_to(course.point().texture, truth) <= kGoalOfV) return steps;
+    static_cast<void>(solver.run(steps, engine::Patience::unlimited));
+    if (distance_relative_to(solver.texture(), truth) <= kGoalOfV) return steps;
   }
   return std::numeric_limits<int>::max();
 }
@@ -161,16 +159,11 @@ Case tv_gabor(const std::string& who, Decompose decompose) {
   return one;
 }
 
-/// Set-up and this number of steps.
-Plane<float> v_after(int steps, Algorithm algorithm, const GreyImage& image) {
-  reference::TvGaborCourse<float> course(image, {}, algorithm);
-  course.advance(steps);
-  return course.point().texture;
-}
-
 Case admm_to_goal() {
   return tv_gabor("touchtrial", [](const GreyImage& image) {
-    return v_after(usual_steps(), Algorithm::admm, image);
+    engine::TvGaborSolver<float> solver(image, kEndless);
+    static_cast<void>(solver.run(usual_steps(), engine::Patience::unlimited));
+    return solver.texture();
   });
 }
 
@@ -240,7 +233,7 @@ Rows tv_gabor_rows(bool quick) {
            .ours = admm_to_goal(),
            .peers = {tv_gabor("fixed point, 1000 steps",
                               [](const GreyImage& image) {
-                                return v_after(1000, Algorithm::fixed_point, image);
+                                return reference::tv_gabor_fixed_point(image, {}, 1000);
                               })},
            .goal = {"ratio", 0.08},
            .error_unit = "of v"},

@@ -4,18 +4,15 @@
 #include "engine/extraction.hpp"
 #include "engine/metrics/picture_statistics.hpp"
 #include "engine/metrics/ssim.hpp"
-#include "engine/perception/texture_sense.hpp"
 #include "engine/rendering/field_statistics.hpp"
 #include "engine/rendering/gains.hpp"
 
 #include <algorithm>
-#include <map>
+#include <set>
 #include <stdexcept>
 
 namespace touchtrial::analysis {
 namespace {
-
-constexpr int kLargestSet = 5;
 
 /// A picture with its texture and field.
 struct Worked {
@@ -109,18 +106,6 @@ Likeness likeness_in(const WorkedSet& set, const PairDone& pair_done) {
   return likeness;
 }
 
-std::vector<PatchStrengths> strengths_in(const WorkedSet& set, double tangential_n) {
-  std::map<std::string, int> numbers;
-  std::vector<PatchStrengths> strengths;
-  for (const Worked* work : set) {
-    const auto next = static_cast<int>(numbers.size());
-    strengths.push_back(
-        {numbers.try_emplace(work->picture->label, next).first->second,
-         patch_strengths(work->field.view(), tangential_n, engine::SenseOptions{}.threshold_n)});
-  }
-  return strengths;
-}
-
 std::vector<std::pair<std::string, WorkedSet>> sets_of(const std::vector<Worked>& all) {
   std::vector<std::pair<std::string, WorkedSet>> sets;
   for (const Worked& work : all) {
@@ -139,18 +124,14 @@ engine::Gains gains_of(const WorkedSet& set, const engine::RenderingOptions& ren
 }
 
 template <typename PairDone>
-SetMeasures measures_of_set(const std::string& name, const WorkedSet& set, double tangential_n,
+SetMeasures measures_of_set(const std::string& name, const WorkedSet& set,
                             const PairDone& pair_done) {
   SetMeasures measures;
   measures.set = name;
   measures.pictures = static_cast<int>(set.size());
-  const std::vector<PatchStrengths> strengths = strengths_in(set, tangential_n);
-  for (const PatchStrengths& picture : strengths) {
-    measures.classes = std::max(measures.classes, picture.label + 1);
-  }
-  for (int k = 2; k <= std::min(measures.classes, kLargestSet); ++k) {
-    measures.rms_alone.push_back(rms_alone(strengths, k));
-  }
+  std::set<std::string> labels;
+  for (const Worked* work : set) labels.insert(work->picture->label);
+  measures.classes = static_cast<int>(labels.size());
   if (large_enough(set)) measures.likeness = likeness_in(set, pair_done);
   return measures;
 }
@@ -185,7 +166,7 @@ MeasuredPictures measure_pictures(std::span<const LabelledPicture> pictures,
   measured.tangential_gain_n = gains.tangential_n;
   for (const Worked& work : all) measured.pictures.push_back(measures_of(work, gains));
   for (const auto& [name, set] : sets) {
-    measured.sets.push_back(measures_of_set(name, set, gains.tangential_n, pair_done));
+    measured.sets.push_back(measures_of_set(name, set, pair_done));
   }
   return measured;
 }

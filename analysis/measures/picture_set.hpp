@@ -1,8 +1,6 @@
-/// \file Measures of sets of pictures: of each picture, of how alike pictures are, and of what
-/// their strength reveals. Definitions: docs/stimuli.md, "Measures".
+/// \file Measures of sets of pictures: of each picture, and of how alike pictures are. Definitions: docs/stimuli.md, "Measures".
 #pragma once
 
-#include "analysis/measures/rms_alone.hpp"
 #include "core/plane.hpp"
 #include "engine/extraction_options.hpp"
 #include "engine/metrics/glcm.hpp"
@@ -54,7 +52,6 @@ struct SetMeasures {
   int pictures = 0;
   /// Empty if a picture is too small for MS-SSIM.
   std::optional<Likeness> likeness;
-  std::vector<RmsAlone> rms_alone;  ///< for sets of 2, 3 .. min(classes, 5)
 };
 
 struct MeasuredPictures {

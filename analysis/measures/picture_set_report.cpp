@@ -48,19 +48,6 @@ std::string likeness_text(const MeasuredPictures& measured) {
   return table.text();
 }
 
-std::string rms_alone_text(const MeasuredPictures& measured) {
-  TextTable table({"told apart by rms force alone", "classes", "sets", "chance", "unseen patch",
-                   "unseen picture"});
-  for (const SetMeasures& set : measured.sets) {
-    for (const RmsAlone& score : set.rms_alone) {
-      table.add({set.set, std::to_string(score.classes), std::to_string(score.sets),
-                 percent_of_share(1.0 / score.classes), percent_of_share(score.unseen_patch),
-                 score.unseen_picture < 0.0 ? "-" : percent_of_share(score.unseen_picture)});
-    }
-  }
-  return table.text();
-}
-
 using Json = nlohmann::ordered_json;
 
 Json pair_json(const PairMean& mean) {
@@ -89,29 +76,17 @@ Json likeness_json(const Likeness& likeness) {
             {"between", pair_json(likeness.texture_between)}}}};
 }
 
-Json score_json(const RmsAlone& score) {
-  return {{"classes", score.classes},
-          {"sets", score.sets},
-          {"chance", 1.0 / score.classes},
-          {"unseen_patch", score.unseen_patch},
-          {"unseen_picture", score.unseen_picture < 0.0 ? Json() : Json(score.unseen_picture)}};
-}
-
 Json set_json(const SetMeasures& set) {
-  Json scores = Json::array();
-  for (const RmsAlone& score : set.rms_alone) scores.push_back(score_json(score));
   return {{"set", set.set},
           {"classes", set.classes},
           {"pictures", set.pictures},
-          {"ms_ssim", set.likeness ? likeness_json(*set.likeness) : Json()},
-          {"rms_alone", scores}};
+          {"ms_ssim", set.likeness ? likeness_json(*set.likeness) : Json()}};
 }
 
 }  // namespace
 
 std::string measures_text(const MeasuredPictures& measured) {
   return pictures_text(measured) + "\n" + likeness_text(measured) + "\n" +
-         rms_alone_text(measured) + "\n" +
          wrapped("  ",
                  fmt::format(
                      "Forces are those of a tangential gain of {:.4g} N per grey level and pixel. "

@@ -1,14 +1,12 @@
 #include "analysis/paper/paper_pictures.hpp"
 
-#include "analysis/escaping.hpp"
 #include "analysis/figures/style.hpp"
+#include "analysis/page/picture_tiles.hpp"
 #include "analysis/paper/published.hpp"
 #include "analysis/text_table.hpp"
-#include "core/bytes.hpp"
 #include "core/text.hpp"
 #include "engine/extraction.hpp"
 #include "engine/pictures/colour_image.hpp"
-#include "engine/pictures/force_arrows.hpp"
 
 #include <algorithm>
 #include <string>
@@ -20,63 +18,10 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Pixels of style sheets.
-constexpr int kCell_px = 104;
-constexpr int kGap_px = 4;
-constexpr int kLabels_px = 76;
-constexpr int kHead_px = 22;
-constexpr double kCentimetresOfPixel = 2.54 / 96.0;
-constexpr std::size_t kLabelColumns = 12;
 /// Side of the pictures of Fig. 4, pixels, and of the patch of the texture that they show.
 constexpr int kForcesSide_px = 288;
 constexpr int kForcesPatch_px = 12;
 constexpr double kOrderOfFigure4 = 0.55;
-constexpr double kTileText_px = 32.0 / 3.0;  ///< 8 points, as in the other figures
-
-/// Pictures under titles, each row with a label. Cells are PNG files.
-struct Tiles {
-  std::vector<std::string> titles;
-  std::vector<std::string> labels;
-  std::vector<std::vector<Bytes>> cells;
-  int side_px = kCell_px;
-};
-
-std::string svg_text(int x, int y, const std::string& text) {
-  return fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", x, y, xml_escaped(text));
-}
-
-std::string svg_tile(int x, int y, int side, const Bytes& png) {
-  return fmt::format(
-      "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>\n",
-      x, y, side, side, to_base64(png));
-}
-
-std::string svg_of_tiles(const Tiles& tiles, const std::string& alt) {
-  const int left = tiles.labels.empty() ? 0 : kLabels_px;
-  const int step = tiles.side_px + kGap_px;
-  const int width = left + step * static_cast<int>(tiles.titles.size());
-  const int height = kHead_px + step * static_cast<int>(tiles.cells.size());
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.2f}cm\" height=\"{:.2f}cm\" "
-      "viewBox=\"0 "
-      "0 {} {}\" role=\"img\" aria-label=\"{}\" font-family=\"Arial,Helvetica,sans-serif\" "
-      "font-size=\"{:.2f}\" fill=\"{}\">\n<rect width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n",
-      width * kCentimetresOfPixel, height * kCentimetresOfPixel, width, height, xml_escaped(alt),
-      kTileText_px, kInk, width, height);
-  for (std::size_t i = 0; i < tiles.titles.size(); ++i) {
-    svg += svg_text(left + step * static_cast<int>(i), kHead_px - 8, tiles.titles[i]);
-  }
-  for (std::size_t row = 0; row < tiles.cells.size(); ++row) {
-    const int y = kHead_px + step * static_cast<int>(row);
-    if (!tiles.labels.empty()) {
-      svg += svg_text(0, y + tiles.side_px / 2, fitted(tiles.labels[row], kLabelColumns));
-    }
-    for (std::size_t i = 0; i < tiles.cells[row].size(); ++i) {
-      svg += svg_tile(left + step * static_cast<int>(i), y, tiles.side_px, tiles.cells[row][i]);
-    }
-  }
-  return svg + "</svg>\n";
-}
 
 GreyImage middle_of(const GreyImage& picture) {
   const int height = std::min(kShownSide_px, picture.height());
@@ -104,11 +49,6 @@ GreyImage drawn_texture(const GreyImage& image, engine::Method method, double or
   options.method = method;
   if (method == engine::Method::fixed) options.order = order;
   return engine::texture_picture(engine::extract_texture<double>(image, options).texture);
-}
-
-Picture picture_of_tiles(std::string id, std::string caption, std::string alt, const Tiles& tiles) {
-  std::string svg = svg_of_tiles(tiles, alt);
-  return {std::move(id), std::move(caption), std::move(alt), std::move(svg)};
 }
 
 std::string alt_of(const Tiles& tiles) {
@@ -145,11 +85,8 @@ Picture forces_picture(const PaperPicture& picture) {
   wanted.picture = true;
   wanted.force = true;
   const auto extraction = engine::extract_texture<double>(picture.image, options, wanted);
-  engine::ArrowPatch patch = engine::strongest_patch(extraction.force);
-  const int height = std::min(kForcesPatch_px, patch.height);
-  const int width = std::min(kForcesPatch_px, patch.width);
-  patch = {patch.y + (patch.height - height) / 2, patch.x + (patch.width - width) / 2, height,
-           width, patch.force_of_unit_arrow};
+  const engine::ArrowPatch patch =
+      middle_of_patch(engine::strongest_patch(extraction.force), kForcesPatch_px);
   Tiles tiles{{"texture", "forces"}, {}, {}, kForcesSide_px};
   tiles.cells = {{engine::png_bytes(middle_of(extraction.picture)),
                   engine::png_bytes(engine::force_arrows(extraction.picture, extraction.force,

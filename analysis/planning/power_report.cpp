@@ -119,8 +119,7 @@ std::vector<std::string> warnings_of(const PowerReport& report) {
 /// What the power is given.
 std::string given_words(const PowerSetting& setting) {
   if (!setting.feels()) return "given the stated accuracies";
-  return setting.draws > 0 ? "over the uncertainty of a fit (assurance)"
-                           : "given the assumed sensitivity";
+  return "given the assumed sensitivity";
 }
 
 std::string stated_null_sentence(const PowerReport& report) {
@@ -194,21 +193,7 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
                         "trainings through the servo.",
                         plan.explorations, plan.trainings)));
   if (report.setting.feels()) sentences.push_back(kBankSentence);
-  if (report.setting.draws > 0) {
-    sentences.push_back(fmt::format(
-        "Assurance: each study has one of {} draws of the fit, so that the numbers are averages "
-        "over what the fit leaves open, given its device and sense.",
-        report.setting.draws));
-  }
   sentences.push_back(null_sentence(report));
-  if (plan.effect != 0.0) {
-    sentences.push_back(fmt::format(
-        "The effect is not the assumed people's but the one asked for, {:.4g}: a share of "
-        "presentations, the same for everybody, is felt as under the null. The share comes from "
-        "16,000 simulated people, and intervals leave out its error; the table has the mean effect "
-        "of these studies.",
-        plan.effect));
-  }
   if (!report.setting.has_fixed_counts) sentences.push_back(kOrdersSentence);
   const bool is_exact = std::ranges::any_of(
       report.rows, [](const PowerRow& row) { return row.attainable != row.level; });
@@ -289,8 +274,7 @@ ordered_json plan_object(const PowerPlan& plan) {
           {"seed", plan.seed},
           {"explorations", plan.explorations},
           {"trainings", plan.trainings},
-          {"margin", plan.margin},
-          {"effect", plan.effect}};
+          {"margin", plan.margin}};
 }
 
 ordered_json methods_object(const PowerReport& report) {
@@ -376,7 +360,6 @@ std::string power_json(const PowerReport& report) {
   object["test"] = {
       {"words", setting.test}, {"level", report.plan.level}, {"estimate", setting.estimate}};
   object["assumed"] = setting.subject;
-  object["draws"] = setting.draws;
   object["plan"] = plan_object(report.plan);
   object["sizes"] = ordered_json::array();
   for (const PowerRow& row : report.rows) object["sizes"].push_back(size_object(row));

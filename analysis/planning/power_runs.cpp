@@ -8,6 +8,7 @@
 #include "device/simulated/simulated_hand.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <utility>
 
@@ -43,55 +44,13 @@ void settle_sizes(PowerPlan& plan) {
   }
 }
 
-std::string with_spread(const char* name, double value, double spread) {
-  return std::string(name) + " " + number_text(value) + " (spread " + number_text(spread) + ")";
-}
-
-/// Tells subject models apart whose words are alike.
+/// Tells subject models apart: words name the main numbers alone.
 std::string digest_of(const simulation::SubjectModel& subject) {
   constexpr std::size_t kShown = 12;
   FieldHasher hasher;
   hasher.add(simulation::subject_model_json(subject));
   hasher.add(device::device_model_json(subject.device));
   return to_hex(hasher.finish()).substr(0, kShown);
-}
-
-/// How people learn, with a comma before it.
-std::string words_of_training(const simulation::SubjectModel& subject) {
-  std::string words;
-  if (subject.training == simulation::Training::own) words += ", each by a training of their own";
-  if (subject.memory_noise > 0.0) words += ", memory noise " + number_text(subject.memory_noise);
-  return words;
-}
-
-/// Each change from trial to trial, with a comma before it, and whether power ignores it.
-std::string words_of_changes(const simulation::SubjectModel& subject) {
-  std::string words = words_of_training(subject);
-  if (subject.learning.factor > 1.0) {
-    words += fmt::format(
-        ", noise at first {} times as large (spread {}), over {} trials, {} "
-        "forgotten between visits",
-        number_text(subject.learning.factor), number_text(subject.learning.spread),
-        number_text(subject.learning.trials), number_text(subject.learning.forgotten));
-  }
-  if (subject.period_noise_spread > 0.0) {
-    words += ", period noise spread " + number_text(subject.period_noise_spread);
-  }
-  if (const simulation::SerialDependence& serial = subject.serial; serial.is_on()) {
-    words += fmt::format(
-        ", leans on the last answer by {} (spread {}) and stimulus by {} (spread "
-        "{})",
-        number_text(serial.answer), number_text(serial.answer_spread), number_text(serial.stimulus),
-        number_text(serial.stimulus_spread));
-  }
-  if (subject.fatigue.noise_per_min > 0.0 || subject.fatigue.lapse_per_min > 0.0) {
-    words += fmt::format(", tires by {} (lapses {}) a minute, of which a break takes {} away",
-                         number_text(subject.fatigue.noise_per_min),
-                         number_text(subject.fatigue.lapse_per_min),
-                         number_text(subject.fatigue.recovered));
-  }
-  if (subject.thought) words += ", thinks longer about hard trials (without effect on power)";
-  return words;
 }
 
 /// The number of runs between two reports of progress.
@@ -116,10 +75,6 @@ void settle(PowerPlan& plan) {
   require_range("--runs", plan.runs, 1, kMostPowerRuns);
   require_range("--explorations", plan.explorations, 1, kMostExplorations);
   require_range("--trainings", plan.trainings, 1, kMostTrainings);
-  if (!(plan.effect >= -1.0 && plan.effect <= 1.0)) {
-    throw UsageError(
-        fmt::format("--effect: {:.4g} is out of range; give a share from -1 to 1", plan.effect));
-  }
   const std::int64_t all =
       static_cast<std::int64_t>(plan.participants.size()) * std::int64_t{plan.runs};
   if (all > kMostPowerRunsInAll) {
@@ -136,28 +91,13 @@ std::uint64_t study_seed(std::uint64_t seed, int participants, Hypothesis hypoth
 }
 
 std::string words_of(const simulation::SubjectModel& subject) {
-  std::string words =
-      device::words_of_simulated(subject.device) + ", sense " +
-      std::string(simulation::name_of_sense(subject.sense)) + ", " +
-      with_spread("feature_noise", subject.feature_noise, subject.feature_noise_spread) + ", " +
-      with_spread("lapse", subject.lapse, subject.lapse_spread) + ", " +
-      with_spread("position bias", subject.position_bias, subject.position_bias_spread) +
-      ", class bias spread " + number_text(subject.class_bias_spread);
-  for (const simulation::ClassBias& bias : subject.class_bias) {
-    words += ", bias for " + in_quotes(bias.label) + " " + number_text(bias.log_odds);
-  }
-  for (const auto& [one, other] : subject.label_swap) {
-    words += ", " + in_quotes(one) + " swapped with " + in_quotes(other);
-  }
-  if (subject.hand != device::HandKind::point_mass || subject.hand_spread != 0.0) {
-    words += ", hand " + std::string(device::name_of(subject.hand)) + " (spread " +
-             number_text(subject.hand_spread) + ")";
-  }
-  return words + ", explores " + number_text(subject.explore_s) + " s at " +
-         number_text(subject.slowest_mm_s) + " to " + number_text(subject.fastest_mm_s) +
-         " mm/s with " + number_text(subject.push_n) + " N, " +
-         std::to_string(subject.training_passes) + " training passes" + words_of_changes(subject) +
-         "; all of it " + digest_of(subject);
+  return fmt::format(
+      "{}, {}, sense {}, feature_noise {} (spread {}), lapse {} (spread {}); all of it {}",
+      subject.source.empty() ? "built-in subject"
+                             : one_line(std::filesystem::path(subject.source).filename().string()),
+      device::words_of_simulated(subject.device), simulation::name_of_sense(subject.sense),
+      number_text(subject.feature_noise), number_text(subject.feature_noise_spread),
+      number_text(subject.lapse), number_text(subject.lapse_spread), digest_of(subject));
 }
 
 PowerRuns make_runs(const Rehearsal& study, const PrimaryTest& test, PowerSetting setting,

@@ -32,7 +32,6 @@ struct PowerPlan {
   int trainings = 16;       ///< BankedFeelingsOptions
   double level = 0.05;      ///< of the primary test
   double margin = 0.0;      ///< of the primary test; 0: none
-  double effect = 0.0;      ///< RehearsalOptions; 0: the subject's own
 };
 
 /// Sorts the sizes and checks the plan.
@@ -57,7 +56,6 @@ struct PowerSetting {
   std::string fields;    ///< SHA-256 of the force fields that are felt, hexadecimal; or kNoFields
   std::string subject;   ///< words_of the subject model, or of the stated people
   std::string program;   ///< version
-  int draws = 0;         ///< of a fit, from which each study takes one; 0: nothing is uncertain
   /// Whether every participant's order presents every class equally often. Otherwise the right
   /// answers that a bias gives, and so all numbers, depend on the orders that the study's seed
   /// draws.
@@ -68,7 +66,7 @@ struct PowerSetting {
   [[nodiscard]] bool feels() const { return fields != kNoFields; }
 };
 
-/// \return a subject model on one line: "feature_noise 0.28 (spread 0.2), lapse 0.02 (spread 0), .."
+/// \return a subject model on one line: its file, its main numbers, and a digest of all of them
 [[nodiscard]] std::string words_of(const simulation::SubjectModel& subject);
 
 /// The studies of one size and hypothesis.

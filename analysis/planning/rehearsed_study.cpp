@@ -77,9 +77,8 @@ struct RehearsedStudy::Answering {
 
 RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::SubjectModel& subject,
                                const PrimaryTest& test, const Feelings& feelings,
-                               int most_participants, RehearsalOptions options)
+                               int most_participants)
     : subject_(subject),
-      options_(std::move(options)),
       test_(test),
       feelings_(feelings),
       visits_(study.visits.count),
@@ -91,14 +90,11 @@ RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::Sub
     schedules_.push_back(planned_visit(study, key, 1 + i / visits_, 1 + i % visits_));
   }
   if (test_.margin) set_margin();
-  if (options_.effect) set_effect();
 }
 
 void RehearsedStudy::set_margin() {
   constexpr int kPeople = 400;
-  constexpr int kTogether = 8;
-  const double accuracy = accuracy_of(kPeople, options_.draws.empty() ? kPeople : kTogether,
-                                      test_.first, Hypothesis::population);
+  const double accuracy = accuracy_of(kPeople);
   if (accuracy <= *test_.margin) {
     throw UsageError(fmt::format(
         "a margin of {:.4g} points is not less than the accuracy of methods that are alike "
@@ -106,21 +102,6 @@ void RehearsedStudy::set_margin() {
         100.0 * *test_.margin, 100.0 * accuracy));
   }
   margin_loss_ = *test_.margin / accuracy;
-}
-
-void RehearsedStudy::set_effect() {
-  // Methods that are felt at random do not differ.
-  const bool compares = test_.estimand == design::Estimand::difference;
-  const double none = compares ? 0.0 : estimand_of(Hypothesis::null);
-  const double whole = estimand_of(Hypothesis::population);
-  const double share = (*options_.effect - none) / (whole - none);
-  if (!(share > 0.0 && share <= 1.0)) {
-    throw UsageError(fmt::format(
-        "--effect: {:.4g} does not lie between what people who feel no difference reach ({:.3f}) "
-        "and the assumed people ({:.3f}); give a value between, or state people with --mean",
-        *options_.effect, none, whole));
-  }
-  dulled_share_ = 1.0 - share;
 }
 
 RehearsedStudy::PlannedSchedule RehearsedStudy::planned_visit(const design::Study& study,
@@ -142,14 +123,14 @@ RehearsedStudy::PlannedSchedule RehearsedStudy::planned_visit(const design::Stud
   return planned;
 }
 
-double RehearsedStudy::accuracy_of(int people, int together, int method,
-                                   Hypothesis hypothesis) const {
-  const auto size = std::min(static_cast<int>(schedules_.size()) / visits_, together);
+double RehearsedStudy::accuracy_of(int people) const {
+  const auto size = std::min(static_cast<int>(schedules_.size()) / visits_, people);
   analysis::Proportion right;
   for (int made = 0; made < people; made += size) {
     RandomStream seeds(0, "power: methods alike", static_cast<std::uint64_t>(made));
-    for (const analysis::TrialOutcome& trial : outcomes(size, hypothesis, seeds.bits()).trials) {
-      if (trial.stimulus.method != method) continue;
+    const analysis::Outcomes made_now = outcomes(size, Hypothesis::population, seeds.bits());
+    for (const analysis::TrialOutcome& trial : made_now.trials) {
+      if (trial.stimulus.method != test_.first) continue;
       ++right.n;
       if (trial.correct()) ++right.correct;
     }
@@ -157,22 +138,10 @@ double RehearsedStudy::accuracy_of(int people, int together, int method,
   return right.share().value_or(0.0);
 }
 
-double RehearsedStudy::estimand_of(Hypothesis hypothesis) const {
-  constexpr int kPeople = 16'000;
-  constexpr int kTogether = 8;
-  const double first = accuracy_of(kPeople, kTogether, test_.first, hypothesis);
-  if (test_.estimand == design::Estimand::mean_accuracy) return first;
-  return first - accuracy_of(kPeople, kTogether, test_.second, hypothesis);
-}
-
 design::StimulusIndex RehearsedStudy::felt_stimulus(const design::StimulusIndex& presented,
                                                     Hypothesis hypothesis,
                                                     std::uint64_t draw) const {
-  if (hypothesis == Hypothesis::population && !test_.margin) {
-    // The high bits decide whether, the low bits below decide what is felt instead.
-    const double share = static_cast<double>(draw >> 11U) * 0x1p-53;
-    if (share >= dulled_share_) return presented;
-  }
+  if (hypothesis == Hypothesis::population && !test_.margin) return presented;
   if (test_.estimand == design::Estimand::mean_accuracy)
     return of_method_[draw % of_method_.size()];
   design::StimulusIndex felt = presented;
@@ -265,16 +234,11 @@ void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answe
   }
 }
 
-const simulation::SubjectModel& RehearsedStudy::subject_of(std::uint64_t study_seed) const {
-  if (options_.draws.empty()) return subject_;
-  return options_.draws[RandomStream(study_seed, "power: which draw").below(options_.draws.size())];
-}
-
 analysis::Outcomes RehearsedStudy::outcomes(int participants, Hypothesis hypothesis,
                                             std::uint64_t study_seed) const {
   analysis::Outcomes outcomes = empty_;
   const std::shared_ptr<const simulation::FeltKnowledge> learnt = feelings_.knowledge(study_seed);
-  const Answering answering{subject_of(study_seed), learnt, hypothesis, study_seed};
+  const Answering answering{subject_, learnt, hypothesis, study_seed};
   for (int number = 1; number <= participants; ++number) {
     add_participant(number, answering, outcomes);
   }

@@ -77,27 +77,15 @@ class BankedFeelings final : public Feelings {
 /// \throws StudyError naming the subject's file
 void require_answers(const design::Study& study, const simulation::SubjectModel& subject);
 
-struct RehearsalOptions {
-  /// The size of the test's estimand (primary_test.hpp) in the population, smaller than that of the
-  /// subject: a share of presentations, the same for everybody, is then felt as under the null.
-  /// Nothing: the subject's own. Not with a margin.
-  std::optional<double> effect{};
-  /// What is uncertain of the subject: each study takes one of them, for all of its people; they
-  /// feel and learn as the subject does. Empty: nothing is uncertain.
-  std::vector<simulation::SubjectModel> draws{};
-};
-
 /// Makes outcomes of one study again and again. Refers to study, subject and feelings, which must
 /// outlive it. Thread-safe once constructed.
 class RehearsedStudy final : public Rehearsal {
  public:
   /// \param most_participants  of any simulated study, >= 1: the number of schedules that are made
   /// \throws StudyError if the study's orders are impossible, or if participants explore so long
-  ///   that they would never answer; UsageError if the margin is more than the methods' accuracy,
-  ///   or the subject does not reach the effect
+  ///   that they would never answer; UsageError if the margin is more than the methods' accuracy
   RehearsedStudy(const design::Study& study, const simulation::SubjectModel& subject,
-                 const PrimaryTest& test, const Feelings& feelings, int most_participants,
-                 RehearsalOptions options = {});
+                 const PrimaryTest& test, const Feelings& feelings, int most_participants);
 
   /// Outcomes of participants with the numbers and enrolment numbers 1 .. `participants`. With
   /// `population` and feelings through the servo, without margin, the scored trials are exactly
@@ -132,24 +120,15 @@ class RehearsedStudy final : public Rehearsal {
                                                     Hypothesis hypothesis,
                                                     std::uint64_t draw) const;
 
-  /// The accuracy of people with a method.
-  /// \param together  people of one study, and so of one draw and training
-  [[nodiscard]] double accuracy_of(int people, int together, int method,
-                                   Hypothesis hypothesis) const;
-  /// The test's estimand, among many people.
-  [[nodiscard]] double estimand_of(Hypothesis hypothesis) const;
+  /// The population's accuracy with the test's first method.
+  [[nodiscard]] double accuracy_of(int people) const;
   void set_margin();
-  void set_effect();
-  /// The people of one study.
-  [[nodiscard]] const simulation::SubjectModel& subject_of(std::uint64_t study_seed) const;
 
   const simulation::SubjectModel& subject_;
-  RehearsalOptions options_;
   PrimaryTest test_;
   const Feelings& feelings_;
   int visits_;                 ///< of each participant
   double margin_loss_ = 0.0;   ///< share of right answers missed with the first method, if worse
-  double dulled_share_ = 0.0;  ///< of presentations that are felt as under the null
   std::vector<PlannedSchedule> schedules_;        ///< of each participant in turn, by visit
   std::vector<design::StimulusIndex> of_method_;  ///< every stimulus of the test's first method
   analysis::Outcomes empty_;

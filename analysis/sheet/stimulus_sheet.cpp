@@ -1,75 +1,70 @@
 #include "analysis/sheet/stimulus_sheet.hpp"
 
+#include "analysis/page/picture_tiles.hpp"
 #include "core/errors.hpp"
-#include "core/strict_json.hpp"
 #include "engine/image_file.hpp"
 #include "engine/metrics/picture_statistics.hpp"
+#include "engine/pictures/colour_image.hpp"
 #include "engine/rendering/field_statistics.hpp"
 #include "protocols/design/stimulus_field.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+#include <filesystem>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 namespace touchtrial::analysis {
 namespace {
 
-constexpr engine::Rgb kFrameColour{230, 60, 0};
+constexpr const char* kUnblinds =
+    "This sheet unblinds: it says which code is which stimulus. Keep it with the key, away from "
+    "participants and from whoever runs sessions.";
+constexpr int kPictureSide_px = 240;
+constexpr int kPatchSide_px = 16;
+/// Pixels of style sheets: four rows fill a printed page.
+constexpr int kTileSide_px = 200;
+constexpr std::size_t kStimuliOfPicture = 4;
 
-/// A method with its main option.
-std::string options_in_words(const engine::ExtractionOptions& method) {
-  const std::string name(name_of(method.method));
-  switch (method.method) {
-    case engine::Method::adaptive:
-      return fmt::format("{}, radius {}", name, method.radius);
-    case engine::Method::fixed:
-      return fmt::format("{}, order {:g}", name, method.order);
-    case engine::Method::tv_gabor:
-      return fmt::format("{}, lambda {:g}", name, method.tv_gabor.lambda);
-    case engine::Method::gaussian:
-      return fmt::format("{}, sigma {:g} px", name, method.sigma_px);
-    case engine::Method::median:
-      return fmt::format("{}, radius {}", name, method.radius);
-    case engine::Method::edge:
-      return fmt::format("{}, divisor {:g}", name, method.divisor);
-    case engine::Method::luminance:
-      return name;
+std::string three_digits(double number) {
+  return fmt::format("{:.3g}", number);
+}
+
+std::string per_cent(double share) {
+  return fmt::format("{:.1f}", 100 * share);
+}
+
+/// The gains of the study's model: of height, or of forces.
+std::string words_of(const engine::Gains& gains) {
+  if (gains.height_mm > 0.0) return three_digits(1000 * gains.height_mm) + " um of height";
+  return three_digits(1000 * gains.tangential_n) + " / " + three_digits(1000 * gains.normal_n) +
+         " mN";
+}
+
+Table empty_table(std::size_t method) {
+  Table table{fmt::format("stimuli-{}", method + 1),
+              "Stimuli and their codes, and the statistics of their fields",
+              {{"stimulus", Align::left}, {"code", Align::left}, {"image", Align::left}}};
+  for (const char* title :
+       {"size, mm", "lateral force, rms, N", "lateral force, 99.9th percentile, N",
+        "normal force, rms, N", "stiffness, 99th percentile, N/mm", "power at 1 mm and longer, %",
+        "power up to 250 Hz at 100 mm/s, %", "entropy, picture / texture, nats",
+        "gains of a grey level", "force of an arrow of one pixel, N"}) {
+    table.columns.push_back({title});
   }
-  return name;
+  return table;
 }
 
-std::string in_words(const design::StudyMethod& method) {
-  const std::string words = options_in_words(method) +
-                            (method.control == engine::Control::none ? "" : ", phase-scrambled");
-  return method.label == design::default_label(method) ? words
-                                                       : one_line(method.label) + ": " + words;
-}
-
-std::string in_words(const engine::RenderingOptions& rendering) {
-  const std::string_view model = design::name_of(rendering.model);
-  return fmt::format("model {}, {:g} mm a pixel, filter {:g} mm, wall {:g} N/mm, gains {}{}{}",
-                     model, rendering.pitch_mm, rendering.filter_mm, rendering.stiffness_n_per_mm,
-                     rendering.gains ? "explicit"
-                                     : fmt::format("from a budget of {:g} N/mm",
-                                                   rendering.texture_stiffness_n_per_mm),
-                     rendering.equalise == engine::Equalise::rms ? ", rms force equalised" : "",
-                     rendering.touchdown_ramp_n == 0.0
-                         ? ""
-                         : fmt::format(", touchdown ramp {:g} N", rendering.touchdown_ramp_n));
-}
-
-/// The patch of the strongest force, small enough to show arrows.
-engine::ArrowPatch shown_patch(const engine::ForceField<double>& force) {
-  constexpr int kSide_px = 16;
-  engine::ArrowPatch patch = engine::strongest_patch(force);
-  patch.y += std::max(0, patch.height - kSide_px) / 2;
-  patch.x += std::max(0, patch.width - kSide_px) / 2;
-  patch.height = std::min(patch.height, kSide_px);
-  patch.width = std::min(patch.width, kSide_px);
-  return patch;
+GreyImage fitted(const GreyImage& image) {
+  const double scale =
+      static_cast<double>(kPictureSide_px) / std::max(image.height(), image.width());
+  const auto side = [scale](int length) {
+    return std::max(1, static_cast<int>(std::lround(length * scale)));
+  };
+  return engine::resized(image, side(image.height()), side(image.width()));
 }
 
 /// The texture with its contrast enlarged, equally for all stimuli.
@@ -79,189 +74,123 @@ GreyImage enhanced_picture(Plane<float> texture) {
   return engine::texture_picture(texture);
 }
 
-/// The width of an image's pixel in pixels of the sheet.
-double fitting_scale(int height, int width, int side_px) {
-  return static_cast<double>(side_px) / std::max(height, width);
-}
-
-GreyImage fitted(const GreyImage& image, int side_px) {
-  const double scale = fitting_scale(image.height(), image.width(), side_px);
-  return engine::resized(image, std::max(1, static_cast<int>(std::lround(image.height() * scale))),
-                         std::max(1, static_cast<int>(std::lround(image.width() * scale))));
-}
-
-/// In colour, with a frame just outside the patch.
-engine::ColourImage framed(const GreyImage& picture, const engine::ArrowPatch& patch,
-                           double scale) {
-  constexpr int kLine_px = 3;
-  const auto at = [scale](int place) { return static_cast<int>(std::lround(place * scale)); };
-  const int left = at(patch.x);
-  const int top = at(patch.y);
-  const int right = at(patch.x + patch.width);
-  const int bottom = at(patch.y + patch.height);
-  const auto within = [&](int y, int x, int margin) {
-    return x >= left - margin && x < right + margin && y >= top - margin && y < bottom + margin;
-  };
-  engine::ColourImage image(picture.height(), picture.width());
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) {
-      const std::uint8_t grey = picture.at(y, x);
-      const bool on_frame = within(y, x, kLine_px) && !within(y, x, 0);
-      image.at(y, x) = on_frame ? kFrameColour : engine::Rgb{grey, grey, grey};
-    }
-  }
-  return image;
-}
-
-[[noreturn]] void refuse(const engine::Pack& pack, const std::string& what) {
-  throw VerificationError(one_line(pack.folder().string()) + ": " + what +
-                          "; run touchtrial prepare, then make the sheet again");
-}
-
-/// Makes the cards of one pack.
-class Cards {
+/// Adds stimuli of one pack to the sheet.
+class Stimuli {
  public:
-  Cards(const design::StudyKey& key, const engine::Pack& pack, int side_px)
-      : key_(key), pack_(pack), side_px_(side_px) {}
+  Stimuli(const design::StudyKey& key, const engine::Pack& pack) : key_(key), pack_(pack) {}
 
-  [[nodiscard]] SheetCard card(const design::KeyedStimulus& stimulus) const {
-    const GreyImage image = engine::read_grey_image(path_of(stimulus.stimulus));
-    const engine::PackEntry& entry = checked_entry(stimulus, image);
-    const engine::MappedField field = pack_.map(stimulus.code);
-    SheetCard card = named(stimulus);
-    card.geometry = field.view().geometry;
-    card.gains = entry.gains;
-    card.statistics = engine::field_statistics(field.view(), entry.gains, key_.study.rendering);
-    draw(card, image, field.view(), stimulus.stimulus);
-    return card;
-  }
-
- private:
-  [[nodiscard]] const design::StudyClass& class_of(const design::StimulusIndex& stimulus) const {
-    return key_.study.classes[static_cast<std::size_t>(stimulus.class_index)];
-  }
-  [[nodiscard]] const std::filesystem::path& image_of(const design::StimulusIndex& stimulus) const {
-    return class_of(stimulus).images[static_cast<std::size_t>(stimulus.exemplar)];
-  }
-  [[nodiscard]] std::filesystem::path path_of(const design::StimulusIndex& stimulus) const {
-    return key_.study.folder / image_of(stimulus);
-  }
-  [[nodiscard]] const design::StudyMethod& method_of(const design::StimulusIndex& stimulus) const {
-    return key_.study.methods[static_cast<std::size_t>(stimulus.method)];
-  }
-
-  [[nodiscard]] const engine::PackEntry& checked_entry(const design::KeyedStimulus& stimulus,
-                                                       const GreyImage& image) const {
-    const engine::PackEntry& entry = pack_.entry(stimulus.code);
-    if (!design::is_made_from(entry, key_, image, stimulus.stimulus)) {
-      refuse(pack_, "field " + stimulus.code + " was not made from " +
-                        path_of(stimulus.stimulus).string() + " as it is now");
-    }
-    if (!pack_.is_intact(stimulus.code)) refuse(pack_, "field " + stimulus.code + " is damaged");
-    return entry;
-  }
-
-  [[nodiscard]] SheetCard named(const design::KeyedStimulus& stimulus) const {
-    const design::StimulusIndex& index = stimulus.stimulus;
-    const std::size_t exemplars = class_of(index).images.size();
-    SheetCard card;
-    card.label = one_line(class_of(index).label);
-    if (exemplars > 1) card.exemplar = fmt::format("{} of {}", index.exemplar + 1, exemplars);
-    card.method = in_words(method_of(index));
-    card.code = stimulus.code;
-    card.image = one_line(image_of(index).filename().string());
-    return card;
-  }
-
-  void draw(SheetCard& card, const GreyImage& image, engine::FieldView field,
-            const design::StimulusIndex& stimulus) const {
+  void add(const design::KeyedStimulus& keyed, Table& table, Tiles& tiles) const {
+    const design::StimulusIndex& stimulus = keyed.stimulus;
+    const design::StudyClass& of =
+        key_.study.classes[static_cast<std::size_t>(stimulus.class_index)];
+    const auto exemplar = static_cast<std::size_t>(stimulus.exemplar);
+    const GreyImage image = engine::read_grey_image(key_.study.folder / of.images[exemplar]);
+    const engine::PackEntry& entry = checked_entry(keyed, image, of.images[exemplar]);
+    const engine::MappedField field = pack_.map(keyed.code);
     Plane<float> plane =
         engine::extract_texture<float>(image, design::method_of(key_.study, stimulus)).texture;
     const GreyImage texture = engine::texture_picture(plane);
-    const auto [force, n_per_grey] = engine::lateral_field(field, card.gains);
-    const double scale = fitting_scale(image.height(), image.width(), side_px_);
-    card.patch = shown_patch(force);
-    card.arrow_n = card.patch.force_of_unit_arrow * n_per_grey;
-    card.picture = fitted(image, side_px_);
-    card.texture = framed(fitted(enhanced_picture(std::move(plane)), side_px_), card.patch, scale);
-    card.arrows = engine::force_arrows(texture, force, card.patch, side_px_);
-    card.picture_entropy = engine::entropy(image);
-    card.texture_entropy = engine::entropy(texture);
+    const auto [force, n_per_grey] = engine::lateral_field(field.view(), entry.gains);
+    const engine::ArrowPatch patch = middle_of_patch(engine::strongest_patch(force), kPatchSide_px);
+    const engine::FieldStatistics statistics =
+        engine::field_statistics(field.view(), entry.gains, key_.study.rendering);
+    const PlaneGeometry& geometry = field.view().geometry;
+    const std::string title =
+        of.images.size() > 1 ? fmt::format("{}, {} of {}", of.label, exemplar + 1, of.images.size())
+                             : of.label;
+    table.rows.push_back(
+        {title, keyed.code, of.images[exemplar].filename().string(),
+         fmt::format("{:g} x {:g}", geometry.width_mm(), geometry.height_mm()),
+         three_digits(statistics.tangential_rms_n), three_digits(statistics.tangential_p999_n),
+         three_digits(statistics.normal_rms_n), three_digits(statistics.stiffness_p99_n_per_mm),
+         per_cent(1 - statistics.share_below_1_mm), per_cent(1 - statistics.share_above_250_hz[1]),
+         fmt::format("{:.2f} / {:.2f}", engine::entropy(image), engine::entropy(texture)),
+         words_of(entry.gains), fmt::format("{:.2g}", patch.force_of_unit_arrow * n_per_grey)});
+    tiles.labels.push_back(title);
+    tiles.cells.push_back(
+        {engine::png_bytes(fitted(image)),
+         engine::png_bytes(fitted(enhanced_picture(std::move(plane)))),
+         engine::png_bytes(engine::force_arrows(texture, force, patch, kPictureSide_px))});
+  }
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw VerificationError(one_line(pack_.folder().string()) + ": " + what +
+                            "; run touchtrial prepare, then make the sheet again");
+  }
+
+ private:
+  [[nodiscard]] const engine::PackEntry& checked_entry(const design::KeyedStimulus& keyed,
+                                                       const GreyImage& image,
+                                                       const std::filesystem::path& name) const {
+    const engine::PackEntry& entry = pack_.entry(keyed.code);
+    if (!design::is_made_from(entry, key_, image, keyed.stimulus)) {
+      refuse("field " + keyed.code + " was not made from " +
+             one_line((key_.study.folder / name).string()) + " as it is now");
+    }
+    if (!pack_.is_intact(keyed.code)) refuse("field " + keyed.code + " is damaged");
+    return entry;
   }
 
   const design::StudyKey& key_;
   const engine::Pack& pack_;
-  int side_px_;
 };
 
-/// Groups of stimuli for one line: of one method, and of one class if classes have several images.
-std::vector<std::vector<design::KeyedStimulus>> groups_of(const design::StudyKey& key) {
-  const bool several = std::ranges::any_of(
-      key.study.classes, [](const design::StudyClass& one) { return one.images.size() > 1; });
-  std::vector<design::KeyedStimulus> stimuli = key.stimuli;
-  const auto group = [several](const design::KeyedStimulus& stimulus) {
-    return std::pair(stimulus.stimulus.method, several ? stimulus.stimulus.class_index : 0);
-  };
-  const auto place = [&](const design::KeyedStimulus& stimulus) {
-    return std::pair(group(stimulus), stimulus.stimulus);
-  };
-  std::ranges::sort(stimuli, {}, place);
-  std::vector<std::vector<design::KeyedStimulus>> groups;
-  for (const design::KeyedStimulus& stimulus : stimuli) {
-    if (groups.empty() || group(groups.back().front()) != group(stimulus)) groups.emplace_back();
-    groups.back().push_back(stimulus);
-  }
-  return groups;
+Picture picture_of(const Tiles& tiles, std::size_t number) {
+  std::string alt = "Rows:";
+  for (const std::string& label : tiles.labels) alt += " " + label + ";";
+  return picture_of_tiles(
+      fmt::format("stimuli-{}", number),
+      "The picture as participants see it; its texture, mid-grey where there is none, with three "
+      "times its contrast; the lateral force in its strongest part, as the pack holds it, from "
+      "bright to dark.",
+      alt + " columns: picture, texture, lateral force.", tiles);
 }
 
-/// Lines of nearly the same length.
-std::vector<std::vector<design::KeyedStimulus>> lines_of(const design::StudyKey& key) {
-  std::vector<std::vector<design::KeyedStimulus>> lines;
-  for (const auto& group : groups_of(key)) {
-    const std::size_t count = (group.size() + kMaxSheetColumns - 1) / kMaxSheetColumns;
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto begin = group.begin() + static_cast<std::ptrdiff_t>(group.size() * i / count);
-      const auto end = group.begin() + static_cast<std::ptrdiff_t>(group.size() * (i + 1) / count);
-      lines.emplace_back(begin, end);
-    }
-  }
-  return lines;
-}
+}  // namespace
 
-void check(const design::StudyKey& key, const engine::Pack& pack, int side_px) {
-  if (side_px < 1) throw std::invalid_argument("make_stimulus_sheet: side_px is below 1");
+Document make_stimulus_sheet(const design::StudyKey& key, const engine::Pack& pack,
+                             const std::function<void(int done, int of)>& progress) {
   if (key.stimuli.size() > kMaxSheetStimuli) {
     throw UsageError(fmt::format(
         "stimuli sheet: the study has {} stimuli, more than the {} that one sheet holds; make "
         "sheets of studies with fewer images",
         key.stimuli.size(), kMaxSheetStimuli));
   }
+  const Stimuli stimuli(key, pack);
   if (pack.manifest().study_id != key.study_id) {
-    refuse(pack, "is unfinished, or belongs to another key");
+    stimuli.refuse("is unfinished, or belongs to another key");
   }
-}
-
-}  // namespace
-
-StimulusSheet make_stimulus_sheet(const design::StudyKey& key, const engine::Pack& pack,
-                                  int side_px,
-                                  const std::function<void(int done, int of)>& progress) {
-  check(key, pack, side_px);
-  StimulusSheet sheet{key.study.name,
-                      key.study.protocol_name(),
-                      in_words(key.study.rendering),
-                      to_hex(key.seal),
-                      key.simulated,
-                      side_px,
-                      {}};
-  const Cards cards(key, pack, side_px);
-  int done = 0;
-  for (const auto& line : lines_of(key)) {
-    sheet.lines.emplace_back();
-    for (const design::KeyedStimulus& stimulus : line) {
-      sheet.lines.back().push_back(cards.card(stimulus));
-      if (progress) progress(++done, static_cast<int>(key.stimuli.size()));
+  Document sheet;
+  sheet.title = "Stimuli of the study " + key.study.name;
+  sheet.stamp = key.simulated ? "SIMULATED" : "";
+  sheet.banners = {kUnblinds};
+  sheet.numbered = false;
+  sheet.about = "This sheet";
+  sheet.header.entries = {{"protocol", key.study.protocol_name()}, {"seal", to_hex(key.seal)}};
+  const Tiles no_tiles{{"picture", "texture", "lateral force"}, {}, {}, kTileSide_px};
+  std::size_t done = 0;
+  std::size_t pictures = 0;
+  for (std::size_t method = 0; method < key.study.methods.size(); ++method) {
+    std::vector<design::KeyedStimulus> own;
+    std::ranges::copy_if(key.stimuli, std::back_inserter(own),
+                         [&](const design::KeyedStimulus& one) {
+                           return one.stimulus.method == static_cast<int>(method);
+                         });
+    if (own.empty()) continue;
+    std::ranges::sort(own, {}, &design::KeyedStimulus::stimulus);
+    Table table = empty_table(method);
+    std::vector<Block> drawn;
+    Tiles tiles = no_tiles;
+    for (const design::KeyedStimulus& one : own) {
+      stimuli.add(one, table, tiles);
+      if (progress) progress(static_cast<int>(++done), static_cast<int>(key.stimuli.size()));
+      if (tiles.cells.size() < kStimuliOfPicture && &one != &own.back()) continue;
+      drawn.emplace_back(picture_of(std::exchange(tiles, no_tiles), ++pictures));
     }
+    Section& section = sheet.sections.emplace_back(
+        Section{fmt::format("method-{}", method + 1), key.study.methods[method].label, {}});
+    section.blocks.emplace_back(std::move(table));
+    std::ranges::move(drawn, std::back_inserter(section.blocks));
   }
   return sheet;
 }

@@ -267,27 +267,5 @@ TEST_CASE("float textures of other norms are the double ones rounded") {
   }
 }
 
-TEST_CASE("the sum norm is the classical mask") {
-  // 8 - 12 v + 4 v^2 is eight times its sum at radius 2.
-  const double v = 0.4;
-  GreyImage impulse(9, 9);
-  impulse.at(4, 4) = 255;
-  const auto texture =
-      engine::extract_texture<double>(impulse, fixed_with(engine::Norm::sum, v)).texture;
-  const double sum = 8.0 - 12.0 * v + 4.0 * v * v;
-  CHECK(texture.at(4, 4) == Approx(255.0 * (8.0 / sum - 1.0)));
-  CHECK(texture.at(4, 5) == Approx(255.0 * -v / sum));
-  CHECK(texture.at(2, 6) == Approx(255.0 * 0.5 * (v * v - v) / sum));
-}
-
-TEST_CASE("words are found for values, and values for words") {
-  CHECK(value_in(engine::kNormNames, "sum") == engine::Norm::sum);
-  CHECK(value_in(engine::kMappingNames, "stretch") == engine::Mapping::stretch);
-  CHECK(value_in(engine::kGradientNames, "central") == engine::Gradient::central);
-  CHECK(value_in(engine::kCombineNames, "l2") == engine::Combine::l2);
-  CHECK_FALSE(value_in(engine::kNormNames, "l2").has_value());
-  CHECK(name_in(engine::kGradientNames, engine::Gradient::prewitt) == "prewitt");
-}
-
 }  // namespace
 }  // namespace touchtrial

@@ -37,20 +37,6 @@ TEST_CASE("tangential_force of a flat surface is exactly zero") {
   }
 }
 
-TEST_CASE("tangential_force changes its sign when bright and dark are swapped") {
-  for (const int n : {3, 7}) {
-    const Plane<double> surface = surface_of(cloth_image({20, 23}));
-    Plane<double> opposite = surface;
-    for (double& sample : opposite.samples()) sample = -sample;
-    engine::ForceField<double> force = engine::tangential_force(surface, n);
-    for (double& sample : force.x.samples()) sample = -sample;
-    for (double& sample : force.y.samples()) sample = -sample;
-    const engine::ForceField<double> turned = engine::tangential_force(opposite, n);
-    CHECK(turned.x == force.x);
-    CHECK(turned.y == force.y);
-  }
-}
-
 TEST_CASE("tangential_force agrees with Eqs. 10-12 at every size and neighbourhood") {
   for (const Size size : awkward_sizes()) {
     for (const int n : {3, 5, 7, 19}) {

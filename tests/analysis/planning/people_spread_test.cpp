@@ -43,9 +43,8 @@ planning::CountedPerson person_at(double log_noise, RandomStream& random, double
   return person;
 }
 
-std::vector<planning::CountedPerson> people_of(double spread, int count, double lapse = 0.0,
-                                               std::uint64_t study = 5) {
-  RandomStream random(study, "people of a spread");
+std::vector<planning::CountedPerson> people_of(double spread, int count, double lapse = 0.0) {
+  RandomStream random(5, "people of a spread");
   std::vector<planning::CountedPerson> people;
   for (int i = 0; i < count; ++i) {
     people.push_back(person_at(spread * random.normal(), random, lapse));
@@ -64,28 +63,6 @@ TEST_CASE("the spread between people is found, and its interval holds it") {
   CHECK(found.log_noise == Approx(0.0).margin(0.3));
   CHECK(found.alike_p < 1e-6);
   CHECK(found.given_p == found.alike_p);
-}
-
-TEST_CASE("people who do not differ are seldom found to differ") {
-  int told = 0;
-  for (int study = 0; study < 10; ++study) {
-    const auto people = people_of(0.0, 40, 0.0, study);
-    const auto found = planning::people_spread(noise_answers(), people, {}).value();
-    CHECK((found.interval.lower.value() == 0.0 || found.alike_p < 0.05));
-    told += found.alike_p <= 0.05 ? 1 : 0;
-  }
-  CHECK(told <= 2);
-}
-
-TEST_CASE("half who guess and half who are right are no identical half-guessers") {
-  RandomStream random(3, "halves");
-  std::vector<planning::CountedPerson> people;
-  for (int i = 0; i < 20; ++i) people.push_back(person_at(i % 2 == 0 ? -3.0 : 4.0, random));
-  const auto found =
-      planning::people_spread(noise_answers(), people, {.log_noise = -2.0, .lapse = 0.5}).value();
-  CHECK(found.alike_p < 1e-6);
-  CHECK(found.lapse < 0.1);
-  CHECK(found.spread > 1.0);
 }
 
 TEST_CASE("a given spread is tested too, and fixed numbers stay") {

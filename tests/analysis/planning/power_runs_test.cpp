@@ -109,16 +109,6 @@ TEST_CASE("a bank of feelings is the same with any number of threads") {
         other.knowledge(7)->examples.front().features);
 }
 
-TEST_CASE("to a power run another hand is another subject model") {
-  const simulation::SubjectModel usual;
-  simulation::SubjectModel grip;
-  grip.hand = device::HandKind::stylus_grip;
-  simulation::SubjectModel spread;
-  spread.hand_spread = 0.2;
-  CHECK(planning::words_of(grip) != planning::words_of(usual));
-  CHECK(planning::words_of(spread) != planning::words_of(usual));
-}
-
 TEST_CASE("the report of a power run agrees with its runs") {
   const planning::PowerReport report = planning::make_power_report(
       runs_by_hand(4, [](const planning::PowerCell& cell, int run) -> planning::PowerRun {

@@ -1,8 +1,6 @@
 // References: SciPy 1.10 (stats.ttest_ind of period differences); all 64 deals listed one by one.
 #include "analysis/statistics/crossover.hpp"
 
-#include "analysis/statistics/paired_tests.hpp"
-#include "core/random.hpp"
 #include "support/catch.hpp"
 
 #include <limits>
@@ -21,12 +19,6 @@ std::vector<CrossoverPerson> eleven_people() {
   for (int i = 0; i < 6; ++i) people.push_back({first_first[i], true, i});
   for (int i = 0; i < 5; ++i) people.push_back({second_first[i], false, i});
   return people;
-}
-
-std::vector<double> differences_in(const std::vector<CrossoverPerson>& people) {
-  std::vector<double> differences;
-  for (const CrossoverPerson& one : people) differences.push_back(one.difference);
-  return differences;
 }
 
 }  // namespace
@@ -70,34 +62,6 @@ TEST_CASE("a period that is the same for everybody changes neither effect nor p"
   CHECK(*after.period == Approx(*before.period + 0.17));
   CHECK(crossover_permutation(learning, 0.0, Sides::two)->p ==
         crossover_permutation(eleven_people(), 0.0, Sides::two)->p);
-}
-
-TEST_CASE("a block effect of 17 points leaves the period-adjusted test the power that flips lose") {
-  constexpr int kStudies = 400;
-  const auto share_of = [](double block_effect, auto rejects) {
-    int rejected = 0;
-    for (int study = 0; study < kStudies; ++study) {
-      RandomStream random(1, "crossover power", static_cast<std::uint64_t>(study));
-      std::vector<CrossoverPerson> people;
-      for (int i = 0; i < 20; ++i) {
-        const bool first = i % 2 == 0;
-        const double own = 0.1 + 0.15 * random.normal();
-        people.push_back({own + (first ? -block_effect : block_effect), first, i / 2});
-      }
-      rejected += rejects(people) ? 1 : 0;
-    }
-    return static_cast<double>(rejected) / kStudies;
-  };
-  const auto adjusted = [](const std::vector<CrossoverPerson>& people) {
-    return *crossover_estimate(people, 0.0, Sides::two).p <= 0.05;
-  };
-  const auto flips = [](const std::vector<CrossoverPerson>& people) {
-    return *sign_flip_p(differences_in(people)) <= 0.05;
-  };
-  const double without = share_of(0.0, adjusted);
-  CHECK(without > 0.7);
-  CHECK(share_of(0.17, adjusted) == without);
-  CHECK(share_of(0.17, flips) < 0.6 * share_of(0.0, flips));
 }
 
 TEST_CASE("with one order of methods there is no effect, and with two people no interval") {

@@ -79,21 +79,6 @@ TEST_CASE("Intervals reach the end of the scale exactly and mirror each other") 
   }
 }
 
-TEST_CASE("A Clopper-Pearson interval covers the truth at least at its level") {
-  const int n = 25;
-  for (int step = 1; step < 100; ++step) {
-    const double truth = step / 100.0;
-    double coverage = 0.0;
-    for (int x = 0; x <= n; ++x) {
-      const analysis::Interval interval = analysis::clopper_pearson_interval({n, x});
-      if (truth < interval.low || truth > interval.high) continue;
-      coverage += std::exp(std::lgamma(n + 1) - std::lgamma(x + 1) - std::lgamma(n - x + 1) +
-                           x * std::log(truth) + (n - x) * std::log1p(-truth));
-    }
-    CHECK(coverage >= 0.95 - 1e-12);
-  }
-}
-
 TEST_CASE("Impossible proportions are refused") {
   CHECK_THROWS_AS(analysis::wilson_interval({5, 6}), std::invalid_argument);
   CHECK_THROWS_AS(analysis::wilson_interval({5, -1}), std::invalid_argument);

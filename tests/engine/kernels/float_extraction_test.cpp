@@ -120,42 +120,6 @@ TEST_CASE("the adaptive kernels compute a ramp's CSGV exactly, even on the branc
   });
 }
 
-TEST_CASE("the adaptive kernels keep a flat image exactly flat on every target") {
-  on_every_simd_target([] {
-    for (const int level : {0, 1, 127, 255}) {
-      const auto result = engine::extract_texture<float>(
-          flat_image({7, 37}, level), adaptive_options(2), engine::WantedPlanes::all());
-      for (const Plane<float>* plane :
-           {&result.texture, &result.csgv, &result.order, &result.force.x, &result.force.y}) {
-        CHECK(plane->size() == 7 * 37);
-        CHECK(largest_magnitude(*plane) == 0.0);
-      }
-      CHECK(result.picture == flat_image({7, 37}, 128));
-    }
-  });
-}
-
-TEST_CASE("the adaptive kernels give exactly the negative texture of a negative") {
-  on_every_simd_target([] {
-    const GreyImage image = cloth_image({64, 63});
-    Plane<float> texture = engine::extract_texture<float>(image, adaptive_options(2)).texture;
-    for (float& sample : texture.samples()) sample = -sample;
-    CHECK(engine::extract_texture<float>(negative_of(image), adaptive_options(2)).texture ==
-          texture);
-  });
-}
-
-TEST_CASE("the adaptive kernels do not depend on brightness") {
-  on_every_simd_target([] {
-    GreyImage dark = cloth_image({64, 63});
-    for (std::uint8_t& sample : dark.samples()) sample = static_cast<std::uint8_t>(sample / 2);
-    GreyImage bright = dark;
-    for (std::uint8_t& sample : bright.samples()) sample = static_cast<std::uint8_t>(sample + 100);
-    CHECK(engine::extract_texture<float>(bright, adaptive_options(2)).texture ==
-          engine::extract_texture<float>(dark, adaptive_options(2)).texture);
-  });
-}
-
 void check_by_products(const GreyImage& image) {
   const auto truth =
       engine::extract_texture<double>(image, adaptive_options(2), engine::WantedPlanes::all());
@@ -333,30 +297,6 @@ TEST_CASE("gl_row agrees with double on every target if a row has more than one 
 TEST_CASE("gl_row agrees with double on every target on a real stimulus") {
   const GreyImage image = cloth_image({501, 499});
   on_every_simd_target([&] { check_against_double(image, 2); });
-}
-
-TEST_CASE("gl_row keeps a flat image exactly flat on every target") {
-  on_every_simd_target([] {
-    for (const int level : {0, 1, 127, 128, 255}) {
-      const GreyImage image = flat_image({5, 37}, level);
-      for (const int radius : {1, 2, 5, 63}) {
-        CHECK(largest_magnitude(engine::gl_texture<float>(image, radius, mixed_orders(image))) ==
-              0.0);
-        CHECK(largest_magnitude(texture_of(image, radius, 0.999)) == 0.0);
-      }
-    }
-  });
-}
-
-TEST_CASE("gl_row of a negative is exactly the negative texture on every target") {
-  const GreyImage image = noise_image({31, 45});
-  on_every_simd_target([&] {
-    for (const int radius : {1, 2, 7, 63}) {
-      Plane<float> texture = engine::gl_texture<float>(image, radius, mixed_orders(image));
-      for (float& sample : texture.samples()) sample = -sample;
-      CHECK(engine::gl_texture<float>(negative_of(image), radius, mixed_orders(image)) == texture);
-    }
-  });
 }
 
 }  // namespace

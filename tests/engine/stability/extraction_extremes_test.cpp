@@ -108,20 +108,6 @@ TEST_CASE("the negative of an extreme image has the negative texture") {
   CHECK(compared > 5000);
 }
 
-TEST_CASE("edge and luminance of a negative follow their formulas") {
-  engine::ExtractionOptions edge;
-  edge.method = engine::Method::edge;
-  engine::ExtractionOptions luminance;
-  luminance.method = engine::Method::luminance;
-  in_both_precisions([&]<typename Real>() {
-    const GreyImage image = noise_image({9, 14});
-    CHECK(texture_of<Real>(negative_of(image), edge) == texture_of<Real>(image, edge));
-    Plane<Real> opposite = texture_of<Real>(negative_of(image), luminance);
-    for (Real& sample : opposite.samples()) sample = -sample - Real{1};
-    CHECK(opposite == texture_of<Real>(image, luminance));
-  });
-}
-
 TEST_CASE("no extractor but luminance depends on the brightness of an extreme image") {
   for_every_extreme([]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
     if (extraction.options.method == engine::Method::luminance) return;
@@ -130,58 +116,6 @@ TEST_CASE("no extractor but luminance depends on the brightness of an extreme im
     REQUIRE(largest_difference(texture_of<Real>(rescaled(image, 2, 100), extraction.options),
                                texture_of<Real>(dark, extraction.options)) <=
             tolerance<Real>(extraction));
-  });
-}
-
-TEST_CASE("detail sub-bands and gradients do not depend on the brightness of an image") {
-  engine::WantedPlanes wanted;
-  wanted.sub_bands = wanted.csgv = true;
-  in_both_precisions([&]<typename Real>() {
-    const double rounding = std::is_same_v<Real, float> ? 1e-4 : 1e-11;
-    for (const Size size : extreme_sizes()) {
-      for (const auto& [name, image] : extreme_images(size)) {
-        INFO(name << ", " << size.height << " x " << size.width);
-        const auto dark = engine::extract_texture<Real>(rescaled(image, 2, 0), {}, wanted);
-        const auto bright = engine::extract_texture<Real>(rescaled(image, 2, 120), {}, wanted);
-        CHECK(largest_difference(bright.sub_band_lh, dark.sub_band_lh) < rounding);
-        CHECK(largest_difference(bright.sub_band_hl, dark.sub_band_hl) < rounding);
-        CHECK(largest_difference(bright.sub_band_hh, dark.sub_band_hh) < rounding);
-        CHECK(largest_relative_difference(bright.csgv, dark.csgv) < rounding);
-      }
-    }
-  });
-}
-
-TEST_CASE("a fixed order is linear: the textures of two images add up to that of their sum") {
-  in_both_precisions([]<typename Real>() {
-    for (const ExtractionCase& extraction : extraction_cases()) {
-      if (extraction.options.method != engine::Method::fixed) continue;
-      INFO(extraction.name);
-      const GreyImage a = rescaled(noise_image({21, 34}, 1), 2, 0);
-      const GreyImage b = rescaled(noise_image({21, 34}, 2), 2, 0);
-      GreyImage sum = a;
-      Plane<Real> added = texture_of<Real>(a, extraction.options);
-      const Plane<Real> other = texture_of<Real>(b, extraction.options);
-      for (std::size_t i = 0; i < sum.size(); ++i) {
-        sum.samples()[i] = static_cast<std::uint8_t>(a.samples()[i] + b.samples()[i]);
-        added.samples()[i] += other.samples()[i];
-      }
-      CHECK(largest_difference(texture_of<Real>(sum, extraction.options), added) <=
-            tolerance<Real>(extraction));
-    }
-  });
-}
-
-TEST_CASE("order 0 and tiny orders leave no texture but rounding") {
-  in_both_precisions([]<typename Real>() {
-    for (const ExtractionCase& extraction : extraction_cases()) {
-      const engine::ExtractionOptions& options = extraction.options;
-      if (options.method != engine::Method::fixed || options.norm == engine::Norm::none) continue;
-      if (options.order > 1e-100) continue;
-      INFO(extraction.name);
-      const double largest = largest_magnitude(texture_of<Real>(noise_image({9, 20}), options));
-      CHECK(largest <= 255.0 * options.order * options.radius);
-    }
   });
 }
 

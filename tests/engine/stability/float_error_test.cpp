@@ -74,24 +74,6 @@ double ms_ssim_error(const GreyImage& a, const GreyImage& b) {
   return std::max(std::abs(single.unit - exact.unit), std::abs(single.wang - exact.wang));
 }
 
-GreyImage texture_picture_of(const GreyImage& image, double order) {
-  engine::ExtractionOptions options;
-  options.method = engine::Method::fixed;
-  options.order = order;
-  return engine::texture_picture(engine::extract_texture<double>(image, options).texture);
-}
-
-TEST_CASE("MS-SSIM of textures in single precision is within 2e-7 of double") {
-  const GreyImage image = cloth_image({200, 181});
-  const GreyImage adaptive =
-      engine::texture_picture(engine::extract_texture<double>(image, {}).texture);
-  on_every_simd_target([&] {
-    for (const double order : {0.05, 0.5, 0.95}) {
-      CHECK(ms_ssim_error(adaptive, texture_picture_of(image, order)) < 2e-7);
-    }
-  });
-}
-
 TEST_CASE("MS-SSIM of extreme images in single precision is within 1e-4 of double") {
   const std::vector<NamedImage> images = extreme_images({161, 178});
   on_every_simd_target([&] {

@@ -1,18 +1,13 @@
-// Tangential force and rendering for extreme textures, gains and hand movements.
+// Rendering for extreme textures, gains and hand movements.
 #include "engine/extraction.hpp"
-#include "engine/finite_plane.hpp"
-#include "engine/plane_comparison.hpp"
 #include "engine/rendering/field_statistics.hpp"
 #include "engine/rendering/gains.hpp"
 #include "engine/rendering/paper_model.hpp"
 #include "engine/stability/extreme_cases.hpp"
 #include "support/catch.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
-#include <type_traits>
 #include <vector>
 
 namespace touchtrial {
@@ -20,69 +15,6 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-template <typename Real>
-Real sobel_x(const Plane<Real>& g, int y, int x) {
-  return g.at(y - 1, x + 1) + 2 * g.at(y, x + 1) + g.at(y + 1, x + 1) - g.at(y - 1, x - 1) -
-         2 * g.at(y, x - 1) - g.at(y + 1, x - 1);
-}
-template <typename Real>
-Real sobel_y(const Plane<Real>& g, int y, int x) {
-  return g.at(y + 1, x - 1) + 2 * g.at(y + 1, x) + g.at(y + 1, x + 1) - g.at(y - 1, x - 1) -
-         2 * g.at(y - 1, x) - g.at(y - 1, x + 1);
-}
-
-/// The largest difference of the force inside from half of minus the Sobel gradient of the texture.
-template <typename Real>
-double error_inside(const engine::Extraction<Real>& result) {
-  const Plane<Real>& texture = result.texture;
-  double error = 0.0;
-  for (int y = 1; y + 1 < texture.height(); ++y) {
-    for (int x = 1; x + 1 < texture.width(); ++x) {
-      const double error_x = result.force.x.at(y, x) + 0.5 * sobel_x(texture, y, x);
-      const double error_y = result.force.y.at(y, x) + 0.5 * sobel_y(texture, y, x);
-      error = std::max({error, std::abs(error_x), std::abs(error_y)});
-    }
-  }
-  return error;
-}
-
-/// The force from the existing neighbours alone.
-template <typename Real>
-double force_x_at(const Plane<Real>& g, int y, int x) {
-  double force = 0.0;
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (const int dx : {-1, 1}) {
-      const bool exists = y + dy >= 0 && y + dy < g.height() && x + dx >= 0 && x + dx < g.width();
-      if (!exists) continue;
-      force += (static_cast<double>(g.at(y, x)) - g.at(y + dy, x + dx)) * dx / (dx * dx + dy * dy);
-    }
-  }
-  return force;
-}
-
-template <typename Real>
-double error_in_first_row(const engine::Extraction<Real>& result) {
-  double error = 0.0;
-  for (int x = 0; x < result.texture.width(); ++x) {
-    error = std::max(error, std::abs(result.force.x.at(0, x) - force_x_at(result.texture, 0, x)));
-  }
-  return error;
-}
-
-TEST_CASE(
-    "the force of every extreme texture is half of minus its Sobel gradient, "
-    "one-sided at the border") {
-  engine::WantedPlanes wanted;
-  wanted.force = true;
-  for_every_extreme([&]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
-    const auto result = engine::extract_texture<Real>(image, extraction.options, wanted);
-    const double digits = std::is_same_v<Real, float> ? 1e-6 : 1e-14;
-    const double tolerance = digits * 8.0 * std::max(1.0, largest_magnitude(result.texture));
-    REQUIRE(error_inside(result) <= tolerance);
-    REQUIRE(error_in_first_row(result) <= tolerance);
-  });
-}
 
 engine::TextureField field_of(const GreyImage& image) {
   return engine::make_texture_field(engine::extract_texture<double>(image, {}).texture, {});
@@ -115,19 +47,6 @@ TEST_CASE("the paper model's force is finite and limited for gains from 1e-12 to
         }
       }
     }
-  }
-}
-
-TEST_CASE("the paper model's tangential force is proportional to its gain until it is limited") {
-  const engine::TextureField field = field_of(noise_image({33, 35}));
-  const Vec3 position_mm{3.3, 3.1, -1.0};
-  const engine::PaperModel unit(field.view(), {}, {1e-6, 0.0});
-  const Vec3 force_n = unit.force_n(position_mm, {});
-  REQUIRE(std::hypot(force_n.x, force_n.y) > 0.0);
-  for (const double factor : {1e-6, 1e-3, 1e3}) {
-    const engine::PaperModel model(field.view(), {}, {1e-6 * factor, 0.0});
-    CHECK(model.force_n(position_mm, {}).x == Approx(factor * force_n.x).epsilon(1e-12));
-    CHECK(model.force_n(position_mm, {}).z == Approx(force_n.z).epsilon(1e-12));
   }
 }
 

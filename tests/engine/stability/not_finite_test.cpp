@@ -3,8 +3,7 @@
 #include "engine/extraction.hpp"
 #include "engine/gaussian_filter.hpp"
 #include "engine/refusal.hpp"
-#include "engine/rendering/field_statistics.hpp"
-#include "engine/rendering/gains.hpp"
+#include "engine/rendering/texture_field.hpp"
 #include "engine/stability/extreme_cases.hpp"
 #include "support/catch.hpp"
 
@@ -53,32 +52,6 @@ TEST_CASE("a field of a texture that is not finite is refused by name") {
       CHECK(refusal_of([&] { (void)engine::gaussian_filtered(plane, 2.0); }) ==
             "gaussian_filtered: the plane has samples that are not finite");
     });
-  }
-}
-
-TEST_CASE("rendering options that are not finite are refused") {
-  const engine::TextureField field = engine::make_texture_field(Plane<double>(5, 5, 1.0), {});
-  const std::vector<engine::FieldView> views = {field.view()};
-  for (const double value : kNotFinite) {
-    engine::RenderingOptions options;
-    options.pitch_mm = value;
-    CHECK_FALSE(refusal_of([&] {
-                  (void)engine::make_texture_field(Plane<double>(5, 5), options);
-                }).empty());
-    options = {};
-    options.filter_mm = value;
-    CHECK_FALSE(refusal_of([&] {
-                  (void)engine::make_texture_field(Plane<double>(5, 5), options);
-                }).empty());
-    options = {};
-    options.texture_stiffness_n_per_mm = value;
-    CHECK_FALSE(refusal_of([&] { (void)engine::choose_gains(views, options); }).empty());
-    for (const engine::Gains gains : {engine::Gains{value, 0.1}, engine::Gains{0.1, value}}) {
-      options = {};
-      options.gains = gains;
-      CHECK(refusal_of([&] { (void)engine::choose_gains(views, options); }) ==
-            "choose_gains: explicit gains must be finite numbers >= 0");
-    }
   }
 }
 

@@ -71,19 +71,5 @@ TEST_CASE("tv-gabor's gap falls as steps are added, and never below zero") {
   }
 }
 
-TEST_CASE("tv-gabor of a negative is the negative texture, and brightness changes nothing") {
-  for (const GreyImage& image : {noise_image({16, 20}), step_image({16, 20}, 0, 255)}) {
-    const GreyImage dark = rescaled(image, 2, 0);
-    engine::ExtractionOptions options = tv_gabor_options(0.01, 2000);
-    options.tv_gabor.gap = 1e-9;
-    const auto texture = engine::extract_texture<double>(dark, options).texture;
-    Plane<double> negative = engine::extract_texture<double>(negative_of(dark), options).texture;
-    for (double& sample : negative.samples()) sample = -sample;
-    const auto bright = engine::extract_texture<double>(rescaled(image, 2, 100), options).texture;
-    CHECK(largest_difference(negative, texture) < 0.05);
-    CHECK(largest_difference(bright, texture) < 0.05);
-  }
-}
-
 }  // namespace
 }  // namespace touchtrial

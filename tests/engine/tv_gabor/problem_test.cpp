@@ -4,7 +4,6 @@
 #include "engine/fourier/real_fft.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/mirror.hpp"
-#include "engine/reference/tv_gabor_certificate.hpp"
 #include "engine/reference/tv_gabor_reference.hpp"
 #include "support/catch.hpp"
 
@@ -39,36 +38,12 @@ TEMPLATE_TEST_CASE("extended_to_torus mirrors the image on all sides", "", float
         REQUIRE(torus.at(y, x) == reference::mirrored_sample(image, y - 16, x - 16));
       }
     }
-    CHECK(largest_difference(reference::cropped_from_torus(torus, size.height, size.width),
-                             image) == 0.0);
   }
 }
 
 const std::vector<engine::GaborComponent>& default_components() {
   static const std::vector<engine::GaborComponent> components = engine::TvGaborOptions{}.components;
   return components;
-}
-
-TEST_CASE("gabor_spectrum lies between 0 and 1, reaches 1, and is 0 at frequency zero") {
-  const Plane<double> spectrum = engine::gabor_spectrum(default_components(), 48, 42);
-  REQUIRE(spectrum.height() == 48);
-  REQUIRE(spectrum.width() == 22);
-  const auto [least, largest] =
-      std::minmax_element(spectrum.samples().begin(), spectrum.samples().end());
-  CHECK(*least >= 0.0);
-  CHECK(*largest == 1.0);
-  CHECK(spectrum.at(0, 0) == 0.0);
-}
-
-TEST_CASE("gabor_spectrum of one component peaks at its frequency and direction") {
-  const Plane<double> along_x =
-      engine::gabor_spectrum(std::vector<engine::GaborComponent>{{0.25, 0.0}}, 48, 48);
-  CHECK(along_x.at(0, 12) > 0.99);
-  CHECK(along_x.at(12, 0) < 0.01);
-  const Plane<double> along_y =
-      engine::gabor_spectrum(std::vector<engine::GaborComponent>{{0.25, 90.0}}, 48, 48);
-  CHECK(along_y.at(12, 0) > 0.99);
-  CHECK(along_y.at(0, 12) < 0.01);
 }
 
 TEST_CASE("gabor_spectrum is what the convolution with M's kernel multiplies by") {
