@@ -21,6 +21,9 @@ constexpr double kInverse3RadiusMm = 100.0;
 constexpr double kMinverseRadiusMm = 40.0;
 /// A place further from the middle than this is no place of the arm, m.
 constexpr double kFarthestM = 1.0;
+/// The middle of the workspace in the frame of the arm's base, in which services before 3.5 speak,
+/// m. After the positions in the documentation's examples; not verified.
+constexpr Vec3 kCentreFromBaseM = {0.0, -0.12, 0.15};
 /// How often, and after what pause, the configuration is asked for until it is as wanted.
 constexpr int kReadBacks = 20;
 constexpr milliseconds kBetweenReadBacks{10};
@@ -73,12 +76,12 @@ KnownService service_at(const ServiceAddress& http, const std::string& version_a
   }
   if (version.is_known()) return {version, http};
   throw DeviceError("inverse3: the service at " + one_line(http.text()) + " has version " +
-                    version.text() + "; install version 3.5 or a later 3.x");
+                    version.text() + ", and versions 3.1 to 3.x are known; install 3.5 or later");
 }
 
-/// Early versions 3.5 have HTTP on a port of its own.
+/// Services before later versions 3.5 have HTTP on a port of its own.
 /// \return nothing if that port has no HTTP either
-std::optional<KnownService> service_apart(const Inverse3Settings& settings,
+std::optional<KnownService> older_service(const Inverse3Settings& settings,
                                           std::chrono::nanoseconds patience) {
   const ServiceAddress http{settings.host, settings.http_port};
   HttpAnswer answer;
@@ -90,7 +93,8 @@ std::optional<KnownService> service_apart(const Inverse3Settings& settings,
   if (answer.status == 200) return service_at(http, answer.body);
   throw DeviceError(one_line("inverse3: the service at " + http.text() +
                              " does not know /version (HTTP " + std::to_string(answer.status) +
-                             "), so it is old; install Haply's Inverse service 3.5 or later"));
+                             "), so it is older than 3.1; install Haply's Inverse service 3.5 or "
+                             "later"));
 }
 
 KnownService find_service(const Inverse3Settings& settings, std::chrono::nanoseconds patience) {
@@ -106,7 +110,7 @@ KnownService find_service(const Inverse3Settings& settings, std::chrono::nanosec
   } catch (const NoService& none) {
     error = none.what();
   }
-  if (auto apart = service_apart(settings, patience)) return *apart;
+  if (auto older = older_service(settings, patience)) return *older;
   throw DeviceError(one_line(error));
 }
 
@@ -219,7 +223,7 @@ Inverse3Device::Inverse3Device(const Inverse3Settings& settings, Inverse3Options
   try {
     const ServiceReport inventory = report_in(service_->answer());
     choose_device(inventory);
-    expect_no_other_session();
+    expect_no_other_session(inventory);
     configure();
   } catch (const BadMessage& error) {
     refuse_answer(address_of(settings_), "what comes", error);
@@ -258,14 +262,20 @@ void Inverse3Device::choose_device(const ServiceReport& inventory) {
     throw DeviceError(one_line("inverse3: " + id_ + " has no power; connect its power supply"));
   }
   session_id_ = inventory.session_id;
+  centre_m_ = known_.version.has_filters() ? Vec3{} : kCentreFromBaseM;
   note_status(*device->status);
   describe(device->config.value_or(DeviceConfig{}));
 }
 
 /// Forces of several sessions add up, and only we know what is safe for the hand.
-void Inverse3Device::expect_no_other_session() const {
+void Inverse3Device::expect_no_other_session(const ServiceReport& inventory) const {
   const std::string remedy =
       "; forces of several programs would add up: close the other one (Haply Hub too)";
+  if (!known_.version.has_filters()) {
+    const auto& status = find_device(inventory, id_)->status;
+    if (!status->in_use) return;
+    throw DeviceError(one_line("inverse3: another program uses " + id_ + remedy));
+  }
   const std::vector<std::string> sessions =
       sessions_in(answer_of(known_.http, "/sessions", options_.patience));
   if (sessions.size() <= 1) return;
@@ -289,16 +299,20 @@ DeviceReport Inverse3Device::ask_for_inventory(const std::string& message) {
 }
 
 void Inverse3Device::configure() {
-  DeviceReport device = ask_for_inventory(first_message(id_));
-  std::string trouble = "the service does not tell its configuration; update it";
-  for (int i = 0; i < kReadBacks && !trouble.empty(); ++i) {
-    if (i > 0) std::this_thread::sleep_for(kBetweenReadBacks);
-    device = ask_for_inventory(inventory_request(id_));
-    if (device.config) trouble = trouble_in(*device.config);
+  DeviceReport device = ask_for_inventory(first_message(known_.version, id_));
+  if (known_.version.has_filters()) {
+    std::string trouble = "the service does not tell its configuration; update it";
+    for (int i = 0; i < kReadBacks && !trouble.empty(); ++i) {
+      if (i > 0) std::this_thread::sleep_for(kBetweenReadBacks);
+      device = ask_for_inventory(inventory_request(known_.version, id_));
+      if (device.config) trouble = trouble_in(*device.config);
+    }
+    if (!trouble.empty()) throw DeviceError(one_line("inverse3: " + trouble));
   }
-  if (!trouble.empty()) throw DeviceError(one_line("inverse3: " + trouble));
-  refuse_home_return(*device.config);
-  describe(*device.config);
+  if (device.config) {
+    refuse_home_return(*device.config);
+    describe(*device.config);
+  }
   if (device.status) note_status(*device.status);
   listen_to_events();
 }
@@ -317,9 +331,11 @@ void Inverse3Device::refuse_home_return(DeviceConfig& config) const {
                known_.http.text() + path));
 }
 
+/// Services before 3.5 need not have the channel.
 void Inverse3Device::listen_to_events() try {
   service_->listen_to({settings_.host, settings_.events_port}, options_.patience);
 } catch (const DeviceError&) {
+  if (!known_.version.has_filters()) return;
   throw DeviceError(one_line(
       "inverse3: the service's events, which tell of its emergency brake, do not come at " +
       settings_.host + ':' + std::to_string(settings_.events_port) +
@@ -361,7 +377,8 @@ void Inverse3Device::exchange() {
   const Vec3 wanted_n = link_.force_to_send(options_.pace->now());
   const bool may_push = status_.is_usable() && is_finite(wanted_n);
   const Vec3 sent_n = may_push ? within_reach(wanted_n) : Vec3{};
-  switch (service_->exchange(force_message(id_, to_service_axes(sent_n)), options_.silence)) {
+  switch (service_->exchange(force_message(known_.version, id_, to_service_axes(sent_n)),
+                             options_.silence)) {
     case LinkOutcome::ok:
       break;
     case LinkOutcome::nonsense:
@@ -379,10 +396,11 @@ void Inverse3Device::exchange() {
 }
 
 void Inverse3Device::take(const DeviceReport& report, std::uint32_t buttons) noexcept {
-  if (norm(report.position_m) > kFarthestM) return link_.fail(DeviceFault::bad_data);
+  const Vec3 place_m = report.position_m - centre_m_;
+  if (norm(place_m) > kFarthestM) return link_.fail(DeviceFault::bad_data);
   if (report.status) note_status(*report.status);
   DeviceSample sample;
-  sample.position_mm = kMmPerM * to_device_axes(report.position_m);
+  sample.position_mm = kMmPerM * to_device_axes(place_m);
   sample.velocity_mm_s = kMmPerM * to_device_axes(report.velocity_m_s);
   sample.buttons = buttons;
   sample.ready = status_.is_usable();
@@ -410,7 +428,7 @@ void Inverse3Device::heed(const ServiceEvent& event) noexcept {
 
 void Inverse3Device::say_farewell() noexcept {
   try {
-    const std::string no_force = force_message(id_, {});
+    const std::string no_force = force_message(known_.version, id_, {});
     // A service that answers has taken it: what is still on its way when it closes may be lost.
     bool answers = true;
     for (int i = 0; i < kFarewells; ++i) {
@@ -469,8 +487,10 @@ DeviceDriver inverse3_driver() {
            "Does touchtrial device list or the service say that home return is off?",
            {"off", "on", "not_told"}},
           {"sessions",
-           "the form of the events about sessions, and whether a session that begins later is "
-           "seen"}}};
+           {"sessions",
+            "the form of the events about sessions, and whether a session that begins later is "
+            "seen"},
+           {"in_use", "whether in_use is true for one's own session (services before 3.5)"}}};
 }
 
 }  // namespace touchtrial::device

@@ -60,7 +60,7 @@ class Inverse3Device final : public LinkedDevice {
     return options_.pace->now();
   }
   void choose_device(const ServiceReport& inventory);
-  void expect_no_other_session() const;
+  void expect_no_other_session(const ServiceReport& inventory) const;
   void configure();
   void listen_to_events();
   void describe(const DeviceConfig& config);
@@ -80,6 +80,7 @@ class Inverse3Device final : public LinkedDevice {
   std::unique_ptr<ServiceLink> service_;
   std::string id_;
   std::optional<std::int64_t> session_id_;
+  Vec3 centre_m_;  ///< of the workspace, in the service's frame
   DeviceInfo info_;
   mutable DeviceLink link_;
   ArmStatus status_;  ///< driver's thread, once that runs

@@ -74,8 +74,8 @@ Vec3 vec3_in(const json& object, const char* key) {
 }
 
 ArmStatus status_of(const json& status) {
-  return {truth_in(status, "calibrated"), truth_in(status, "power_supply"),
-          truth_in(status, "ready"), truth_in(status, "started")};
+  return {truth_in(status, "calibrated"), truth_in(status, "in_use"),
+          truth_in(status, "power_supply"), truth_in(status, "ready"), truth_in(status, "started")};
 }
 
 /// \return the largest magnitude of a damping's numbers: a scalar, and a vector that may be missing
@@ -175,11 +175,13 @@ std::uint32_t buttons_of(const json& report) {
   return 0;
 }
 
-json command(const std::string& device, Vec3 force_n) {
-  return {{"device_id", device},
-          {"commands",
-           {{"set_cursor_force",
-             {{"vector", {{"x", force_n.x}, {"y", force_n.y}, {"z", force_n.z}}}}}}}};
+json command(const ServiceVersion& version, const std::string& device, Vec3 force_n) {
+  // Up to 3.4 the force's coordinates are called its values.
+  const char* const key = version.has_filters() ? "vector" : "values";
+  return {
+      {"device_id", device},
+      {"commands",
+       {{"set_cursor_force", {{key, {{"x", force_n.x}, {"y", force_n.y}, {"z", force_n.z}}}}}}}};
 }
 
 std::string dumped(json message, json device) {
@@ -250,25 +252,27 @@ ServiceEvent event_in(std::string_view text) {
   return event;
 }
 
-std::string first_message(const std::string& device) {
+std::string first_message(const ServiceVersion& version, const std::string& device) {
   json message = json::object();
-  json about = command(device, {});
-  message["session"]["configure"]["profile"]["name"] = kProfile;
-  about["configure"] = {
-      {"preset", {{"preset", kCentredPreset}}},
-      {"force_gate", {{"gain", 0.0}}},
-      {"damping", {{"scalar", 0.0}, {"vector", {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}}}}}};
+  json about = command(version, device, {});
+  if (version.has_filters()) {
+    message["session"]["configure"]["profile"]["name"] = kProfile;
+    about["configure"] = {
+        {"preset", {{"preset", kCentredPreset}}},
+        {"force_gate", {{"gain", 0.0}}},
+        {"damping", {{"scalar", 0.0}, {"vector", {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}}}}}};
+  }
   return dumped(std::move(message), std::move(about));
 }
 
-std::string inventory_request(const std::string& device) {
+std::string inventory_request(const ServiceVersion& version, const std::string& device) {
   json message = json::object();
   message["session"]["force_render_full_state"] = json::object();
-  return dumped(std::move(message), command(device, {}));
+  return dumped(std::move(message), command(version, device, {}));
 }
 
-std::string force_message(const std::string& device, Vec3 force_n) {
-  return dumped(json::object(), command(device, force_n));
+std::string force_message(const ServiceVersion& version, const std::string& device, Vec3 force_n) {
+  return dumped(json::object(), command(version, device, force_n));
 }
 
 }  // namespace touchtrial::device::inverse3

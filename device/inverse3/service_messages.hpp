@@ -1,5 +1,5 @@
 /// \file What Haply's Inverse service says and is told: JSON, without sockets, threads or clocks.
-/// Source: the service's public documentation, version 3.5 (docs/devices/inverse3.md).
+/// Source: the service's public documentation, versions 3.1 and 3.5 (docs/devices/inverse3.md).
 #pragma once
 
 #include "core/vec.hpp"
@@ -26,8 +26,9 @@ struct ServiceVersion {
   int major = 0;
   int minor = 0;
 
-  /// Presets, filters and sessions can be set and read.
-  [[nodiscard]] bool is_known() const noexcept { return major == 3 && minor >= 5; }
+  /// 3.5 and later 3.x: presets, filters and sessions can be set and read.
+  [[nodiscard]] bool has_filters() const noexcept { return major == 3 && minor >= 5; }
+  [[nodiscard]] bool is_known() const noexcept { return major == 3 && minor >= 1; }
   [[nodiscard]] std::string text() const {
     return std::to_string(major) + '.' + std::to_string(minor);
   }
@@ -36,6 +37,7 @@ struct ServiceVersion {
 /// What a device needs before it can be used.
 struct ArmStatus {
   bool calibrated = false;
+  bool in_use = false;
   bool power_supply = false;
   bool ready = false;
   bool started = false;
@@ -47,9 +49,9 @@ struct ArmStatus {
 
 /// How the service treats a device's forces and positions.
 struct DeviceConfig {
-  std::string type = "inverse3";  ///< or inverse3x, minverse
-  std::string firmware;           ///< "7.4"; may be empty
-  std::string preset;
+  std::string type = "inverse3";     ///< or inverse3x, minverse
+  std::string firmware;              ///< "7.4"; may be empty
+  std::string preset;                ///< empty before 3.5
   std::optional<double> force_gate;  ///< gain; 0 is off
   std::optional<double> damping;     ///< the largest of its numbers; 0 is off
   std::optional<bool> torque_scaling;
@@ -66,7 +68,7 @@ struct DeviceReport {
   std::string id;
   Vec3 position_m;
   Vec3 velocity_m_s;
-  std::optional<Vec3> delivered_n;
+  std::optional<Vec3> delivered_n;     ///< from 3.5 on
   std::optional<ArmStatus> status;     ///< nothing: unchanged
   std::optional<DeviceConfig> config;  ///< in an inventory alone
 };
@@ -106,11 +108,13 @@ struct ServiceEvent {
 /// \name Messages to the service
 ///@{
 /// The first one: who we are, the frame, filters off, no force.
-[[nodiscard]] std::string first_message(const std::string& device);
+[[nodiscard]] std::string first_message(const ServiceVersion& version, const std::string& device);
 /// Asks for the device's configuration; no force.
-[[nodiscard]] std::string inventory_request(const std::string& device);
+[[nodiscard]] std::string inventory_request(const ServiceVersion& version,
+                                            const std::string& device);
 /// \param force_n  on the hand, in the service's frame; holds for this message alone
-[[nodiscard]] std::string force_message(const std::string& device, Vec3 force_n);
+[[nodiscard]] std::string force_message(const ServiceVersion& version, const std::string& device,
+                                        Vec3 force_n);
 ///@}
 
 }  // namespace touchtrial::device::inverse3

@@ -15,7 +15,7 @@ namespace touchtrial::testing {
 /// Listens on free ports of this machine while the object lives.
 class HaplyService {
  public:
-  /// \param options  of the program, for instance {"--type", "minverse"}
+  /// \param options  of the program, for instance {"--version", "3.1"}
   /// \throws std::runtime_error with the remedy if it does not start
   explicit HaplyService(std::vector<std::string> options = {});
 

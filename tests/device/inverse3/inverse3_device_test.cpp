@@ -147,8 +147,8 @@ TEST_CASE("inverse3: a service whose HTTP is on a port of its own is found there
 }
 
 TEST_CASE("inverse3: what does not answer as a service that is known is told apart") {
-  // HTTP, but no /version.
-  CHECK(refusal_by({"--http-apart", "--no-version"}).find("so it is old") != std::string::npos);
+  // Older than 3.1: HTTP, but no /version.
+  CHECK(refusal_by({"--http-apart", "--no-version"}).find("older than 3.1") != std::string::npos);
   // A simulation channel, and no HTTP anywhere.
   HaplyService service({"--http-apart"});
   device::Inverse3Settings settings = service.settings();
@@ -169,13 +169,26 @@ TEST_CASE("inverse3: a Minverse reaches less far, and a grip has buttons") {
   CHECK(next_sample(*device).buttons == 5);
 }
 
+TEST_CASE("inverse3: version 3.1 gets its forces as values, in the frame of the arm's base") {
+  HaplyService service({"--version", "3.1", "--no-events"});
+  const auto device = opened(service);
+  service.tell("hold [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]");
+  CHECK(eventually([&] { return norm(next_sample(*device).position_mm) < 1e-9; }));
+  CHECK(reaches(service, *device, {0.5, 1.0, 1.5}, {0.5, -1.5, 1.0}));
+  CHECK(device->info().firmware.find("service 3.1, right-handed, torque scaling on") !=
+        std::string::npos);
+  CHECK_FALSE(next_sample(*device).delivered_n);
+  CHECK(service.report().at("complaints") == json::array());
+}
+
 TEST_CASE("inverse3: what keeps it from opening is named with the remedy") {
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases = {
       {{"--gate-on"}, {"force gate at 0.3", "alters textures", "Haply Hub"}},
       {{"--hub-scale"}, {"turns or scales", "profile touchtrial"}},
       {{"--other-session"}, {"another session", "co.haply.hub::demo-orb", "add up", "close"}},
+      {{"--version", "3.1", "--other-session"}, {"another program uses 049D", "close"}},
       {{"--no-events"}, {"emergency brake", "inverse3.events_port"}},
-      {{"--version", "3.1"}, {"has version 3.1", "install version 3.5"}},
+      {{"--version", "2.9"}, {"has version 2.9", "install"}},
       {{"--version", "4.0"}, {"has version 4.0", "install"}},
       {{"--no-device"}, {"has no Inverse3", "plug it in"}},
       {{"--no-power"}, {"049D has no power", "connect"}},

@@ -2,7 +2,7 @@
 """An emulated Inverse service with one Inverse3 and a hand on it.
 
 Written from Haply's public documentation of the service (the simulation channel, sessions, device
-configuration, events, HTTP; version 3.5), and not from the driver that is tested with it.
+configuration, events, HTTP; versions 3.1 and 3.5), and not from the driver that is tested with it.
 What the documentation leaves open, and is assumed here, is marked "assumed".
 
 Prints "ready PORT EVENTS_PORT HTTP_PORT" once it listens. Commands on standard input, one a line:
@@ -115,6 +115,10 @@ class Service:
         self.full_states = 0
         self.complaints = []
 
+    @property
+    def is_new(self):
+        return self.options.version == "3.5"
+
     def complain(self, text):
         if len(self.complaints) < 20:
             self.complaints.append(text)
@@ -126,7 +130,7 @@ class Service:
         return {"x": values[0], "y": values[1], "z": values[2]}
 
     def centred(self):
-        return self.preset == "arm_front_centered"
+        return self.is_new and self.preset == "arm_front_centered"
 
     def position(self):
         offset = (0.0, 0.0, 0.0) if self.centred() else WORKSPACE_CENTRE_M
@@ -140,9 +144,12 @@ class Service:
             "cursor_position": self.vec(self.position()),
             "cursor_velocity": self.vec(self.hand.velocity),
         }
-        state["current_cursor_force"] = self.vec(self.delivered())
-        state["control_domain"] = "cartesian"
-        state["control_mode"] = "force"
+        if self.is_new:
+            state["current_cursor_force"] = self.vec(self.delivered())
+            state["control_domain"] = "cartesian"
+            state["control_mode"] = "force"
+        else:
+            state["mode"] = "force"
         return state
 
     def status(self, other):
@@ -163,18 +170,19 @@ class Service:
             "handedness": self.options.handedness,
             "torque_scaling": {"enabled": True},
         }
-        scale = 0.5 if self.options.hub_scale else 1.0
-        config["preset"] = self.preset
-        config["basis"] = {"permutation": "XYZ"}
-        config["mount"] = {
-            "position": self.vec((0.0, 0.0, 0.0)),
-            "rotation": {"w": 1, "x": 0, "y": 0, "z": 0},
-            "scale": self.vec((scale, scale, scale)),
-        }
-        config["filters"] = {
-            "force_gate": {"gain": self.gate},
-            "damping": {"scalar": self.damping[0], "vector": self.vec(self.damping[1:])},
-        }
+        if self.is_new:
+            scale = 0.5 if self.options.hub_scale else 1.0
+            config["preset"] = self.preset
+            config["basis"] = {"permutation": "XYZ"}
+            config["mount"] = {
+                "position": self.vec((0.0, 0.0, 0.0)),
+                "rotation": {"w": 1, "x": 0, "y": 0, "z": 0},
+                "scale": self.vec((scale, scale, scale)),
+            }
+            config["filters"] = {
+                "force_gate": {"gain": self.gate},
+                "damping": {"scalar": self.damping[0], "vector": self.vec(self.damping[1:])},
+            }
         return config
 
     def device(self, whole, other=False):
@@ -194,16 +202,21 @@ class Service:
             message["wireless_verse_grip"] = [
                 {"device_id": "61548", "state": {"buttons": {"a": True, "b": False, "c": True}}}
             ]
-        message["session_id"] = self.session
+        if self.is_new:
+            message["session_id"] = self.session
         return message
 
     # What a client says.
 
     def delivered(self):
         """The gate passes the less of a force the higher it is (assumed: a plain factor)."""
+        if not self.is_new:
+            return self.force
         return [(1.0 - self.gate) * f for f in self.force]
 
     def configure(self, what):
+        if not self.is_new:
+            return self.complain("configure: unknown before 3.5")
         if "mount" in what and "preset" in what:
             return self.complain("preset and mount exclude each other")
         for key, value in what.items():
@@ -229,7 +242,7 @@ class Service:
                 for name, body in value.items():
                     if name == "force_render_full_state":
                         whole = True
-                    elif name == "configure":
+                    elif name == "configure" and self.is_new:
                         self.profile = body["profile"]["name"]
                     else:
                         self.complain("session: " + name)
@@ -250,12 +263,13 @@ class Service:
         if "configure" in device:
             self.configure(device["configure"])
         for name, body in device.get("commands", {}).items():
+            key = "vector" if self.is_new else "values"
             if name != "set_cursor_force":
                 self.complain("command " + name)
-            elif list(body) != ["vector"] or sorted(body["vector"]) != ["x", "y", "z"]:
+            elif list(body) != [key] or sorted(body[key]) != ["x", "y", "z"]:
                 self.complain("set_cursor_force: " + ", ".join(body))
             else:
-                self.force = [float(body["vector"][axis]) for axis in "xyz"]
+                self.force = [float(body[key][axis]) for axis in "xyz"]
 
     def garbage(self):
         kind = self.options.garbage
@@ -310,8 +324,13 @@ class Service:
         finally:
             self.listeners.discard(socket)
 
+    @property
+    def http_is_apart(self):
+        """Until some version 3.5 HTTP had a port of its own."""
+        return self.options.http_apart or not self.is_new
+
     async def answer_on_simulation(self, path, headers):
-        if "Upgrade" in headers or self.options.http_apart:
+        if "Upgrade" in headers or self.http_is_apart:
             return None
         return await self.answer_http(path, headers)
 
@@ -325,20 +344,21 @@ class Service:
             },
             "/devices": self.says(True),
         }
-        sessions = [{"session_id": self.session, "profile": {"name": self.profile}}]
-        sessions = sessions[: self.clients]
-        if self.options.other_session:
-            sessions.append({"session_id": 3, "profile": {"name": "co.haply.hub::demo-orb"}})
-        bodies["/sessions"] = {
-            "ok": True,
-            "data": {"session_count": len(sessions), "sessions": sessions},
-        }
-        if self.options.home_return != "unknown":
-            bodies["/inverse3/" + self.options.id + "/config/home_return"] = {
+        if self.is_new:
+            sessions = [{"session_id": self.session, "profile": {"name": self.profile}}]
+            sessions = sessions[: self.clients]
+            if self.options.other_session:
+                sessions.append({"session_id": 3, "profile": {"name": "co.haply.hub::demo-orb"}})
+            bodies["/sessions"] = {
                 "ok": True,
-                # The form is assumed, after those of torque_scaling and gravity_compensation.
-                "data": {"enabled": self.options.home_return == "on"},
+                "data": {"session_count": len(sessions), "sessions": sessions},
             }
+            if self.options.home_return != "unknown":
+                bodies["/inverse3/" + self.options.id + "/config/home_return"] = {
+                    "ok": True,
+                    # The form is assumed, after those of torque_scaling and gravity_compensation.
+                    "data": {"enabled": self.options.home_return == "on"},
+                }
         if self.options.no_version:
             del bodies["/version"]
         if self.options.http_nonsense:
@@ -394,7 +414,7 @@ def read_options():
     parser.add_argument("--port", type=int, default=0, help="0: any free one")
     parser.add_argument("--events-port", type=int, default=0)
     parser.add_argument("--no-events", action="store_true", help="no events channel")
-    parser.add_argument("--version", choices=["3.1", "3.5", "4.0"], default="3.5")
+    parser.add_argument("--version", choices=["2.9", "3.1", "3.5", "4.0"], default="3.5")
     parser.add_argument("--type", default="inverse3", help="inverse3, inverse3x or minverse")
     parser.add_argument("--id", default="049D")
     parser.add_argument("--twins", action="store_true", help="a second device, 04BB")
@@ -458,7 +478,7 @@ async def main():
         ping_interval=None,
     )
     ports = [simulation.sockets[0].getsockname()[1], 0, simulation.sockets[0].getsockname()[1]]
-    if options.http_apart:
+    if service.http_is_apart:
         web = await websockets.serve(
             service.events,
             "127.0.0.1",

@@ -15,6 +15,9 @@ using device::inverse3::BadMessage;
 using device::inverse3::ServiceVersion;
 using nlohmann::json;
 
+constexpr ServiceVersion kOld{3, 1};
+constexpr ServiceVersion kNew{3, 5};
+
 /// An inventory of version 3.5.
 json new_inventory() {
   return json::parse(R"({
@@ -70,6 +73,9 @@ TEST_CASE("an Inverse3 is usable if it has power and is calibrated, ready and st
     INFO(key);
     CHECK_FALSE(device::inverse3::report_in(inventory.dump()).devices[0].status->is_usable());
   }
+  json inventory = new_inventory();
+  inventory["inverse3"][0]["status"]["in_use"] = false;
+  CHECK(device::inverse3::report_in(inventory.dump()).devices[0].status->is_usable());
 }
 
 TEST_CASE("a frame of an Inverse3 that somebody has turned or scaled is no plain one") {
@@ -159,10 +165,12 @@ TEST_CASE("the version of an Inverse service is read with and without an envelop
   const auto version = device::inverse3::version_in(
       R"({"git_tag": "3.5.0", "project_version": "3.5.1.0", "project_name": "x"})");
   CHECK(version.text() == "3.5");
-  CHECK(version.is_known());
+  CHECK(version.has_filters());
   CHECK(device::inverse3::version_in(R"({"ok": true, "data": {"git_tag": "3.1.1"}})").text() ==
         "3.1");
-  CHECK_FALSE(ServiceVersion{3, 4}.is_known());
+  CHECK_FALSE(kOld.has_filters());
+  CHECK(kOld.is_known());
+  CHECK_FALSE(ServiceVersion{3, 0}.is_known());
   CHECK_FALSE(ServiceVersion{4, 0}.is_known());
   for (const char* const text : {R"({"project_version": "main"})", R"({"project_version": "3"})",
                                  R"({"project_version": "3.x"})", "{}", "3.5"}) {
@@ -189,21 +197,27 @@ TEST_CASE("an event of an Inverse service tells what happened to which device") 
   CHECK_THROWS_AS(device::inverse3::event_in("{}"), BadMessage);
 }
 
-TEST_CASE("a force for an Inverse3 is a vector in its axes") {
-  const json ours = json::parse(device::inverse3::force_message("049D", {1.0, -2.0, 0.5}));
+TEST_CASE("a force for an Inverse3 is a vector from version 3.5 on, and values before") {
+  const json ours = json::parse(device::inverse3::force_message(kNew, "049D", {1.0, -2.0, 0.5}));
   CHECK(ours == json::parse(R"({"inverse3": [{"device_id": "049D", "commands": {"set_cursor_force":
       {"vector": {"x": 1.0, "y": -2.0, "z": 0.5}}}}]})"));
+  const json old = json::parse(device::inverse3::force_message(kOld, "049D", {1.0, -2.0, 0.5}));
+  CHECK(old.at("/inverse3/0/commands/set_cursor_force"_json_pointer) ==
+        json::parse(R"({"values": {"x": 1.0, "y": -2.0, "z": 0.5}})"));
 }
 
 TEST_CASE("the first message to an Inverse service says who we are and switches filters off") {
-  const json first = json::parse(device::inverse3::first_message("049D"));
+  const json first = json::parse(device::inverse3::first_message(kNew, "049D"));
   CHECK(first == json::parse(R"({
       "session": {"configure": {"profile": {"name": "touchtrial"}}},
       "inverse3": [{"device_id": "049D",
         "configure": {"preset": {"preset": "arm_front_centered"}, "force_gate": {"gain": 0.0},
                       "damping": {"scalar": 0.0, "vector": {"x": 0.0, "y": 0.0, "z": 0.0}}},
         "commands": {"set_cursor_force": {"vector": {"x": 0.0, "y": 0.0, "z": 0.0}}}}]})"));
-  const json request = json::parse(device::inverse3::inventory_request("049D"));
+  const json old = json::parse(device::inverse3::first_message(kOld, "049D"));
+  CHECK(old == json::parse(R"({"inverse3": [{"device_id": "049D", "commands": {"set_cursor_force":
+      {"values": {"x": 0.0, "y": 0.0, "z": 0.0}}}}]})"));
+  const json request = json::parse(device::inverse3::inventory_request(kNew, "049D"));
   CHECK(request.at("session") == json::parse(R"({"force_render_full_state": {}})"));
 }
 
