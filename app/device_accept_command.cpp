@@ -1,14 +1,14 @@
 // device accept: a person tries a device step by step, guided, and its certificate is written.
-#include "analysis/page/document.hpp"
 #include "app/acceptance_terminal.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/device_accept_page.hpp"
+#include "app/device_words.hpp"
 #include "app/force_flag.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/outputs.hpp"
 #include "core/text.hpp"
-#include "core/utc.hpp"
 #include "core/version.hpp"
 #include "device/acceptance/acceptance.hpp"
 #include "device/acceptance/rehearsal.hpp"
@@ -60,30 +60,38 @@ std::string emulated_word(const std::string& model) {
   return "emulated-" + file_word(model);
 }
 
-/// "falcon-model.json" beside "falcon-certificate.json".
-fs::path model_beside(const fs::path& certificate) {
+/// "falcon-model.json" beside "falcon-certificate.json", with this ending in place of
+/// "-certificate.json".
+fs::path file_beside(const fs::path& certificate, const std::string& ending) {
   std::string stem = certificate.stem().string();
   const std::string usual = "-certificate";
-  if (stem.ends_with(usual)) stem.resize(stem.size() - usual.size());
-  return certificate.parent_path() / (stem + "-model.json");
+  if (ending != ".html" && stem.ends_with(usual)) stem.resize(stem.size() - usual.size());
+  return certificate.parent_path() / (stem + ending);
 }
 
 /// The files that an acceptance writes.
 struct AcceptanceFiles {
   fs::path certificate;
+  fs::path page;
   fs::path model;
 
-  [[nodiscard]] std::array<const fs::path*, 2> all() const { return {&certificate, &model}; }
+  [[nodiscard]] std::array<const fs::path*, 3> all() const { return {&certificate, &page, &model}; }
 };
 
 /// Called before the device is opened, so that no work is lost at the end.
 /// \param name  of the certificate, without its ending, unless the arguments name one
-/// \throws UsageError if a file that this very acceptance reads would be replaced
+/// \throws UsageError if the certificate would not be a .json file, or a file that this very
+///   acceptance reads would be replaced
 /// \throws FileError if they cannot be written
 AcceptanceFiles files_to_write(const AcceptArguments& arguments, const std::string& name) {
   const fs::path path =
       arguments.certificate.empty() ? fs::path(name + "-certificate.json") : arguments.certificate;
-  const AcceptanceFiles files{path, model_beside(path)};
+  if (ending_of(path) != ".json") {
+    throw UsageError("--certificate " + in_quotes(path.string()) +
+                     ": the page with the plots is written beside it; give a name that ends in "
+                     ".json");
+  }
+  AcceptanceFiles files{path, file_beside(path, ".html"), file_beside(path, "-model.json")};
   const std::array<fs::path, 2> inputs = {arguments.emulated, arguments.settings};
   for (const fs::path* const file : files.all()) {
     std::error_code ignored;
@@ -121,125 +129,9 @@ void keep_earlier(const AcceptanceFiles& files) {
   }
 }
 
-using analysis::Cell;
-
-std::string number_cell(const std::optional<device::Measured>& measured, int digits,
-                        double factor = 1.0) {
-  if (!measured) return "-";
-  return fmt::format("{:.{}f} ± {:.{}f}", factor * measured->value, digits,
-                     factor * measured->error, digits);
-}
-
-std::string push_cell(const std::optional<device::PushResult>& push) {
-  if (!push) return "-";
-  if (!push->moved) return fmt::format("no motion at {:.1f} N", push->force_n);
-  return fmt::format("{:+.1f} mm at {:.1f} N", push->along_mm, push->force_n);
-}
-
-analysis::Table table_of_axes(const device::Certificate& certificate) {
-  analysis::Table table{"axes",
-                        "Each axis of the device frame (x right, y up, z towards the person). "
-                        "Numbers have the half-width of their interval of about 95 %.",
-                        {{"axis", analysis::Align::left},
-                         {"push along it", analysis::Align::right},
-                         {"push against it", analysis::Align::right},
-                         {"delivered, %", analysis::Align::right},
-                         {"friction, N", analysis::Align::right},
-                         {"mass, kg", analysis::Align::right},
-                         {"damping, N s/m", analysis::Align::right},
-                         {"delay, ms", analysis::Align::right}}};
-  for (const device::AxisResult& axis : certificate.axes) {
-    table.rows.push_back({Cell(std::string(device::name_of(axis.axis))), Cell(push_cell(axis.plus)),
-                          Cell(push_cell(axis.minus)), Cell(number_cell(axis.scale(), 1, 100.0)),
-                          Cell(number_cell(axis.friction_n, 3)), Cell(number_cell(axis.mass_kg, 3)),
-                          Cell(number_cell(axis.viscous_n_s_per_m, 1)),
-                          Cell(number_cell(axis.delay_ms, 1))});
-  }
-  return table;
-}
-
-analysis::Definitions device_figures(const device::Certificate& certificate) {
-  analysis::Definitions figures;
-  auto& entries = figures.entries;
-  if (certificate.rest) {
-    entries.emplace_back("noise and drift at rest",
-                         fmt::format("{:.4f} mm and {:.3f} mm", certificate.rest->noise_mm,
-                                     certificate.rest->drift_mm));
-  }
-  if (certificate.step_mm) {
-    entries.emplace_back("encoder step", number_cell(certificate.step_mm, 4) + " mm");
-  }
-  if (certificate.wall) {
-    const device::WallResult& wall = *certificate.wall;
-    entries.emplace_back("stiffest stable wall", fmt::format("{:.2f} N/mm; the trials ended by {}",
-                                                             wall.stable_n_per_mm, wall.ended));
-    if (wall.oscillates_n_per_mm > 0.0) {
-      // b = K (T/2 + delay) at the edge; T is one tick.
-      const auto delay = certificate.mean_of(&device::AxisResult::delay_ms);
-      const double damping = wall.oscillates_n_per_mm * (0.5 + (delay ? delay->value : 0.0));
-      entries.emplace_back("first wall that swings",
-                           fmt::format("{:.2f} N/mm, where {}K (T/2 + delay) is {:.2f} N s/m",
-                                       wall.oscillates_n_per_mm,
-                                       delay ? "" : "(delay unknown, taken as 0) ", damping));
-    }
-  }
-  if (certificate.warm) {
-    entries.emplace_back("load's force at first, and after twenty minutes",
-                         fmt::format("{:.3f} N and {:.3f} N", certificate.warm->before_n,
-                                     certificate.warm->after_n));
-  }
-  return figures;
-}
-
-analysis::Section results_of(const device::Certificate& certificate) {
-  analysis::Section section{"results", "Results", {}};
-  section.blocks.emplace_back(table_of_axes(certificate));
-  section.blocks.emplace_back(device_figures(certificate));
-  return section;
-}
-
-analysis::Section verdict_of(const device::Certificate& certificate) {
-  analysis::Section section{"verdict", "Verdict", {}};
-  const std::vector<std::string> failures = certificate.failures();
-  section.blocks.emplace_back(analysis::Cited{
-      failures.empty() ? "Every requirement of a session with people was measured and is met."
-                       : "No session with people runs on this device.",
-      {},
-      failures.empty() ? "Passed." : "Failed."});
-  if (!failures.empty()) section.blocks.emplace_back(analysis::Warnings{failures, "Why"});
-  if (!certificate.not_measured.empty()) {
-    analysis::Warnings missing{{}, "Not measured"};
-    for (const device::NotMeasured& one : certificate.not_measured) {
-      missing.sentences.push_back(one.what + ": " + one.why);
-    }
-    section.blocks.emplace_back(std::move(missing));
-  }
-  return section;
-}
-
-/// Verdict and numbers, for the terminal.
-analysis::Document document_of(const device::Certificate& certificate) {
-  analysis::Document document;
-  document.title = "Acceptance of " + certificate.driver +
-                   (certificate.model.empty() ? "" : ", " + certificate.model);
-  if (!certificate.emulated.empty()) {
-    document.stamp = "REHEARSAL";
-    document.banners.push_back("REHEARSAL on an emulated device (" + certificate.emulated +
-                               "): proves the program, not a device.");
-  }
-  document.header.entries = {{"driver", certificate.driver},
-                             {"model", certificate.model},
-                             {"serial number", certificate.serial},
-                             {"firmware", certificate.firmware},
-                             {"made", utc_text(certificate.made.time_since_epoch())},
-                             {"program", certificate.program}};
-  document.about = "This certificate";
-  document.sections = {verdict_of(certificate), results_of(certificate)};
-  return document;
-}
-
 int write_results(const AcceptArguments& arguments, const AcceptanceFiles& files,
-                  device::Certificate certificate, const device::DeviceInfo& info) {
+                  device::Acceptance acceptance, const device::DeviceInfo& info) {
+  device::Certificate& certificate = acceptance.certificate;
   certificate.program = std::string(program_version());
   certificate.made = std::chrono::floor<std::chrono::seconds>(
       std::chrono::sys_time<std::chrono::nanoseconds>(utc_now()));
@@ -248,11 +140,12 @@ int write_results(const AcceptArguments& arguments, const AcceptanceFiles& files
   const std::string json = device::certificate_json(certificate);
   keep_earlier(files);
   write_output(files.certificate, json);
+  write_output(files.page, acceptance_page(acceptance));
   write_output(files.model, device::device_model_json(model));
   if (arguments.json) {
     print(json);
   } else {
-    print(analysis::document_text(document_of(certificate), columns_of_output()) +
+    print(acceptance_text(certificate, columns_of_output()) +
           fmt::format("{}: SHA-256 {}\n", files.certificate.string(),
                       to_hex(sha256_of_file(files.certificate))));
   }

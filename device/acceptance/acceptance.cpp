@@ -75,7 +75,7 @@ class Procedure {
     certificate_.scale = info_.scale;
   }
 
-  Certificate run() {
+  Acceptance run() {
     try {
       listen();
       push();
@@ -92,7 +92,7 @@ class Procedure {
     }
     if (!options_.thermal) missed("force after twenty minutes", "not asked for (--thermal)");
     put_newtons_right();
-    return std::move(certificate_);
+    return {std::move(certificate_), std::move(curves_)};
   }
 
  private:
@@ -113,6 +113,12 @@ class Procedure {
     if (found != certificate_.axes.end()) return *found;
     certificate_.axes.push_back({.axis = axis});
     return certificate_.axes.back();
+  }
+  AxisCurves& curves_of(DeviceAxis axis) {
+    const auto found = std::ranges::find(curves_, axis, &AxisCurves::axis);
+    if (found != curves_.end()) return *found;
+    curves_.push_back({.axis = axis});
+    return curves_.back();
   }
   [[nodiscard]] double step_mm() const {
     return certificate_.step_mm ? certificate_.step_mm->value : 0.0;
@@ -197,6 +203,7 @@ class Procedure {
       result.friction_n = strokes.value->friction_n;
       support_n_ =
           support_n_ + (*result.load_n - dot(support_n_, direction_of(axis))) * direction_of(axis);
+      curves_of(axis).loop = strokes.value->loop;
       person_.tell(fmt::format("axis {}: friction {}, the handle's own load {:.2f} N",
                                name_of(axis), words_of(*result.friction_n, 2, "N"),
                                *result.load_n));
@@ -262,6 +269,7 @@ class Procedure {
     } else {
       result.delay_ms = figures.delay_ms;
     }
+    curves_of(result.axis).by_delay = figures.by_delay;
     person_.tell(fmt::format("axis {}: mass {}, {:.0f} % of the motion unexplained",
                              name_of(result.axis), words_of(figures.mass_kg, 3, "kg"),
                              100.0 * figures.unexplained));
@@ -379,6 +387,7 @@ class Procedure {
   HandleRuns runs_;
   Vec3 support_n_;  ///< commanded, for the handle's own load
   Certificate certificate_;
+  std::vector<AxisCurves> curves_;
 };
 
 }  // namespace
@@ -400,8 +409,8 @@ AcceptanceForces acceptance_forces(const DeviceInfo& device, const SafetyLimits&
   return forces;
 }
 
-Certificate accept_device(AcceptanceBench& bench, AcceptancePerson& person,
-                          const AcceptanceOptions& options) {
+Acceptance accept_device(AcceptanceBench& bench, AcceptancePerson& person,
+                         const AcceptanceOptions& options) {
   return Procedure(bench, person, options).run();
 }
 

@@ -89,6 +89,18 @@ struct AcceptanceOptions {
   bool thermal = false;                       ///< twenty minutes under a load
 };
 
+/// Curves of one axis, for pictures.
+struct AxisCurves {
+  DeviceAxis axis = DeviceAxis::y;
+  std::vector<std::pair<double, double>> loop{};      ///< StrokeFigures::loop
+  std::vector<std::pair<double, double>> by_delay{};  ///< ShakeFigures::by_delay
+};
+
+struct Acceptance {
+  Certificate certificate;  ///< `program`, `made` and `emulated` are the caller's
+  std::vector<AxisCurves> curves;
+};
+
 /// The greatest force of a push, of a shake and of a weight on this device.
 struct AcceptanceForces {
   double push_n = 0.0;
@@ -100,9 +112,8 @@ struct AcceptanceForces {
                                                  const SafetyLimits& limits) noexcept;
 
 /// Runs the acceptance. A wrong sign and a fault end it at once, with a certificate that says so.
-/// \return without `program`, `made` and `emulated`, which are the caller's
 /// \throws whatever bench and person throw
-[[nodiscard]] Certificate accept_device(AcceptanceBench& bench, AcceptancePerson& person,
-                                        const AcceptanceOptions& options);
+[[nodiscard]] Acceptance accept_device(AcceptanceBench& bench, AcceptancePerson& person,
+                                       const AcceptanceOptions& options);
 
 }  // namespace touchtrial::device

@@ -338,6 +338,7 @@ struct WindowFit {
   FitRow unknowns{};
   FitRow errors{};
   double unexplained = 0.0;
+  std::size_t windows = 0;
   double delay_ticks = 0.0;
   double delay_error_ticks = 0.0;  ///< standard error
 };
@@ -360,8 +361,8 @@ std::optional<WindowFit> best_fit(const std::vector<Window>& windows, double fri
   const std::optional<FitRow> errors = standard_errors(windows, *best, friction_n, best_delay, n);
   if (!errors || !(best->unknowns[0] > 0.0)) return std::nullopt;
   // A force acts until the next tick, on average half a tick after it was sent.
-  return WindowFit{best->unknowns, *errors, std::sqrt(best->squares / squares), best_delay - 0.5,
-                   (*errors)[n]};
+  return WindowFit{best->unknowns, *errors,          std::sqrt(best->squares / squares),
+                   windows.size(), best_delay - 0.5, (*errors)[n]};
 }
 
 /// With less unexplained, a fit is taken at its word.
@@ -494,6 +495,7 @@ struct BendingDelay {
   double ticks = 0.0;
   double error_ticks = 0.0;  ///< standard error
   bool at_an_end = false;    ///< of the range: it may lie beyond
+  std::vector<std::pair<double, double>> by_delay;
 };
 
 /// The delay after which the path bends when the push turns round: while the handle goes on one
@@ -525,6 +527,10 @@ std::optional<BendingDelay> bending_delay(const EvenSeries& series, const std::v
   // From quartiles, as single turns may bend elsewhere: 1.25 times the deviation over 1.35.
   const double spread = quantile_of(best_of_turn, 0.75) - quantile_of(best_of_turn, 0.25);
   delay.error_ticks = 0.93 * spread / std::sqrt(static_cast<double>(best_of_turn.size()));
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    delay.by_delay.emplace_back(1000.0 * kServoTickS * delay_of(static_cast<std::ptrdiff_t>(k)),
+                                std::sqrt(sums[k] / static_cast<double>(best_of_turn.size())));
+  }
   return delay;
 }
 
@@ -579,7 +585,8 @@ std::optional<LaggingDelay> lagging_delay(const EvenSeries& series,
 /// what the slow motion says.
 /// \param slow  slow_fit
 OrWhy<Measured> delay_by_turns(const EvenSeries& series, TickRange ticks, double push_n,
-                               const std::optional<WindowFit>& slow) {
+                               const std::optional<WindowFit>& slow,
+                               std::vector<std::pair<double, double>>& by_delay) {
   constexpr double kShortHalf = 5.0;  // ticks
   constexpr double kFarHalf = 6.5;
   constexpr double kLongHalf = 8.0;
@@ -597,6 +604,7 @@ OrWhy<Measured> delay_by_turns(const EvenSeries& series, TickRange ticks, double
   const auto far = bending_delay(series, turns, kFarHalf);
   const auto lagging = lagging_delay(series, turns);
   if (!near || !far || !lagging) return {std::nullopt, "no bend of the path follows the push"};
+  by_delay = near->by_delay;
   const double ms = 1000.0 * kServoTickS;
   if (near->at_an_end || (far->at_an_end && !slow)) {
     return {std::nullopt, "no bend follows the turns of the push within " +
@@ -681,6 +689,7 @@ OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm) 
   StrokeFigures figures;
   const auto [least, greatest] = std::minmax_element(x.begin() + static_cast<std::ptrdiff_t>(from),
                                                      x.begin() + static_cast<std::ptrdiff_t>(end));
+  const double middle_mm = 0.5 * (*least + *greatest);
   if (*greatest - *least <= kStepsOfMotion * step_mm) {
     return {std::nullopt, "the handle moved less than five encoder steps"};
   }
@@ -713,12 +722,13 @@ OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm) 
   const double friction_n = mean_of(differences);
   figures.friction_n = {friction_n, 2.0 * standard_error_of(differences) + kFrictionFloorN +
                                         kFrictionShare * std::abs(friction_n)};
+  for (std::size_t i = from; i < end; i += 10) {
+    figures.loop.emplace_back(x[i] - middle_mm, series.force_n[i] - figures.load_n.value);
+  }
   return {figures, ""};
 }
 
 OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_n, double step_mm) {
-  /// More than this share unexplained: something else moved the handle.
-  constexpr double kMostUnexplained = 0.3;
   constexpr std::array<std::size_t, 4> kHalves = {8, 12, 20, 32};
   constexpr std::size_t kFewestWindows = 60;
   if (strokes.ran_away()) return no_shake("the handle left its place");
@@ -754,13 +764,15 @@ OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_
   }
   ShakeFigures figures;
   figures.unexplained = best->unexplained;
+  figures.windows = best->windows;
   const double mass_kg = 1.0 / best->unknowns[0];
   const double viscous = std::max(0.0, -best->unknowns[2] * mass_kg);
   figures.mass_kg = {mass_kg, 2.0 * best->errors[0] * mass_kg * mass_kg + kMassFloorKg +
                                   (kMassShare + 0.5 * best->unexplained) * mass_kg};
   figures.viscous_n_s_per_m = {
       viscous, 2.0 * best->errors[2] * mass_kg + kViscousFloor + 0.1 * std::abs(viscous)};
-  const OrWhy<Measured> by_turns = delay_by_turns(series, {from, end}, strokes.push_n(), slow);
+  const OrWhy<Measured> by_turns =
+      delay_by_turns(series, {from, end}, strokes.push_n(), slow, figures.by_delay);
   figures.delay_ms = fits.delay_ms ? fits.delay_ms : by_turns.value;
   if (!figures.delay_ms) figures.no_delay = by_turns.why;
   return {figures, ""};

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::device {
@@ -42,6 +43,8 @@ struct RestFigures {
 struct StrokeFigures {
   Measured load_n;      ///< commanded along the axis against what pulls, either way of motion
   Measured friction_n;  ///< half the difference between the two ways
+  /// Place along the axis from the middle, and commanded force without the load, for a picture.
+  std::vector<std::pair<double, double>> loop{};
 };
 /// \param step_mm  encoder step; strokes must exceed five of them; 0: not known
 [[nodiscard]] OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm);
@@ -58,7 +61,13 @@ struct ShakeFigures {
   std::optional<Measured> delay_ms;
   std::string no_delay{};    ///< why there is none; empty if there is one
   double unexplained = 0.0;  ///< of the acceleration, as a share (root mean squares)
+  std::size_t windows = 0;
+  /// Delay in ms, and what a bend after it explains of the path around turns, mm (root mean
+  /// square).
+  std::vector<std::pair<double, double>> by_delay{};
 };
+/// More than this share unexplained: something else moved the handle.
+inline constexpr double kMostUnexplained = 0.3;
 /// \param friction_n  of slow strokes, in commanded newtons
 [[nodiscard]] OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_n,
                                                 double step_mm);

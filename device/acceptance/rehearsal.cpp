@@ -101,11 +101,11 @@ DeviceDynamics::Outside Rehearsal::hand(double time_s, Vec3 position_mm) const {
       weight_carried + Vec3{0.1 * off_mm.x, -kPressN, 0.1 * off_mm.z}, 0.1, {0.004, 0.008, 0.004}};
 }
 
-Certificate rehearse_acceptance(const DeviceModel& model, const AcceptanceOptions& options) {
+Acceptance rehearse_acceptance(const DeviceModel& model, const AcceptanceOptions& options) {
   Rehearsal rehearsal(model);
-  Certificate certificate = accept_device(rehearsal, rehearsal, options);
-  certificate.emulated = model.name;
-  return certificate;
+  Acceptance acceptance = accept_device(rehearsal, rehearsal, options);
+  acceptance.certificate.emulated = model.name;
+  return acceptance;
 }
 
 }  // namespace touchtrial::device

@@ -52,7 +52,7 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
 
 /// Rehearses with a model.
 /// \return with `emulated` set
-[[nodiscard]] Certificate rehearse_acceptance(const DeviceModel& model,
-                                              const AcceptanceOptions& options);
+[[nodiscard]] Acceptance rehearse_acceptance(const DeviceModel& model,
+                                             const AcceptanceOptions& options);
 
 }  // namespace touchtrial::device

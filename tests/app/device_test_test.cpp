@@ -248,9 +248,10 @@ TEST_CASE("device accept refuses files that it could not write before it opens t
   const auto accept = [&](const std::string& certificate) {
     return folder.device("accept dhd --certificate @" + certificate);
   };
+  check_refused(accept("c.html"), 2, {"ends in .json"});
   check_refused(accept("no/such/c.json"), 1, {"cannot be written"});
-  make_folder(folder.path() / "c-model.json");
-  check_refused(accept("c.json"), 1, {"c-model.json", "--force"});
+  make_folder(folder.path() / "c.html");
+  check_refused(accept("c.json"), 1, {"c.html", "--force"});
   check_refused(accept("devices.json"), 2, {"is read by this acceptance"});
   CHECK_FALSE(fs::exists(folder.in("c.json.trial")));
 }
@@ -282,6 +283,8 @@ TEST_CASE("device accept rehearses on a device model, and says that it proves no
   json certificate = folder.object_in("emulated-falcon-certificate.json");
   CHECK(certificate.at("emulated") == "falcon");
   CHECK(certificate.at("passed") == true);
+  CHECK_THAT(content(folder.in("emulated-falcon-certificate.html")),
+             holds_text("REHEARSAL") && holds_text("<svg"));
   const json model = folder.object_in("emulated-falcon-model.json");
   CHECK(model.at("mass_kg") > 0.1);
   CHECK(model.at("provenance").at("mass_kg").at("confidence") == "derived");

@@ -15,6 +15,7 @@
 namespace touchtrial {
 namespace {
 
+using device::Acceptance;
 using device::AxisResult;
 using device::Certificate;
 using device::DeviceAxis;
@@ -24,7 +25,7 @@ using device::Measured;
 const std::vector<std::string> kEmulated = {"falcon", "touch", "omega_3", "inverse3"};
 
 Certificate rehearsed(const DeviceModel& model, const device::AcceptanceOptions& options = {}) {
-  return device::rehearse_acceptance(model, options);
+  return device::rehearse_acceptance(model, options).certificate;
 }
 
 const AxisResult& axis_of(const Certificate& certificate, DeviceAxis axis) {
@@ -111,7 +112,7 @@ TEST_CASE("an acceptance finds a wrong sign on any axis, refuses it, and pulls a
       DeviceModel model = device::device_model(name);
       component(model.planted.force_sign_scale, axis) = -1.0;
       WatchedRehearsal bench(model);
-      const Certificate certificate = device::accept_device(bench, bench.person(), {});
+      const Certificate certificate = device::accept_device(bench, bench.person(), {}).certificate;
       CHECK_FALSE(certificate.passed());
       CHECK(has_line(certificate.failures(),
                      "axis " + std::string(device::name_of(axis)) + ": the handle moved against"));

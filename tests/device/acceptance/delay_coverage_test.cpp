@@ -55,7 +55,7 @@ DelayCoverage delay_coverage(const std::string& name, int devices) {
   options.skip = {"weights", "wall", "steps"};
   for (int index = 0; index < devices; ++index) {
     const DeviceModel model = drawn_device(name, static_cast<std::uint64_t>(index));
-    const auto certificate = device::rehearse_acceptance(model, options);
+    const auto certificate = device::rehearse_acceptance(model, options).certificate;
     const double truth_ms = planted_delay_ms(model);
     const auto delay = certificate.axes.empty() ? std::nullopt : certificate.axes.front().delay_ms;
     const bool passes = delay && device::verdict_on_delay(*delay) == device::DelayVerdict::below;
