@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -19,7 +20,7 @@ struct AcceptanceStopped {};
 class AcceptanceTerminal final : public device::AcceptanceBench, public device::AcceptancePerson {
  public:
   /// Opens the device and waits until it is ready.
-  /// \throws AcceptanceStopped; DeviceError if it has no motors; as OpenedDevice and
+  /// \throws AcceptanceStopped; DeviceError if it has no motors; as device::open_device and
   ///   AttendedRun::wait_until_ready
   AcceptanceTerminal(const std::string& driver, const device::DeviceSettings& settings);
 
@@ -45,7 +46,7 @@ class AcceptanceTerminal final : public device::AcceptanceBench, public device::
  private:
   void require_going_on() const;
 
-  OpenedDevice opened_;
+  std::unique_ptr<device::HapticDevice> device_;
   device::SafetyLimits limits_;
   double most_n_ = std::numeric_limits<double>::infinity();  ///< of limit_force
   AttendedRun run_;

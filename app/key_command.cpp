@@ -8,7 +8,6 @@
 #include "protocols/design/key_protection.hpp"
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -76,37 +75,27 @@ CLI::Option* add_new_passphrase_option(CLI::App& command, KeyArguments& argument
       ->expected(1);
 }
 
-/// A command of "key" with the argument FILE.
-CLI::App* key_subcommand(CLI::App& keys, Action& action, const std::string& name,
-                         const std::string& meaning, const std::shared_ptr<KeyArguments>& arguments,
-                         int (*work)(const KeyArguments&)) {
-  CLI::App* command = keys.add_subcommand(name, meaning);
-  command->callback([=, &action] { action = [=] { return work(*arguments); }; });
-  return command;
-}
-
 void add_copy(CLI::App& keys, Action& action) {
-  auto arguments = std::make_shared<KeyArguments>();
-  CLI::App* copy = key_subcommand(keys, action, "copy",
-                                  "Copy a key, for a colleague or another medium, under a "
-                                  "passphrase of its own",
-                                  arguments, copy_key);
-  copy->add_option("KEY", arguments->file, "The investigator's key")->required();
-  copy->add_option("-o,--out", arguments->output, "Key to write")->required();
-  copy->add_flag("--passphrase", arguments->passphrase, "Protect the copy by a new passphrase");
-  add_new_passphrase_option(*copy, *arguments);
-  add_passphrase_option(*copy);
+  const auto [command, arguments] =
+      add_command(keys, action, "copy",
+                  "Copy a key, for a colleague or another medium, under a "
+                  "passphrase of its own",
+                  copy_key);
+  command.add_option("KEY", arguments.file, "The investigator's key")->required();
+  command.add_option("-o,--out", arguments.output, "Key to write")->required();
+  command.add_flag("--passphrase", arguments.passphrase, "Protect the copy by a new passphrase");
+  add_new_passphrase_option(command, arguments);
+  add_passphrase_option(command);
 }
 
 void add_protect(CLI::App& keys, Action& action) {
-  auto arguments = std::make_shared<KeyArguments>();
-  CLI::App* command = key_subcommand(
-      keys, action, "protect", "Give a key or a station's file a passphrase, another one, or none",
-      arguments, protect_key);
-  command->add_option("FILE", arguments->file, "Key or station's file")->required();
-  CLI::Option* given = add_new_passphrase_option(*command, *arguments);
-  command->add_flag("--remove", arguments->remove, "Take the passphrase away")->excludes(given);
-  add_passphrase_option(*command);
+  const auto [command, arguments] =
+      add_command(keys, action, "protect",
+                  "Give a key or a station's file a passphrase, another one, or none", protect_key);
+  command.add_option("FILE", arguments.file, "Key or station's file")->required();
+  CLI::Option* given = add_new_passphrase_option(command, arguments);
+  command.add_flag("--remove", arguments.remove, "Take the passphrase away")->excludes(given);
+  add_passphrase_option(command);
 }
 
 }  // namespace

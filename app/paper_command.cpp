@@ -3,7 +3,6 @@
 #include "analysis/paper/paper_document.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/force_flag.hpp"
 #include "app/given_pictures.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -15,7 +14,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -138,19 +136,18 @@ int make_paper(const PaperArguments& arguments) {
 }  // namespace
 
 void add_paper_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<PaperArguments>();
-  CLI::App* command = program.add_subcommand(
-      "paper", "The source paper's figures and tables beside those of pictures");
-  command->add_option(
-      "IMAGE", arguments->images,
+  const auto [command, arguments] =
+      add_command(program, action, "paper",
+                  "The source paper's figures and tables beside those of pictures", make_paper);
+  command.add_option(
+      "IMAGE", arguments.images,
       "PNG, JPEG, TIFF, BMP, GIF or PGM (default: the program's own textures, and its "
       "objects for the comparison with TV-Gabor)");
   command
-      ->add_option("-o,--out", arguments->folder,
-                   "Folder for paper.html, paper.md, the pictures and paper.json")
+      .add_option("-o,--out", arguments.folder,
+                  "Folder for paper.html, paper.md, the pictures and paper.json")
       ->required();
-  add_force_flag(*command);
-  command->callback([=, &action] { action = [=] { return make_paper(*arguments); }; });
+  add_force_flag(command);
 }
 
 }  // namespace touchtrial::app

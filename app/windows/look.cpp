@@ -140,7 +140,6 @@ std::set<char32_t> letters_in(const std::vector<std::string>& texts) {
 void require_letters(const std::set<char32_t>& letters) {
   constexpr float kAnyHeight = 13.0F;
   constexpr int kMostNamed = 8;
-  const std::lock_guard turn(imgui_turn());
   ImFontAtlas atlas;
   const WantedLetters wanted = wanted_of(letters);
   const ImFont* const font = add_font(atlas, {kAnyHeight, FontWeight::regular}, wanted);
@@ -165,13 +164,8 @@ ImVec2 imgui_vec(Vec2 point) noexcept {
   return {static_cast<float>(point.x), static_cast<float>(point.y)};
 }
 
-std::mutex& imgui_turn() {
-  static std::mutex turn;
-  return turn;
-}
-
-void draw_stylus(Vec2 at, bool pressed, bool is_live, float density) {
-  const ImU32 colour = is_live ? IM_COL32(0, 70, 130, 255) : IM_COL32(130, 130, 130, 255);
+void draw_stylus(Vec2 at, bool pressed, float density) {
+  constexpr ImU32 colour = IM_COL32(0, 70, 130, 255);
   const ImVec2 centre = imgui_vec(at);
   const float radius = 8.0F * density;
   ImDrawList& list = *ImGui::GetWindowDrawList();

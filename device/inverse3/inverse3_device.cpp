@@ -487,10 +487,9 @@ DeviceDriver inverse3_driver() {
            "Does touchtrial device list or the service say that home return is off?",
            {"off", "on", "not_told"}},
           {"sessions",
-           {"sessions",
-            "the form of the events about sessions, and whether a session that begins later is "
-            "seen"},
-           {"in_use", "whether in_use is true for one's own session (services before 3.5)"}}};
+           "the form of the events about sessions, and whether a session that begins later is "
+           "seen"},
+          {"in_use", "whether in_use is true for one's own session (services before 3.5)"}}};
 }
 
 }  // namespace touchtrial::device

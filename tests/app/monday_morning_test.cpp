@@ -138,7 +138,7 @@ MondayDesk::MondayDesk() {
       fmt::format("if [ -f {0}/clock ]; then export FAKE_CLOCK_AHEAD_S=$(cat {0}/clock); fi\n"
                   "if [ -f {0}/disk ]; then export FAKE_DISK_BYTES=$(cat {0}/disk); fi\n"
                   "if [ \"$1\" = run ]; then\n"
-                  "  set -- \"$@\" --subject {0}/quick.json --headless $PACE\n"
+                  "  set -- \"$@\" --subject {0}/quick.json $PACE\n"
                   "fi\n"
                   "if [ \"$1\" = withdraw ]; then set -- \"$@\" --yes; fi\n"
                   "export LD_PRELOAD={1}\n"
