@@ -1,6 +1,7 @@
 // new: asks a few questions and writes a study that runs, with a comment at every key.
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/given_pictures.hpp"
 #include "app/made_folder.hpp"
 #include "app/new_study_template.hpp"
 #include "core/errors.hpp"
@@ -226,7 +227,8 @@ void try_pictures(NewArguments& arguments, const NewQuestion& question, bool typ
   std::string& folder = arguments.answers.at(question.option);
   while (!folder.empty()) {
     try {
-      return stimuli::try_photographs(import_options(arguments), progress_bar("reading"));
+      return naming_faults(
+          [&] { stimuli::try_photographs(import_options(arguments), progress_bar("reading")); });
     } catch (const stimuli::CropsDoNotFit& small) {
       if (arguments.yes) throw;
       std::fputs((one_line(small.what()) + "\n").c_str(), stderr);
@@ -289,8 +291,8 @@ Json generated_classes(const NewStudy& study, const std::string& ending, stimuli
 void import_pictures(const NewArguments& arguments, NewStudy& study) {
   stimuli::ImportOptions options = import_options(arguments);
   options.study = study.file;
-  const stimuli::ImportReport report =
-      stimuli::import_photographs(options, progress_bar("importing"));
+  const stimuli::ImportReport report = naming_faults(
+      [&] { return stimuli::import_photographs(options, progress_bar("importing")); });
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
   const Json imported = Json::parse(text_of(read_file(study.file)));
   study.classes = imported.at("classes");

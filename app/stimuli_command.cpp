@@ -94,11 +94,6 @@ std::string summary_text(const stimuli::ImportReport& report,
                         one.photographs, one.crops, one.feature_mm, one.mean_grey, one.rms_grey);
   }
   if (options.equalise != stimuli::LevelEqualising::none) text += "levels   before equalising\n";
-  if (!report.ignored.empty()) {
-    text += fmt::format(
-        "ignored  {}{}\n", one_line(report.ignored.front()),
-        report.ignored.size() > 1 ? fmt::format(" and {} more", report.ignored.size() - 1) : "");
-  }
   return text +
          fmt::format("plane    {:g} x {:g} mm, {:g} mm a pixel{}\nlicence  {}\n",
                      options.size_px * options.pitch_mm, options.size_px * options.pitch_mm,
@@ -110,24 +105,13 @@ std::string summary_text(const stimuli::ImportReport& report,
          fmt::format("pictures {}\nstudy    {}\n", report.pictures.string(), report.study.string());
 }
 
-/// Names every photograph that cannot be used.
-stimuli::ImportReport imported(const stimuli::ImportOptions& options) {
-  try {
-    return stimuli::import_photographs(options, progress_bar("importing"));
-  } catch (const stimuli::UnusablePhotographs& error) {
-    if (error.faults().size() > 1) {
-      for (const std::string& fault : error.faults()) spdlog::error("{}", fault);
-    }
-    throw;
-  }
-}
-
 int import_with(ImportArguments arguments) {
   take_resolution(arguments.pixels_per_mm, arguments.options);
   arguments.options.equalise = kEqualisings.at(arguments.equalise);
   arguments.options.protocol = arguments.protocol;
   arguments.options.methods = design::find_protocol(arguments.protocol)->least_methods();
-  const stimuli::ImportReport report = imported(arguments.options);
+  const stimuli::ImportReport report = naming_faults(
+      [&] { return stimuli::import_photographs(arguments.options, progress_bar("importing")); });
   if (!arguments.json) {
     for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
   }

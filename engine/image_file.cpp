@@ -6,7 +6,6 @@
 #include "engine/image_formats/image_format.hpp"
 #include "engine/pictures/colour_image.hpp"
 
-#include <bit>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -41,18 +40,20 @@ GreyImage read_kind(ByteView file, GreyScale& scale, ImageNotes& notes) {
 /// Refuses 16-bit samples that leave most of their range empty: nobody notices how few grey levels
 /// are left. A picture alone does not tell how many bits its camera has.
 void check_range(const GreyScale& scale) {
-  const std::uint32_t max = scale.max_wide();
-  const int used = std::bit_width(max);
-  const std::string sample = "a sample of " + std::to_string(max);
+  const WideSamples& samples = scale.wide();
+  const int used = samples.bits();
+  const std::string bits = std::to_string(used);
   if (scale.bits() != 0 && used > scale.bits()) {
-    throw ImageFault{"has " + sample + ", which takes " + std::to_string(used) + " bits",
-                     "give --bits " + std::to_string(used) + " or more"};
+    throw ImageFault{"has samples of " + bits + " bits", "give --bits " + bits + " or more"};
   }
-  if (scale.bits() != 0 || max == 0 || max >= kMinMaxWideSample) return;
+  const std::uint32_t limit = 1U << static_cast<unsigned>(used);
+  if (scale.bits() != 0 || used == 0 || limit > kMinMaxWideSample) return;
+  const std::uint64_t above = samples.above(used);
   throw ImageFault{
-      "uses only " + std::to_string(used) + " of its 16 bits (its largest sample is " +
-          std::to_string(max) + "), of which " +
-          std::to_string(to_8_bit(static_cast<std::uint16_t>(max)) + 1) +
+      "uses only " + bits + " of its 16 bits (" +
+          (above == 0 ? "no sample" : "only " + std::to_string(above) + " of its samples") +
+          " above " + std::to_string(limit - 1) + "), of which " +
+          std::to_string(to_8_bit(static_cast<std::uint16_t>(limit - 1)) + 1) +
           " grey levels would be left",
       "give --bits with the bits of its camera or scanner, for instance 12, or 16 if it is just "
       "dark; for a study, to `touchtrial stimuli import`"};
@@ -60,24 +61,38 @@ void check_range(const GreyScale& scale) {
 
 Picture decode_file(ByteView file, const SampleScale& samples) {
   if (file.empty()) throw ImageFault{"is empty", "copy or export it again"};
+  const auto share = [](std::uint64_t part, std::uint64_t all) {
+    return static_cast<double>(part) / static_cast<double>(all);
+  };
   Picture picture;
   GreyScale scale(samples);
-  ImageNotes found;
-  picture.grey = read_kind(file, scale, found);
-  check_range(scale);
   picture.notes = notes_of_image(file);
-  picture.notes.pictures = found.pictures;
-  picture.notes.heights = found.heights;
-  picture.notes.has_given_heights = found.has_given_heights;
-  picture.notes.cut_share = found.cut_share;
-  picture.notes.lacks_end = found.lacks_end;
-  picture.notes.transparent_share =
-      static_cast<double>(scale.transparent_pixels()) / static_cast<double>(picture.grey.size());
+  picture.grey = read_kind(file, scale, picture.notes);
+  check_range(scale);
+  const WideSamples& wide = scale.wide();
+  if (samples.bits != 0 && wide.count() > 0) {
+    picture.notes.cut_share = share(wide.above(samples.bits), wide.count());
+  }
+  picture.notes.transparent_share = share(scale.transparent_pixels(), picture.grey.size());
   return picture;
 }
 
 FileError error_about(const std::string& name, const std::string& what, const std::string& remedy) {
   return FileError(one_line(name + ": " + what + "; " + remedy));
+}
+
+/// What `decode` returns; its faults get the file's name.
+template <typename Decode>
+auto named(const std::string& name, const Decode& decode) {
+  try {
+    return decode();
+  } catch (const ImageFault& fault) {
+    throw error_about(name, fault.what, fault.remedy);
+  } catch (const std::bad_alloc&) {
+    throw error_about(name, "does not fit into memory", "crop or shrink it");
+  } catch (const std::length_error&) {
+    throw error_about(name, "does not fit into memory", "crop or shrink it");
+  }
 }
 
 }  // namespace
@@ -121,15 +136,16 @@ std::pair<int, int> size_of_image(const std::filesystem::path& path) {
 }
 
 Picture decode_picture(ByteView file, const std::string& name, const SampleScale& scale) {
-  try {
-    return decode_file(file, scale);
-  } catch (const ImageFault& fault) {
-    throw error_about(name, fault.what, fault.remedy);
-  } catch (const std::bad_alloc&) {
-    throw error_about(name, "does not fit into memory", "crop or shrink it");
-  } catch (const std::length_error&) {
-    throw error_about(name, "does not fit into memory", "crop or shrink it");
-  }
+  return named(name, [&] { return decode_file(file, scale); });
+}
+
+GreyImage opacity_of(ByteView file, const std::string& name) {
+  return named(name, [&] {
+    GreyScale scale{SampleScale{}};
+    scale.show_opacity();
+    ImageNotes unused;
+    return read_kind(file, scale, unused);
+  });
 }
 
 void write_png(const std::filesystem::path& path, const GreyImage& image) {

@@ -46,9 +46,9 @@ struct SampleScale {
 /// ignored: the samples count as they are stored.
 /// \throws FileError if the file is missing, truncated, not an image of a known kind, zero-sized or
 ///   of an unsupported sample type, if it has more than kMaxImagePixels pixels or a side of more
-///   than a million, if the decoder finds its data damaged, if all of its 16-bit samples are below
-///   kMinMaxWideSample but not 0 and `scale.bits` is 0, if one does not fit into `scale.bits`, or
-///   if a height is not finite
+///   than a million, if the decoder finds its data damaged, if its 16-bit samples are below
+///   kMinMaxWideSample but not 0 and `scale.bits` is 0, or do not fit into `scale.bits` (but for
+///   one in a thousand), or if a height is a gap
 /// Prints nothing, even if the decoder complains. Thread-safe. A file over 64 MiB is mapped, and
 /// must not become shorter meanwhile; its cost depends on the picture, not on the size of the file.
 [[nodiscard]] Picture read_picture(const std::filesystem::path& path,
@@ -69,6 +69,10 @@ struct SampleScale {
 /// \param name  stands for the path in messages
 [[nodiscard]] Picture decode_picture(ByteView file, const std::string& name,
                                      const SampleScale& scale = {});
+
+/// Where a picture is opaque: 255 there, and 0 elsewhere.
+/// \throws as decode_picture
+[[nodiscard]] GreyImage opacity_of(ByteView file, const std::string& name);
 
 /// Writes an 8-bit grey PNG. The same image gives the same bytes on one machine.
 /// \param image  at least 1 x 1

@@ -17,26 +17,17 @@ constexpr double kMmPerInch = 25.4;
 constexpr double kMmPerCm = 10.0;
 constexpr double kMmPerMetre = 1000.0;
 
-bool is_placeholder(double pixels_per_mm) {
-  constexpr std::array kDotsPerInch = {72.0, 96.0};
-  return std::ranges::any_of(
-      kDotsPerInch, [&](double dots) { return std::abs(pixels_per_mm * kMmPerInch - dots) < 0.1; });
+bool is_near(double pixels_per_mm, double dots_per_inch) {
+  return std::abs(pixels_per_mm * kMmPerInch - dots_per_inch) < 0.1;
 }
 
 std::optional<double> resolution(double x, double y, double unit_mm) {
   const bool is_square = std::abs(x - y) <= 0.01 * std::max(x, y);
   // A pixel below 1 um or above 100 mm is no measurement.
   if (!is_square || !(x / unit_mm >= 0.01) || !(x / unit_mm <= 1000.0)) return std::nullopt;
-  if (is_placeholder(x / unit_mm)) return std::nullopt;
+  // Programs write these when they do not know.
+  if (is_near(x / unit_mm, 72.0) || is_near(x / unit_mm, 96.0)) return std::nullopt;
   return x / unit_mm;
-}
-
-/// Cameras write one of these whatever they photograph, and programs that develop their pictures
-/// another.
-bool is_usual_of_cameras(double pixels_per_mm) {
-  constexpr std::array kDotsPerInch = {180.0, 240.0, 300.0, 350.0};
-  return std::ranges::any_of(
-      kDotsPerInch, [&](double dots) { return std::abs(pixels_per_mm * kMmPerInch - dots) < 0.1; });
 }
 
 /// Whether Exif notes have what only a camera knows.
@@ -63,10 +54,14 @@ Maker maker_of(ByteView file, const TiffDirectory& directory) {
   return is_named ? Maker::named : Maker::unknown;
 }
 
-/// A camera's resolution says nothing about the object.
+/// A camera's resolution says nothing about the object. Cameras, and programs that develop their
+/// pictures, write 180, 240 or 350 whatever it is, to which scanners are hardly ever set; and 300.
 void weigh_resolution(Maker maker, ImageNotes& notes) {
-  if (maker == Maker::unknown || !notes.pixels_per_mm) return;
-  if (maker == Maker::named && !is_usual_of_cameras(*notes.pixels_per_mm)) return;
+  if (!notes.pixels_per_mm) return;
+  const auto is = [&](double dots) { return is_near(*notes.pixels_per_mm, dots); };
+  const bool is_of_camera = maker == Maker::camera || is(180.0) || is(240.0) || is(350.0) ||
+                            (maker == Maker::named && is(300.0));
+  if (!is_of_camera) return;
   notes.camera_dpi = *notes.pixels_per_mm * kMmPerInch;
   notes.pixels_per_mm.reset();
 }
@@ -170,17 +165,11 @@ ImageNotes notes_of_image(ByteView file) {
   return notes;
 }
 
-namespace {
-
-/// "12 %", "0.3 %"
-std::string percent_of(double share) {
+std::string rounded(double number) {
   std::array<char, 32> text{};
-  const double percent = 100.0 * share;
-  std::snprintf(text.data(), text.size(), percent < 10.0 ? "%.2g %%" : "%.0f %%", percent);
+  std::snprintf(text.data(), text.size(), "%.3g", number);
   return text.data();
 }
-
-}  // namespace
 
 std::vector<std::string> remarks_on(const ImageNotes& notes) {
   std::vector<std::string> remarks;
@@ -190,18 +179,23 @@ std::vector<std::string> remarks_on(const ImageNotes& notes) {
         " pictures, and the first is used; save the one you want in a file of its own");
   }
   if (notes.transparent_share > 0.0) {
-    remarks.push_back(percent_of(notes.transparent_share) +
-                      " of its pixels are transparent to some degree and are darkened, whose edge "
-                      "can be felt; crop it to where it is opaque");
+    remarks.push_back(
+        rounded(100 * notes.transparent_share) +
+        " % of its pixels are transparent to some degree and are darkened, whose edge "
+        "can be felt; crop it to where it is opaque");
   }
   if (notes.heights && !notes.has_given_heights) {
     remarks.push_back("holds heights from " + number_text(notes.heights->first) + " to " +
                       number_text(notes.heights->second) +
                       "; import all pictures of a set with the same --heights");
   }
-  if (notes.cut_share > 0.0) {
-    remarks.push_back(percent_of(notes.cut_share) +
-                      " of its heights lie outside --heights and are cut off, down to " +
+  if (notes.cut_share > 0.0 && !notes.heights) {
+    remarks.push_back(rounded(100 * notes.cut_share) +
+                      " % of its samples take more than --bits and are cut off, as those of hot "
+                      "pixels are; if the picture has more bits, give them");
+  } else if (notes.cut_share > 0.0) {
+    remarks.push_back(rounded(100 * notes.cut_share) +
+                      " % of its heights lie outside --heights and are cut off, down to " +
                       number_text(notes.heights->first) + " and up to " +
                       number_text(notes.heights->second));
   }

@@ -18,7 +18,7 @@ struct ImageNotes {
   int orientation = 1;
   /// Of the photographed object. Nothing if the file states no resolution, different ones for the
   /// two axes, or 72 or 96 dots per inch, which programs write when they do not know it; and
-  /// nothing if a camera took the picture, which cannot know it.
+  /// nothing if a camera took the picture, which cannot know it, or for 180, 240 or 350.
   std::optional<double> pixels_per_mm;
   /// The dots per inch that a camera wrote; nothing if it is no camera's, or it wrote none.
   std::optional<double> camera_dpi;
@@ -30,13 +30,16 @@ struct ImageNotes {
   /// The lowest and the highest of a picture of heights, in its own unit.
   std::optional<std::pair<double, double>> heights;
   bool has_given_heights = false;  ///< whether the range was given
-  double cut_share = 0.0;          ///< of the heights that lie outside the range
+  double cut_share = 0.0;          ///< of the samples that lie outside the range or bits given
 };
 
 /// Reads the metadata. Damaged metadata counts as absent, so that the picture stays readable.
 /// \param file  all bytes of the file
 /// Thread-safe.
 [[nodiscard]] ImageNotes notes_of_image(ByteView file);
+
+/// A number with three digits, which are enough for advice.
+[[nodiscard]] std::string rounded(double number);
 
 /// What a person should know before the picture is used, each the rest of a sentence that starts
 /// with the file's name, with the remedy. Nothing about its resolution.

@@ -109,10 +109,14 @@ void check_pose(const device::falcon::Reply& reply) {
 
 void read_as_image(ByteView bytes) {
   accept_or_refuse([&] {
-    const GreyImage image = engine::decode_picture(bytes, "picture").grey;
+    const engine::Picture picture = engine::decode_picture(bytes, "picture");
+    const GreyImage& image = picture.grey;
     require(!image.empty(), "a picture has pixels");
     require(static_cast<std::int64_t>(image.size()) <= engine::kMaxImagePixels,
             "a picture is not huge");
+    if (picture.notes.transparent_share == 0.0) return;
+    const GreyImage opacity = engine::opacity_of(bytes, "picture");
+    require(std::ranges::count(opacity.samples(), 0) > 0, "a transparent pixel is known");
   });
 }
 

@@ -8,8 +8,11 @@
 #include "engine/image_notes.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -122,11 +125,44 @@ enum class Alpha {
   none,        ///< something else
 };
 
+/// How many samples of a scale of 0 to 65535 take how many bits.
+class WideSamples {
+ public:
+  void add(std::uint32_t sample) noexcept {
+    ++of_bits_[static_cast<std::size_t>(std::bit_width(sample))];
+  }
+  /// How many do not fit into so many bits.
+  [[nodiscard]] std::uint64_t above(int bits) const noexcept {
+    return std::accumulate(of_bits_.begin() + bits + 1, of_bits_.end(), std::uint64_t{0});
+  }
+  [[nodiscard]] std::uint64_t count() const noexcept { return of_bits_[0] + above(0); }
+  /// The bits that they take, but for one in a thousand at most: hot pixels of a camera take all.
+  [[nodiscard]] int bits() const noexcept {
+    int bits = 16;
+    while (bits > 0 && above(bits - 1) * 1000 <= count()) --bits;
+    return bits;
+  }
+
+ private:
+  std::array<std::uint64_t, 17> of_bits_{};
+};
+
 /// Makes 8-bit grey of the samples of one picture, and notes what that loses.
 class GreyScale {
  public:
   explicit GreyScale(const SampleScale& samples) noexcept
       : bits_(samples.bits), heights_(samples.heights) {}
+
+  /// From now on, opaque pixels are 255 and all others 0.
+  void show_opacity() noexcept { shows_opacity_ = true; }
+
+  std::uint32_t level_of(std::uint8_t sample) noexcept { return sample; }
+  std::uint32_t level_of(std::uint16_t sample) noexcept {
+    wide_.add(sample);
+    if (bits_ == 0) return to_8_bit(sample);
+    const std::uint32_t maximum = (1U << static_cast<unsigned>(bits_)) - 1U;
+    return to_8_bit(std::min<std::uint32_t>(sample, maximum), maximum);
+  }
 
   /// One pixel of 8- or 16-bit samples: grey, grey alpha, RGB or RGBA.
   template <typename Sample>
@@ -136,6 +172,7 @@ class GreyScale {
     // colours.
     std::uint32_t opacity = has_alpha ? to_8_bit(pixel[channels - 1]) : 255U;
     if (opacity < 255U) ++transparent_;
+    if (shows_opacity_) return opacity < 255U ? 0 : 255;
     if (alpha == Alpha::multiplied) opacity = 255U;
     const auto visible = [&](int channel) { return over_black(level_of(pixel[channel]), opacity); };
     if (channels <= 2) return static_cast<std::uint8_t>(visible(0));
@@ -152,32 +189,21 @@ class GreyScale {
     }
   }
 
-  /// Notes a sample of a scale of 0 to 65535.
-  void note_wide(std::uint32_t sample) noexcept { max_wide_ = std::max(max_wide_, sample); }
-
   /// In place of what was noted, where the samples were inverted first.
-  void set_max_wide(std::uint32_t sample) noexcept { max_wide_ = sample; }
+  void set_wide(const WideSamples& samples) noexcept { wide_ = samples; }
 
   [[nodiscard]] int bits() const noexcept { return bits_; }
   [[nodiscard]] const std::optional<std::pair<double, double>>& heights() const noexcept {
     return heights_;
   }
-  /// Of 16-bit samples; 0 if there are none.
-  [[nodiscard]] std::uint32_t max_wide() const noexcept { return max_wide_; }
+  [[nodiscard]] const WideSamples& wide() const noexcept { return wide_; }
   [[nodiscard]] std::uint64_t transparent_pixels() const noexcept { return transparent_; }
 
  private:
-  std::uint32_t level_of(std::uint8_t sample) noexcept { return sample; }
-  std::uint32_t level_of(std::uint16_t sample) noexcept {
-    note_wide(sample);
-    if (bits_ == 0) return to_8_bit(sample);
-    const std::uint32_t maximum = (1U << static_cast<unsigned>(bits_)) - 1U;
-    return to_8_bit(std::min<std::uint32_t>(sample, maximum), maximum);
-  }
-
   int bits_;
   std::optional<std::pair<double, double>> heights_;
-  std::uint32_t max_wide_ = 0;
+  WideSamples wide_;
+  bool shows_opacity_ = false;
   std::uint64_t transparent_ = 0;
 };
 

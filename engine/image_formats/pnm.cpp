@@ -84,7 +84,10 @@ std::uint32_t next_sample(Scanner& scanner, const Samples& samples, GreyScale& s
                          ", above its stated maximum of " + std::to_string(samples.maximum),
                      "export it again"};
   }
-  if (samples.maximum == kLargestMaximum) scale.note_wide(sample);
+  // A file of 12 bits may say so by its maximum, or leave it at 16 bits.
+  if (samples.maximum == kLargestMaximum) {
+    return scale.level_of(static_cast<std::uint16_t>(sample));
+  }
   return to_8_bit(sample, samples.maximum);
 }
 
@@ -103,16 +106,12 @@ GreyImage read_pnm(ByteView file, GreyScale& scale) {
   const std::uint32_t width = scanner.decimal();
   const std::uint32_t height = scanner.decimal();
   check_image_size(width, height);
-  Samples samples{kind == '2' || kind == '3', kind == '3' || kind == '6' ? 3U : 1U,
-                  scanner.decimal()};
+  const Samples samples{kind == '2' || kind == '3', kind == '3' || kind == '6' ? 3U : 1U,
+                        scanner.decimal()};
   if (samples.maximum == 0 || samples.maximum > kLargestMaximum) {
     throw ImageFault{
         "states a largest sample of " + std::to_string(samples.maximum) + ", outside 1 .. 65535",
         "export it again"};
-  }
-  // A file of 12 bits may say so by its maximum, or leave it at 16 bits.
-  if (scale.bits() != 0 && samples.maximum == kLargestMaximum) {
-    samples.maximum = (1U << static_cast<unsigned>(scale.bits())) - 1U;
   }
   scanner.end_of_header();
   if (samples.bytes(std::uint64_t{width} * height * samples.channels) > scanner.left()) {

@@ -1,3 +1,5 @@
+#include "core/strict_json.hpp"
+#include "core/text.hpp"
 #include "engine/image_file.hpp"
 #include "engine/image_formats/image_format.hpp"
 #include "engine/image_formats/tiff_directory.hpp"
@@ -10,6 +12,7 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -386,7 +389,7 @@ template <typename Sample>
 GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
                        Alpha alpha, GreyScale& scale) {
   GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
-  Sample lightest = 0;  // as stored, where white is 0
+  WideSamples stored;  // where white is 0
   read_rows<Sample>(tiff, source, layout, pieces, [&](std::span<Sample> row, int y, int x) {
     if (layout.photometric == PHOTOMETRIC_MINISWHITE) {
       // Before alpha is composited: the inversion concerns the colour only.
@@ -394,7 +397,7 @@ GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, c
                                                  ? (1U << static_cast<unsigned>(scale.bits())) - 1U
                                                  : ~0U);
       for (std::size_t at = 0; at < row.size(); at += layout.channels) {
-        lightest = std::max(lightest, row[at]);
+        stored.add(row[at]);
         row[at] = static_cast<Sample>(white - std::min(row[at], white));
       }
     }
@@ -403,23 +406,38 @@ GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, c
         image.row(y).subspan(static_cast<std::size_t>(x), row.size() / layout.channels));
   });
   if (sizeof(Sample) == 2 && layout.photometric == PHOTOMETRIC_MINISWHITE) {
-    scale.set_max_wide(lightest);
+    scale.set_wide(stored);
   }
   return image;
 }
 
+/// Refuses heights that stand for none: NaN, infinite, of a size that no specimen has, or what the
+/// file itself calls a gap, which programs write with six digits or more.
+template <typename Real>
+void refuse_gaps(std::span<const Real> heights, std::optional<double> gap) {
+  constexpr double kLargest = 1e30;
+  const double slack = gap ? 1e-6 * std::abs(*gap) : 0.0;
+  const auto is_gap = [&](double h) {
+    return !(std::abs(h) <= kLargest) || (gap && std::abs(h - *gap) <= slack);
+  };
+  const auto first = std::ranges::find_if(heights, is_gap);
+  if (first == heights.end()) return;
+  throw ImageFault{"has " + counted(std::ranges::count_if(heights, is_gap), "gap") + ", with " +
+                       number_text(*first) + " in place of a height",
+                   "fill the gaps of the scan, or crop it to where there are none, and export it "
+                   "again"};
+}
+
 /// Reads heights, and makes grey levels of the range that is given, or of their own.
+/// \param gap  the height that stands for none
 template <typename Real>
 GreyImage read_heights(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
-                       const GreyScale& scale, ImageNotes& notes) {
+                       std::optional<double> gap, const GreyScale& scale, ImageNotes& notes) {
   Plane<Real> heights(static_cast<int>(layout.height), static_cast<int>(layout.width));
   read_rows<Real>(tiff, source, layout, pieces, [&](std::span<Real> row, int y, int x) {
     std::ranges::copy(row, heights.row(y).begin() + x);
   });
-  if (!std::ranges::all_of(heights.samples(), [](Real h) { return std::isfinite(h); })) {
-    throw ImageFault{"has a height that is not a finite number",
-                     "fill the gaps of the scan, and export it again"};
-  }
+  refuse_gaps<Real>(heights.samples(), gap);
   const auto [lowest, highest] =
       std::minmax_element(heights.samples().begin(), heights.samples().end());
   notes.heights = {*lowest, *highest};
@@ -455,9 +473,10 @@ GreyImage read_tiff(ByteView file, GreyScale& scale, ImageNotes& notes) {
   require_same_view(tiff.get(), directory, layout);
   const Alpha alpha = alpha_rule(directory);
   if (layout.heights) {
+    const auto gap = number_in<double>(directory.text(TiffTag::gdal_no_data));
     return layout.bits == 32
-               ? read_heights<float>(tiff.get(), source, layout, pieces, scale, notes)
-               : read_heights<double>(tiff.get(), source, layout, pieces, scale, notes);
+               ? read_heights<float>(tiff.get(), source, layout, pieces, gap, scale, notes)
+               : read_heights<double>(tiff.get(), source, layout, pieces, gap, scale, notes);
   }
   if (layout.bits == 16) {
     return read_samples<std::uint16_t>(tiff.get(), source, layout, pieces, alpha, scale);

@@ -6,6 +6,7 @@ namespace touchtrial::engine {
 namespace {
 
 constexpr std::size_t kEntrySize = 12;
+constexpr std::uint32_t kAscii = 2;
 constexpr std::uint32_t kLong = 4;
 constexpr std::uint32_t kRational = 5;
 
@@ -48,20 +49,32 @@ bool TiffDirectory::is_reduced() const {
          value(TiffTag::subfile_type, 0) == kOldReduced;
 }
 
+ByteView TiffDirectory::data(std::size_t at, std::size_t size) const {
+  const std::size_t count = number_at(file_, at + 4, 4, order_);
+  const bool is_inline = size * count <= 4;
+  return bytes_at(file_, is_inline ? at + 8 : number_at(file_, at + 8, 4, order_), size * count);
+}
+
 std::vector<std::uint32_t> TiffDirectory::values(TiffTag tag) const {
   const auto entry = entries_.find(tag);
   if (entry == entries_.end()) return {};
   const std::size_t at = entry->second;
   const std::size_t size = size_of_type(number_at(file_, at + 2, 2, order_));
-  const std::size_t count = number_at(file_, at + 4, 4, order_);
-  const bool is_inline = size * count <= 4;
-  const std::size_t from = is_inline ? at + 8 : number_at(file_, at + 8, 4, order_);
-  const ByteView bytes = bytes_at(file_, from, size * count);
-  std::vector<std::uint32_t> values(size == 0 ? 0 : count);
+  const ByteView bytes = data(at, size);
+  std::vector<std::uint32_t> values(size == 0 ? 0 : bytes.size() / size);
   for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] = number_at(bytes, i * size, size, order_);
   }
   return values;
+}
+
+std::string TiffDirectory::text(TiffTag tag) const {
+  const auto entry = entries_.find(tag);
+  if (entry == entries_.end() || number_at(file_, entry->second + 2, 2, order_) != kAscii)
+    return {};
+  std::string text = text_of(data(entry->second, 1));
+  std::erase_if(text, [](char c) { return c == '\0' || c == ' '; });
+  return text;
 }
 
 std::uint32_t TiffDirectory::value(TiffTag tag, std::uint32_t otherwise) const {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace touchtrial::engine {
@@ -47,6 +48,7 @@ enum class TiffTag : std::uint32_t {
   time_of_exposure = 36867,
   focal_length = 37386,
   lens_model = 42036,
+  gdal_no_data = 42113,
 };
 
 /// The entries of one directory of a TIFF file.
@@ -60,6 +62,9 @@ class TiffDirectory {
   /// All values of an entry (BYTE, SHORT or LONG); none if it is absent or of another type.
   /// \throws ImageFault if they are truncated
   [[nodiscard]] std::vector<std::uint32_t> values(TiffTag tag) const;
+  /// The characters of an ASCII entry but for NUL and blanks; none if it is absent.
+  /// \throws ImageFault if they are truncated
+  [[nodiscard]] std::string text(TiffTag tag) const;
   /// The first value of an entry, or `otherwise`.
   [[nodiscard]] std::uint32_t value(TiffTag tag, std::uint32_t otherwise) const;
   /// The first value of a RATIONAL entry; nothing if it is absent, of another type, or if its
@@ -73,6 +78,9 @@ class TiffDirectory {
   [[nodiscard]] bool is_reduced() const;
 
  private:
+  /// The values of the entry at `at`, each of `size` bytes.
+  [[nodiscard]] ByteView data(std::size_t at, std::size_t size) const;
+
   ByteView file_;
   ByteOrder order_;
   std::size_t start_ = 0;

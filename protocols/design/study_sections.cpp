@@ -1,6 +1,7 @@
 /// \file The study file's "classes", "trials", "practice", "visits" and "groups".
 #include "protocols/design/study_sections.hpp"
 
+#include "core/labels.hpp"
 #include "core/text.hpp"
 
 #include <algorithm>
@@ -9,29 +10,12 @@
 namespace touchtrial::design {
 namespace {
 
-constexpr std::size_t kLongestLabel = 64;   // bytes
 constexpr std::size_t kLongestPath = 1024;  // bytes
 
 std::string read_label(const JsonValue& place) {
   const std::string& label = place.text();
-  if (label.empty()) place.refuse("is empty; give the class a label");
-  if (label.size() > kLongestLabel) {
-    place.refuse("has " + std::to_string(label.size()) + " bytes, must have at most " +
-                 std::to_string(kLongestLabel) + "; shorten it");
-  }
-  if (has_control_character(label)) place.refuse("has a control character; remove it");
-  if (label.front() == ' ' || label.back() == ' ') {
-    place.refuse("begins or ends with a blank; remove it");
-  }
-  if (is_read_as_missing(label)) {
-    place.refuse(in_quotes(label) +
-                 " is what other programs take for a missing or truth value; give another " +
-                 "name");
-  }
-  if (begins_like_formula(label)) {
-    place.refuse(in_quotes(label) +
-                 " begins like a formula; let it begin with a letter or a digit");
-  }
+  const std::string fault = fault_of_label(label);
+  if (!fault.empty()) place.refuse(fault + "; give another label");
   return label;
 }
 

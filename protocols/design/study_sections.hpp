@@ -69,9 +69,6 @@ inline constexpr auto kRegisteredVisitsNames =
 inline constexpr auto kSpendingNames = std::to_array<Named<Spending>>(
     {{"obrien-fleming", Spending::obrien_fleming}, {"pocock", Spending::pocock}});
 
-/// Whether a text contains a C0 character (line feeds and tabs included), DEL, or a C1 character.
-[[nodiscard]] bool has_control_character(std::string_view text);
-
 /// Reads one line.
 /// \param longest  maximum length, bytes
 /// \throws StudyError if the line is too long, is empty, begins or ends with a blank, or has a

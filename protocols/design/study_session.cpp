@@ -1,4 +1,5 @@
 /// \file The study file's "session": its texts, its questions, and its other settings.
+#include "core/labels.hpp"
 #include "protocols/design/languages.hpp"
 #include "protocols/design/study_sections.hpp"
 
@@ -138,18 +139,6 @@ void read_name(const JsonObject& object, std::string_view key, std::string& name
 }
 
 }  // namespace
-
-bool has_control_character(std::string_view text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto c = static_cast<unsigned char>(text[i]);
-    if (c < 0x20 || c == 0x7f) return true;
-    // C1 is 0xC2 0x80 .. 0xC2 0x9F in UTF-8.
-    const bool c1 =
-        c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
-    if (c1) return true;
-  }
-  return false;
-}
 
 std::string read_line(const JsonValue& place, std::size_t longest) {
   const std::string& line = place.text();

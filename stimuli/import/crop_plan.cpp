@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
+#include <utility>
 
 namespace touchtrial::stimuli {
 namespace {
@@ -95,6 +97,43 @@ void deal(std::vector<int>& shares, std::span<const int> room, int& left) {
 }
 
 }  // namespace
+
+PhotoPart opaque_part(const GreyImage& opacity, int least_px) {
+  PhotoPart best;
+  std::pair<int, std::int64_t> most{0, 0};
+  // How many opaque pixels end in this row, column by column; behind the last there are none.
+  std::vector<int> heights(static_cast<std::size_t>(opacity.width()) + 1);
+  for (int y = 0; y < opacity.height(); ++y) {
+    std::vector<std::pair<int, int>> rising;  // where a part may begin, and its height
+    for (int x = 0; x <= opacity.width(); ++x) {
+      int& height = heights[static_cast<std::size_t>(x)];
+      height = x < opacity.width() && opacity.at(y, x) != 0 ? height + 1 : 0;
+      int left = x;
+      while (!rising.empty() && rising.back().second >= height) {
+        const auto [from, high] = rising.back();
+        rising.pop_back();
+        left = from;
+        const std::pair value(std::min({high, x - from, least_px}),
+                              std::int64_t{high} * (x - from));
+        if (value <= most) continue;
+        most = value;
+        best = {from, y + 1 - high, {high, x - from}};
+      }
+      rising.emplace_back(left, height);
+    }
+  }
+  return best;
+}
+
+GreyImage cut(const GreyImage& image, const PhotoPart& part) {
+  GreyImage pixels(part.size_px.height_px, part.size_px.width_px);
+  for (int y = 0; y < pixels.height(); ++y) {
+    std::ranges::copy(
+        image.row(part.y + y).subspan(static_cast<std::size_t>(part.x), pixels.row(y).size()),
+        pixels.row(y).begin());
+  }
+  return pixels;
+}
 
 int separate_crops(PhotoSize photo, int side_px) {
   return (photo.height_px / side_px) * (photo.width_px / side_px);

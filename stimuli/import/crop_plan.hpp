@@ -1,6 +1,7 @@
 /// \file The places at which crops are cut. Private to stimuli/import.
 #pragma once
 
+#include "core/plane.hpp"
 #include "core/random.hpp"
 
 #include <span>
@@ -13,6 +14,21 @@ struct PhotoSize {
   int height_px = 0;
   int width_px = 0;
 };
+
+/// A rectangle of a photograph.
+struct PhotoPart {
+  int x = 0;
+  int y = 0;
+  PhotoSize size_px;
+};
+
+/// The part of a photograph without a pixel of 0: one of at least `least_px` by `least_px` if there
+/// is any, and of these the largest.
+/// \return no pixels if all are 0
+[[nodiscard]] PhotoPart opaque_part(const GreyImage& opacity, int least_px);
+
+/// The pixels of a part that lies within the image.
+[[nodiscard]] GreyImage cut(const GreyImage& image, const PhotoPart& part);
 
 /// The top-left corner of a square crop.
 struct CropPlace {

@@ -40,17 +40,6 @@ std::string study_name(const fs::path& study) {
   return name;
 }
 
-GreyImage cut(const GreyImage& photo, CropPlace place, int side_px) {
-  GreyImage crop(side_px, side_px);
-  for (int y = 0; y < side_px; ++y) {
-    const auto row =
-        photo.row(place.y + y)
-            .subspan(static_cast<std::size_t>(place.x), static_cast<std::size_t>(side_px));
-    std::ranges::copy(row, crop.row(y).begin());
-  }
-  return crop;
-}
-
 /// Finds photographs whose bytes or pixels equal those of an earlier one.
 class Duplicates {
  public:
@@ -119,25 +108,26 @@ class Import {
   /// Does all that reads.
   void try_out() {
     const PhotoFolder folder = surveyed();
-    const auto shares = plan_shares(classes_, options_);
+    const auto shares = plan_shares(classes_, small_, options_);
     cut_all({}, shares);
   }
 
   ImportReport run() {
     check_import(options_);
     PhotoFolder folder = surveyed();
-    const auto shares = plan_shares(classes_, options_);
+    const auto shares = plan_shares(classes_, small_, options_);
     Draft draft(options_.pictures, Draft::Kind::folder);
     cut_all(draft.path(), shares);
     equalise(draft.path());
-    finish(draft);
-    return report(std::move(folder.ignored), shares);
+    ImportReport result = report(std::move(folder.ignored), shares);
+    finish(draft, result.warnings);
+    return result;
   }
 
  private:
   PhotoFolder surveyed() {
     PhotoFolder folder = list_photographs(options_.photographs, options_.names);
-    check_classes(folder, options_);
+    if (folder.faults.empty()) check_classes(folder, options_);
     total_ = 0;
     for (const PhotoClass& one : folder.classes) total_ += 2 * static_cast<int>(one.files.size());
     survey(folder);
@@ -165,10 +155,19 @@ class Import {
     });
     Duplicates duplicates;
     for (std::size_t i = 0; i < files.size(); ++i) {
-      if (faults[i].empty()) faults[i] = duplicates.fault_of(photographs[i]);
+      if (!faults[i].empty()) continue;
+      faults[i] = duplicates.fault_of(photographs[i]);
+      const std::string fault = fault_of_size(photographs[i], sizes[i], options_);
+      if (!fault.empty()) small_.push_back(fault);
     }
     std::erase(faults, "");
-    if (!faults.empty()) throw UnusablePhotographs(options_.photographs, std::move(faults));
+    faults.insert(faults.begin(), folder.faults.begin(), folder.faults.end());
+    if (!faults.empty()) {
+      for (const std::string& fault : small_) {
+        faults.push_back(fault + "; give a smaller --size, or a larger photograph");
+      }
+      throw UnusablePhotographs(options_.photographs, std::move(faults));
+    }
     std::size_t i = 0;
     for (const PhotoClass& one : folder.classes) {
       SizedClass sized{one.label, one.files, {}};
@@ -212,13 +211,17 @@ class Import {
       }
     }
     record_.pictures.resize(draft.empty() ? 0 : pictures);
+    std::vector<std::string> faults(cuts.size());
     all_in_parallel(cuts.size(), [&](std::size_t i) {
-      if (cuts[i].count > 0) cut_photograph(draft, cuts[i]);
+      if (cuts[i].count > 0) faults[i] = cut_photograph(draft, cuts[i]);
       note_done();
     });
+    std::erase(faults, "");
+    if (!faults.empty()) throw UnusablePhotographs(options_.photographs, std::move(faults));
   }
 
-  void cut_photograph(const fs::path& draft, const Cut& wanted) {
+  /// \return what is wrong; empty if nothing is
+  std::string cut_photograph(const fs::path& draft, const Cut& wanted) {
     const Photograph photo = read_photograph(wanted.file, options_);
     if (photo.sha256 != record_.photographs[wanted.photograph].photo.sha256) {
       throw FileError(one_line(wanted.file.string()) +
@@ -230,7 +233,8 @@ class Import {
     const PhotoSize size{photo.image.height(), photo.image.width()};
     const auto places = crop_places(size, options_.size_px, wanted.count, random);
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const GreyImage crop = cut(photo.image, places[i], options_.size_px);
+      const GreyImage crop =
+          cut(photo.image, {places[i].x, places[i].y, {options_.size_px, options_.size_px}});
       ImportedPicture picture;
       picture.label = wanted.of_class->label;
       picture.file =
@@ -239,15 +243,15 @@ class Import {
       picture.place = places[i];
       picture.levels = levels_of(crop);
       if (picture.levels.rms_grey == 0.0) {
-        throw FileError(one_line(photo.path.string()) +
-                        ": has only one grey level in the crop at x " +
-                        std::to_string(places[i].x) + ", y " + std::to_string(places[i].y) +
-                        ", where nothing can be felt; trim the photograph, or remove it");
+        return one_line(photo.path.string()) + ": has only one grey level in the crop at x " +
+               std::to_string(places[i].x) + ", y " + std::to_string(places[i].y) +
+               ", where nothing can be felt; trim the photograph, or remove it";
       }
       if (draft.empty()) continue;
       put_down(draft, picture, crop);
       record_.pictures[wanted.first_picture + i] = std::move(picture);
     }
+    return {};
   }
 
   static void put_down(const fs::path& draft, ImportedPicture& picture, const GreyImage& pixels) {
@@ -271,8 +275,8 @@ class Import {
   }
 
   /// Writes the study last; if that fails, the earlier pictures return.
-  void finish(Draft& draft) {
-    write_output(draft.path() / kStimulusManifestFile, import_manifest(record_, options_));
+  void finish(Draft& draft, const std::vector<std::string>& remarks) {
+    write_output(draft.path() / kStimulusManifestFile, import_manifest(record_, options_, remarks));
     const fs::path from = fs::absolute(options_.study).lexically_normal().parent_path();
     const fs::path pictures =
         fs::absolute(options_.pictures).lexically_normal().lexically_relative(from);
@@ -286,14 +290,13 @@ class Import {
   ImportReport report(std::vector<std::string> ignored,
                       const std::vector<std::vector<int>>& shares) {
     ImportReport report;
-    report.study_name = study_name(options_.study);
     report.study = options_.study;
     report.pictures = options_.pictures;
     report.ignored = std::move(ignored);
     for (std::size_t c = 0; c < classes_.size(); ++c) {
       report.classes.push_back(summary_of(classes_[c], shares[c], record_, options_));
     }
-    report.warnings = import_warnings(report.classes, record_, options_);
+    report.warnings = import_warnings(report, record_, options_);
     return report;
   }
 
@@ -306,6 +309,7 @@ class Import {
   ImportOptions options_;
   const ImportProgress& progress_;
   std::vector<SizedClass> classes_;
+  std::vector<std::string> small_;  ///< what is wrong with photographs smaller than a crop
   ImportRecord record_;
   std::mutex mutex_;  ///< guards done_, and the progress
   int done_ = 0;
@@ -314,11 +318,11 @@ class Import {
 
 }  // namespace
 
-UnusablePhotographs::UnusablePhotographs(const fs::path& folder, std::vector<std::string> faults)
-    : FileError(faults.size() == 1
-                    ? faults.front()
-                    : one_line(folder.string()) + ": " + std::to_string(faults.size()) +
-                          " photographs cannot be used; mend or remove them"),
+UnusablePhotographs::UnusablePhotographs(const fs::path& folder, std::vector<std::string> faults,
+                                         const std::string& remedy)
+    : FileError(faults.size() == 1 ? faults.front()
+                                   : one_line(folder.string()) + ": has " +
+                                         std::to_string(faults.size()) + " faults; " + remedy),
       faults_(std::move(faults)) {}
 
 fs::path default_pictures_folder(const fs::path& study) {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::stimuli {
@@ -54,7 +55,6 @@ struct ImportedClass {
 };
 
 struct ImportReport {
-  std::string study_name;
   std::filesystem::path study;
   std::filesystem::path pictures;
   std::vector<ImportedClass> classes;
@@ -68,11 +68,13 @@ struct ImportReport {
 /// Called after each photograph is read, for a progress bar; each is read twice.
 using ImportProgress = std::function<void(int done, int total)>;
 
-/// Photographs that cannot be used.
+/// Photographs, or classes of them, that cannot be used.
 class UnusablePhotographs : public FileError {
  public:
-  /// \param faults  one line each, of which there is at least one
-  UnusablePhotographs(const std::filesystem::path& folder, std::vector<std::string> faults);
+  /// \param faults  one line each, of which there is at least one, with their remedies
+  /// \param remedy  of several together
+  UnusablePhotographs(const std::filesystem::path& folder, std::vector<std::string> faults,
+                      const std::string& remedy = "mend or remove what they name");
 
   [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }
 
@@ -80,11 +82,12 @@ class UnusablePhotographs : public FileError {
   std::vector<std::string> faults_;
 };
 
-/// The photographs are too small or too few for the crops. The message names numbers that would do.
-class CropsDoNotFit : public FileError {
+/// The photographs are too small or too few for the crops. The faults name numbers that would do.
+class CropsDoNotFit : public UnusablePhotographs {
  public:
-  CropsDoNotFit(const std::string& what, int crops, int size_px)
-      : FileError(what), crops_(crops), size_px_(size_px) {}
+  CropsDoNotFit(const std::filesystem::path& folder, std::vector<std::string> faults,
+                const std::string& remedy, int crops, int size_px)
+      : UnusablePhotographs(folder, std::move(faults), remedy), crops_(crops), size_px_(size_px) {}
 
   /// How many crops of the wanted size there are of each class; 0: none.
   [[nodiscard]] int crops() const noexcept { return crops_; }
@@ -108,9 +111,9 @@ void try_photographs(const ImportOptions& options, const ImportProgress& progres
 /// \throws UsageError if options are out of range or contradict each other, or an output exists
 ///   already
 /// \throws CropsDoNotFit if photographs are too small or too few
-/// \throws UnusablePhotographs with all photographs that cannot be read, equal another or have an
-///   impossible name
-/// \throws FileError if the folder or a label cannot be used, or an output cannot be written
+/// \throws UnusablePhotographs with all photographs that cannot be read, equal another, are too
+///   small or have an impossible name; or else with all of which a crop has one grey level
+/// \throws FileError if the folder cannot be used, or an output cannot be written
 ImportReport import_photographs(const ImportOptions& options, const ImportProgress& progress = {});
 
 }  // namespace touchtrial::stimuli

@@ -2,12 +2,12 @@
 
 #include "core/draft.hpp"
 #include "core/errors.hpp"
+#include "core/labels.hpp"
 #include "core/strict_json.hpp"
+#include "core/text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <system_error>
 
@@ -15,6 +15,7 @@ namespace touchtrial::stimuli {
 namespace {
 
 namespace fs = std::filesystem;
+using engine::rounded;
 
 // The limits of study files.
 constexpr std::size_t kMostClasses = 64;
@@ -106,7 +107,8 @@ bool all_fit(const std::vector<SizedClass>& classes, int side_px, int crops) {
 }
 
 /// Refuses with the remedy in numbers: fewer crops of this size, or smaller crops.
-[[noreturn]] void refuse_crops(const std::string& what, const std::vector<SizedClass>& classes,
+[[noreturn]] void refuse_crops(std::vector<std::string> faults,
+                               const std::vector<SizedClass>& classes,
                                const ImportOptions& options) {
   int crops = options.crops;
   while (crops > 0 && !all_fit(classes, options.size_px, crops)) --crops;
@@ -115,29 +117,10 @@ bool all_fit(const std::vector<SizedClass>& classes, int side_px, int crops) {
   std::string remedy = "give ";
   if (crops > 0) remedy += "--crops " + std::to_string(crops) + ", ";
   if (side_px >= kMinCropSizePx) remedy += "--size " + std::to_string(side_px) + ", ";
-  throw CropsDoNotFit(what + "; " + remedy + "or more or larger photographs", crops,
+  remedy += "or more or larger photographs";
+  for (std::string& fault : faults) fault += "; " + remedy;
+  throw CropsDoNotFit(options.photographs, std::move(faults), remedy, crops,
                       side_px >= kMinCropSizePx ? side_px : 0);
-}
-
-void check_photo_sizes(const SizedClass& one, const std::vector<SizedClass>& classes,
-                       const ImportOptions& options) {
-  for (std::size_t i = 0; i < one.files.size(); ++i) {
-    const PhotoSize& size = one.sizes[i];
-    if (std::min(size.height_px, size.width_px) >= options.size_px) continue;
-    const bool resampled = options.pixels_per_mm_of_files || options.pixels_per_mm.has_value();
-    refuse_crops(one_line(one.files[i].string()) + ": has " + std::to_string(size.width_px) +
-                     " x " + std::to_string(size.height_px) + " pixels" +
-                     (resampled ? " after resampling" : "") + ", too few for a crop of " +
-                     times(options.size_px),
-                 classes, options);
-  }
-}
-
-/// With three digits, which are enough for advice.
-std::string rounded(double number) {
-  std::array<char, 32> text{};
-  const int length = std::snprintf(text.data(), text.size(), "%.3g", number);
-  return {text.data(), static_cast<std::size_t>(length)};
 }
 
 std::string scale_warning_of(const ImportedClass& one, const ImportOptions& options) {
@@ -157,45 +140,74 @@ std::string scale_warning_of(const ImportedClass& one, const ImportOptions& opti
   return {};
 }
 
-/// The photographs that one warning is about: the first by name, the others by number.
-class Counted {
- public:
-  void add(const std::string& name) {
-    if (count_++ == 0) first_ = name;
-  }
-  [[nodiscard]] bool any() const { return count_ > 0; }
-  [[nodiscard]] std::string text() const {
-    return first_ + (count_ > 1 ? " and " + std::to_string(count_ - 1) + " more" : "");
-  }
-
- private:
-  int count_ = 0;
-  std::string first_;
-};
+/// The photographs or labels that one warning is about: the first by name, the others by number.
+std::string first_of(const std::vector<std::string>& names) {
+  const std::size_t more = names.size() - 1;
+  return one_line(names.front()) + (more > 0 ? " and " + std::to_string(more) + " more" : "");
+}
 
 void add_resolution_warnings(const ImportRecord& record, const ImportOptions& options,
                              std::vector<std::string>& warnings) {
-  Counted enlarged;
-  Counted unused;
+  const bool is_given = options.pixels_per_mm || options.pixels_per_mm_of_files;
+  std::vector<std::string> enlarged;
+  std::vector<std::string> of_camera;
+  std::vector<std::string> unused;
   double magnified = 0.0;
   for (const ImportedPhotograph& photograph : record.photographs) {
     const Photograph& photo = photograph.photo;
-    if (photo.scale > 1.0) enlarged.add(photograph.file);
-    const bool given = options.pixels_per_mm || options.pixels_per_mm_of_files;
-    if (given || !photo.notes.pixels_per_mm) continue;
-    if (!unused.any()) magnified = *photo.notes.pixels_per_mm * options.pitch_mm;
-    unused.add(photograph.file);
+    if (photo.scale > 1.0) enlarged.push_back(photograph.file);
+    if (!is_given && photo.notes.camera_dpi) of_camera.push_back(photograph.file);
+    if (is_given || !photo.notes.pixels_per_mm) continue;
+    if (unused.empty()) magnified = *photo.notes.pixels_per_mm * options.pitch_mm;
+    unused.push_back(photograph.file);
   }
-  if (enlarged.any()) {
-    warnings.push_back(one_line(enlarged.text()) +
+  if (!enlarged.empty()) {
+    warnings.push_back(first_of(enlarged) +
                        ": enlarged to the pitch, which adds no detail; give photographs of more "
                        "pixels, or a larger --pitch-mm");
   }
-  if (unused.any()) {
-    warnings.push_back(
-        one_line(unused.text()) + ": the file states its resolution, by which the crops feel " +
-        rounded(magnified) + " times life-size; give --pixels-per-mm file for life-size");
+  if (!of_camera.empty()) {
+    warnings.push_back(first_of(of_camera) +
+                       ": the resolution in the file is what cameras write, and says nothing of "
+                       "the object; for life-size, photograph a ruler, and give --pixels-per-mm");
   }
+  if (!unused.empty()) {
+    warnings.push_back(first_of(unused) +
+                       ": the file states its resolution; if that is of the object, as a "
+                       "scanner's is, the crops feel " +
+                       rounded(magnified) +
+                       " times life-size; give --pixels-per-mm file for life-size");
+  }
+}
+
+/// Crops do not lie where a photograph is transparent.
+std::vector<std::string> remarks_of(const Photograph& photo) {
+  engine::ImageNotes notes = photo.notes;
+  notes.transparent_share = 0.0;
+  std::vector<std::string> remarks = engine::remarks_on(notes);
+  if (photo.opaque) {
+    remarks.push_back("is transparent in places; crops come from its opaque " +
+                      std::to_string(photo.opaque->size_px.width_px) + " x " +
+                      std::to_string(photo.opaque->size_px.height_px) + " pixels at x " +
+                      std::to_string(photo.opaque->x) + ", y " + std::to_string(photo.opaque->y) +
+                      "; for crops from elsewhere, fill its background, and export it again");
+  }
+  return remarks;
+}
+
+/// Whole words of two alphabets can look alike, too.
+void warn_of_alphabets(const std::vector<ImportedClass>& classes,
+                       std::vector<std::string>& warnings) {
+  std::vector<std::string> latin;
+  std::vector<std::string> other;
+  for (const ImportedClass& one : classes) {
+    const Alphabets alphabets = alphabets_of(one.label);
+    if (alphabets.latin) latin.push_back(in_quotes(one.label));
+    if (alphabets.other) other.push_back(in_quotes(one.label));
+  }
+  if (latin.empty() || other.empty()) return;
+  warnings.push_back("labels have Latin letters (" + first_of(latin) + ") and others (" +
+                     first_of(other) + "); look whether any two look alike, and rename one");
 }
 
 }  // namespace
@@ -224,22 +236,32 @@ void check_classes(const PhotoFolder& folder, const ImportOptions& options) {
   }
 }
 
+std::string fault_of_size(const Photograph& photo, PhotoSize size, const ImportOptions& options) {
+  if (std::min(size.height_px, size.width_px) >= options.size_px) return {};
+  return one_line(photo.path.string()) + ": has " + std::to_string(size.width_px) + " x " +
+         std::to_string(size.height_px) + " pixels" + (photo.opaque ? " where it is opaque" : "") +
+         (photo.scale != 1.0 ? " after resampling" : "") + ", too few for a crop of " +
+         times(options.size_px);
+}
+
 std::vector<std::vector<int>> plan_shares(const std::vector<SizedClass>& classes,
+                                          std::vector<std::string> small,
                                           const ImportOptions& options) {
-  for (const SizedClass& one : classes) check_photo_sizes(one, classes, options);
+  if (!small.empty()) refuse_crops(std::move(small), classes, options);
   std::vector<std::vector<int>> shares;
+  std::vector<std::string> faults;
   for (const SizedClass& one : classes) {
     shares.push_back(shared_out(one.sizes, options.size_px, options.crops));
     if (!shares.back().empty()) continue;
     const int room = std::accumulate(
         one.sizes.begin(), one.sizes.end(), 0,
         [&](int sum, PhotoSize size) { return sum + overlapping_crops(size, options.size_px); });
-    refuse_crops(one_line(options.photographs.string()) + ": class \"" + one.label + "\" has " +
-                     std::to_string(one.files.size()) + " photograph(s), which give " +
-                     std::to_string(room) + " crop(s) of " + times(options.size_px) +
-                     " that share at most half their side, not " + std::to_string(options.crops),
-                 classes, options);
+    faults.push_back(one_line(options.photographs.string()) + ": class \"" + one.label + "\" has " +
+                     counted(static_cast<std::int64_t>(one.files.size()), "photograph") +
+                     ", with room for " + counted(room, "crop") + " of " + times(options.size_px) +
+                     " that share at most half their side, not " + std::to_string(options.crops));
   }
+  if (!faults.empty()) refuse_crops(std::move(faults), classes, options);
   return shares;
 }
 
@@ -263,16 +285,22 @@ ImportedClass summary_of(const SizedClass& one, const std::vector<int>& shares,
   return summary;
 }
 
-std::vector<std::string> import_warnings(const std::vector<ImportedClass>& classes,
-                                         const ImportRecord& record, const ImportOptions& options) {
+std::vector<std::string> import_warnings(const ImportReport& report, const ImportRecord& record,
+                                         const ImportOptions& options) {
   std::vector<std::string> warnings;
+  if (!report.ignored.empty()) {
+    warnings.push_back(first_of(report.ignored) +
+                       ": ignored, as it neither begins nor ends like a picture; convert it to "
+                       "PNG if it is one");
+  }
   for (const ImportedPhotograph& photograph : record.photographs) {
-    for (const std::string& remark : engine::remarks_on(photograph.photo.notes)) {
+    for (const std::string& remark : remarks_of(photograph.photo)) {
       warnings.push_back(one_line(photograph.file + ": " + remark));
     }
   }
+  warn_of_alphabets(report.classes, warnings);
   add_resolution_warnings(record, options, warnings);
-  for (const ImportedClass& one : classes) {
+  for (const ImportedClass& one : report.classes) {
     if (one.overlapping) {
       warnings.push_back("class \"" + one.label +
                          "\": some crops overlap, by up to half their side; larger or more "

@@ -29,9 +29,15 @@ struct SizedClass {
   std::vector<PhotoSize> sizes;
 };
 
+/// What is wrong with a photograph that is smaller than a crop, without a remedy; else empty.
+[[nodiscard]] std::string fault_of_size(const Photograph& photo, PhotoSize size,
+                                        const ImportOptions& options);
+
 /// The number of crops of each photograph of each class.
-/// \throws CropsDoNotFit if a photograph is smaller than a crop, or a class gives too few crops
+/// \param small  the faults of photographs that are smaller than a crop
+/// \throws CropsDoNotFit if there are such, or classes give too few crops
 [[nodiscard]] std::vector<std::vector<int>> plan_shares(const std::vector<SizedClass>& classes,
+                                                        std::vector<std::string> small,
                                                         const ImportOptions& options);
 
 /// The class's part of the report.
@@ -39,8 +45,9 @@ struct SizedClass {
 [[nodiscard]] ImportedClass summary_of(const SizedClass& one, const std::vector<int>& shares,
                                        const ImportRecord& record, const ImportOptions& options);
 
+/// \param report  with its classes and ignored files
 /// \return warnings, one line each
-[[nodiscard]] std::vector<std::string> import_warnings(const std::vector<ImportedClass>& classes,
+[[nodiscard]] std::vector<std::string> import_warnings(const ImportReport& report,
                                                        const ImportRecord& record,
                                                        const ImportOptions& options);
 

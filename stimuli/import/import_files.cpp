@@ -32,6 +32,13 @@ Json or_null(const std::string& text) {
   return text.empty() ? Json() : Json(text);
 }
 
+Json part_json(const PhotoPart& part) {
+  return {{"x", part.x},
+          {"y", part.y},
+          {"width", part.size_px.width_px},
+          {"height", part.size_px.height_px}};
+}
+
 Json to_json(const ImportedPhotograph& photograph) {
   const Photograph& photo = photograph.photo;
   return {{"file", photograph.file},
@@ -44,7 +51,9 @@ Json to_json(const ImportedPhotograph& photograph) {
           {"camera_dpi", or_null(photo.notes.camera_dpi)},
           {"pictures", photo.notes.pictures},
           {"transparent_share", photo.notes.transparent_share},
+          {"opaque", photo.opaque ? part_json(*photo.opaque) : Json()},
           {"lacks_end", photo.notes.lacks_end},
+          {"cut_share", photo.notes.cut_share},
           {"heights", photo.notes.heights
                           ? Json::array({photo.notes.heights->first, photo.notes.heights->second})
                           : Json()},
@@ -53,20 +62,17 @@ Json to_json(const ImportedPhotograph& photograph) {
 
 Json to_json(const ImportedPicture& picture, const ImportRecord& record,
              const ImportOptions& options) {
-  return {{"label", picture.label},
-          {"file", picture.file},
-          {"photograph", record.photographs[picture.photograph].file},
-          {"crop",
-           {{"x", picture.place.x},
-            {"y", picture.place.y},
-            {"width", options.size_px},
-            {"height", options.size_px}}},
-          {"mean_grey", picture.levels.mean_grey},
-          {"rms_grey", picture.levels.rms_grey},
-          {"feature_mm", picture.levels.feature_px * options.pitch_mm},
-          {"clipped_share", picture.clipped_share},
-          {"sha256", to_hex(picture.sha256)},
-          {"pixels_sha256", to_hex(picture.pixels_sha256)}};
+  return {
+      {"label", picture.label},
+      {"file", picture.file},
+      {"photograph", record.photographs[picture.photograph].file},
+      {"crop", part_json({picture.place.x, picture.place.y, {options.size_px, options.size_px}})},
+      {"mean_grey", picture.levels.mean_grey},
+      {"rms_grey", picture.levels.rms_grey},
+      {"feature_mm", picture.levels.feature_px * options.pitch_mm},
+      {"clipped_share", picture.clipped_share},
+      {"sha256", to_hex(picture.sha256)},
+      {"pixels_sha256", to_hex(picture.pixels_sha256)}};
 }
 
 /// The seed of every participant's schedule; other pictures give other schedules.
@@ -112,7 +118,8 @@ Json classes_of(const ImportRecord& record, const std::filesystem::path& folder)
 
 }  // namespace
 
-std::string import_manifest(const ImportRecord& record, const ImportOptions& options) {
+std::string import_manifest(const ImportRecord& record, const ImportOptions& options,
+                            const std::vector<std::string>& remarks) {
   Json json = {{"format", kImportFormat},
                {"version", kImportVersion},
                {"program_version", program_version()},
@@ -126,6 +133,7 @@ std::string import_manifest(const ImportRecord& record, const ImportOptions& opt
                {"equalise", name_of(options.equalise)},
                {"equal_mean_grey", or_null(record.equal.mean_grey)},
                {"equal_rms_grey", or_null(record.equal.rms_grey)},
+               {"remarks", remarks},
                {"photographs", Json::array()},
                {"pictures", Json::array()}};
   if (options.pixels_per_mm_of_files) json["pixels_per_mm"] = "file";

@@ -43,7 +43,9 @@ struct ImportRecord {
 };
 
 /// The text of manifest.json.
-[[nodiscard]] std::string import_manifest(const ImportRecord& record, const ImportOptions& options);
+/// \param remarks  on the photographs and what became of them, as they were printed
+[[nodiscard]] std::string import_manifest(const ImportRecord& record, const ImportOptions& options,
+                                          const std::vector<std::string>& remarks);
 
 /// The text of the study file.
 /// \param name  of the study, valid in study files

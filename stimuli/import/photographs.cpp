@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/labels.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "engine/image_file.hpp"
@@ -17,14 +18,10 @@
 #include <string_view>
 #include <system_error>
 
-#include <nlohmann/json.hpp>
-
 namespace touchtrial::stimuli {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kLongestLabel = 64;  // bytes, as in study files
 
 /// Endings of photographs, including those that this program cannot read: such files are refused by
 /// name rather than ignored.
@@ -86,84 +83,67 @@ Listing list(const fs::path& folder) {
   return listing;
 }
 
-/// Applies the rules of study files; a message names the file or folder that breaks them.
-void check_label(const std::string& label, const fs::path& origin) {
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  const bool has_c1 = [&] {
-    for (std::size_t i = 0; i + 1 < label.size(); ++i) {
-      if (label[i] == '\xc2' && static_cast<unsigned char>(label[i + 1]) < 0xa0) return true;
-    }
-    return false;
-  }();
-  if (!is_utf8(label)) refuse(origin, "its name is not UTF-8 and cannot be a label; rename it");
-  if (has_c1 || std::ranges::any_of(label, is_control)) {
-    refuse(origin, "its name has a control character and cannot be a label; rename it");
-  }
-  if (label.front() == ' ' || label.back() == ' ') {
-    refuse(origin, "its name begins or ends with a blank and cannot be a label; rename it");
-  }
-  if (is_read_as_missing(label) || begins_like_formula(label)) {
-    refuse(origin,
-           "its name is what other programs take for a missing value or a formula, and "
-           "cannot be a label; rename it");
-  }
-  if (label.size() > kLongestLabel) {
-    refuse(origin, "its name has more than " + std::to_string(kLongestLabel) +
-                       " bytes and cannot be a label; shorten it");
-  }
-}
-
 struct NaturalOrder {
   bool operator()(const std::string& a, const std::string& b) const {
     return naturally_before(a, b);
   }
 };
 
-/// Collects classes and refuses labels that look alike.
+/// Collects classes, and what is wrong with names.
 class Classes {
  public:
+  explicit Classes(PhotoFolder& folder) : folder_(folder) {}
+
   void add(const std::string& label, const fs::path& origin, std::vector<fs::path> files) {
-    check_label(label, origin);
+    for (const fs::path& file : files) {
+      const bool is_told = file == origin && !is_utf8(label);
+      if (!is_told && !is_utf8(file.filename().string())) {
+        refuse(file, "its name is not UTF-8; rename it");
+      }
+    }
+    const std::string fault = fault_of_label(label);
     const auto [other, is_new] = origins_.emplace(skeleton_of(label), origin);
-    if (!is_new) {
+    if (!fault.empty()) {
+      refuse(origin, "its name " + fault + " and cannot be a label; rename it");
+    } else if (!is_new) {
       refuse(origin, "would be the class \"" + label + "\", which looks like that of " +
                          other->second.filename().string() + "; rename one, or put both into a " +
                          "folder of the class's name");
     }
-    classes_.push_back({label, std::move(files)});
+    folder_.classes.push_back({label, std::move(files)});
   }
-  std::vector<PhotoClass> take() { return std::move(classes_); }
+  void refuse(const fs::path& origin, const std::string& what) {
+    folder_.faults.push_back(one_line(origin.string() + ": " + what));
+  }
 
  private:
+  PhotoFolder& folder_;
   std::map<std::string, fs::path> origins_;
-  std::vector<PhotoClass> classes_;
 };
 
-std::vector<PhotoClass> classes_of_folders(const Listing& listing,
-                                           std::vector<std::string>& ignored) {
-  Classes classes;
+void add_folders(const Listing& listing, PhotoFolder& result) {
+  Classes classes(result);
   for (const fs::path& folder : listing.folders) {
     Listing inside = list(folder);
-    if (!inside.folders.empty()) {
-      refuse(inside.folders.front(),
-             "is a folder within a class's folder; put the photographs of "
-             "a class into one folder");
+    for (const fs::path& deeper : inside.folders) {
+      classes.refuse(deeper,
+                     "is a folder within a class's folder; put the photographs of a class into "
+                     "one folder");
     }
-    if (inside.pictures.empty()) {
-      refuse(folder, "holds no photograph; add some, or remove the folder");
+    if (inside.pictures.empty() && inside.folders.empty()) {
+      classes.refuse(folder, "holds no photograph; add some, or remove the folder");
     }
     for (const std::string& other : inside.others) {
-      ignored.push_back(folder.filename().string() + "/" + other);
+      result.ignored.push_back(folder.filename().string() + "/" + other);
     }
     classes.add(folder.filename().string(), folder, std::move(inside.pictures));
   }
-  return classes.take();
-}
-
-std::vector<PhotoClass> classes_of_files(const Listing& listing) {
-  Classes classes;
-  for (const fs::path& file : listing.pictures) classes.add(file.stem().string(), file, {file});
-  return classes.take();
+  if (listing.pictures.empty()) return;
+  const std::size_t more = listing.pictures.size() - 1;
+  classes.refuse(listing.pictures.front(),
+                 "lies beside folders" +
+                     (more > 0 ? ", and so do " + std::to_string(more) + " more" : "") +
+                     "; give a folder of class folders, or one of photographs alone");
 }
 
 /// The regular expression of a pattern of names, whose only group is the class.
@@ -194,29 +174,30 @@ std::regex expression_of(const std::string& names) {
   return std::regex(expression);
 }
 
-/// The files of an album by the classes in their names.
-std::vector<PhotoClass> classes_by_names(const Listing& listing, const std::string& names,
-                                         const fs::path& folder) {
+/// The files of an album by the classes in their names, or their stems.
+void add_files(const Listing& listing, const std::string& names, PhotoFolder& result) {
+  Classes classes(result);
+  if (names.empty()) {
+    for (const fs::path& file : listing.pictures) classes.add(file.stem().string(), file, {file});
+    return;
+  }
   const std::regex expression = expression_of(names);
   std::map<std::string, std::vector<fs::path>, NaturalOrder> files;
-  std::vector<std::string> faults;
   for (const fs::path& file : listing.pictures) {
     std::smatch parts;
     const std::string stem = file.stem().string();
     if (std::regex_match(stem, parts, expression)) {
       files[parts[1]].push_back(file);
     } else {
-      faults.push_back(one_line(file.string()) + ": its name is not of the form " + names +
-                       "; rename it, or give another --names");
+      classes.refuse(
+          file, "its name is not of the form " + names + "; rename it, or give another --names");
+      result.classes.push_back({stem, {file}});
     }
   }
-  if (!faults.empty()) throw UnusablePhotographs(folder, std::move(faults));
-  Classes classes;
   for (auto& [label, of_class] : files) {
     const fs::path first = of_class.front();
     classes.add(label, first, std::move(of_class));
   }
-  return classes.take();
 }
 
 constexpr double kMostEnlarged = 4.0;
@@ -231,7 +212,7 @@ double scale_for(const Photograph& photo, const ImportOptions& options) {
     throw FileError(name + ": does not say how many pixels a millimetre has" +
                     (photo.notes.camera_dpi
                          ? " (" + number_text(std::round(*photo.notes.camera_dpi)) +
-                               " dpi are its camera's, which does not know)"
+                               " dpi are what cameras write, which do not know)"
                          : " (programs that do not know write 72 or 96 dpi)") +
                     "; give --pixels-per-mm a number");
   }
@@ -250,15 +231,6 @@ int scaled(int length_px, double scale) {
 }
 
 }  // namespace
-
-bool is_utf8(const std::string& text) {
-  try {
-    static_cast<void>(nlohmann::json(text).dump());
-    return true;
-  } catch (const nlohmann::json::type_error&) {
-    return false;
-  }
-}
 
 bool naturally_before(const std::string& a, const std::string& b) {
   std::size_t i = 0;
@@ -295,16 +267,14 @@ PhotoFolder list_photographs(const fs::path& folder, const std::string& names) {
   Listing listing = list(folder);
   PhotoFolder result;
   result.ignored = std::move(listing.others);
-  if (!listing.folders.empty() && !listing.pictures.empty()) {
-    refuse(listing.pictures.front(),
-           "lies beside folders; give a folder of class folders, or one of photographs alone");
-  }
   if (!names.empty() && !listing.folders.empty()) {
     refuse(folder, "has folders, whose names are the classes; leave out --names");
   }
-  result.classes = !names.empty()            ? classes_by_names(listing, names, folder)
-                   : listing.folders.empty() ? classes_of_files(listing)
-                                             : classes_of_folders(listing, result.ignored);
+  if (listing.folders.empty()) {
+    add_files(listing, names, result);
+  } else {
+    add_folders(listing, result);
+  }
   if (result.classes.empty()) {
     refuse(folder,
            "holds no photograph; give a folder of PNG, JPEG, TIFF, BMP, GIF or PGM files, or "
@@ -314,7 +284,6 @@ PhotoFolder list_photographs(const fs::path& folder, const std::string& names) {
 }
 
 Photograph read_photograph(const fs::path& path, const ImportOptions& options) {
-  if (!is_utf8(path.filename().string())) refuse(path, "its name is not UTF-8; rename it");
   const Bytes file = read_file(path);
   engine::Picture picture = engine::decode_picture(file, path.string(), options.scale);
   Photograph photo;
@@ -330,9 +299,18 @@ Photograph read_photograph(const fs::path& path, const ImportOptions& options) {
   photo.height_px = photo.image.height();
   photo.width_px = photo.image.width();
   photo.scale = scale_for(photo, options);
+  if (photo.notes.transparent_share > 0.0) {
+    const GreyImage opacity =
+        engine::upright(engine::opacity_of(file, path.string()), photo.notes.orientation);
+    photo.opaque = opaque_part(opacity, static_cast<int>(std::ceil(options.size_px / photo.scale)));
+    if (photo.opaque->size_px.width_px == 0) {
+      refuse(path, "has no opaque pixel; put it on a background, and export it again");
+    }
+    photo.image = cut(photo.image, *photo.opaque);
+  }
   if (photo.scale != 1.0) {
-    photo.image = engine::resized(photo.image, scaled(photo.height_px, photo.scale),
-                                  scaled(photo.width_px, photo.scale));
+    photo.image = engine::resized(photo.image, scaled(photo.image.height(), photo.scale),
+                                  scaled(photo.image.width(), photo.scale));
   }
   return photo;
 }

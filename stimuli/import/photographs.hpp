@@ -5,6 +5,7 @@
 #include "core/hash.hpp"
 #include "core/plane.hpp"
 #include "engine/image_notes.hpp"
+#include "stimuli/import/crop_plan.hpp"
 #include "stimuli/import/import.hpp"
 
 #include <filesystem>
@@ -23,6 +24,7 @@ struct PhotoClass {
 struct PhotoFolder {
   std::vector<PhotoClass> classes;   ///< in natural order of their labels
   std::vector<std::string> ignored;  ///< names of other files
+  std::vector<std::string> faults;   ///< of names, one line each; nothing can be made of them
 };
 
 /// In a folder of folders, each folder is a class of its name. In a folder of files, each file is a
@@ -31,17 +33,14 @@ struct PhotoFolder {
 /// \param names  how the files of an album are named, without their endings: `{class}` is the label,
 ///   `#` a number and `*` any text; empty: each file is a class of its stem
 /// \throws UsageError if `names` lacks {class} or has it twice
-/// \throws UnusablePhotographs if files of an album have other names
-/// \throws FileError if `folder` is not a folder or is empty, has pictures beside folders, or has a
-///   name that cannot be a label or looks like another (skeleton_of)
+/// Files that have other names, lie beside folders, or whose name cannot be a label or looks like
+/// another (skeleton_of) are faults.
+/// \throws FileError if `folder` is not a folder, cannot be listed, or is empty
 [[nodiscard]] PhotoFolder list_photographs(const std::filesystem::path& folder,
                                            const std::string& names = {});
 
 /// Whether `a` comes before `b` when numbers count as numbers: D2 before D10.
 [[nodiscard]] bool naturally_before(const std::string& a, const std::string& b);
-
-/// Whether a text is UTF-8, as JSON files must be.
-[[nodiscard]] bool is_utf8(const std::string& text);
 
 /// A photograph, and the content of its manifest entry.
 struct Photograph {
@@ -51,12 +50,13 @@ struct Photograph {
   engine::ImageNotes notes;  ///< the image is turned upright by its orientation
   int height_px = 0;         ///< upright, before resampling
   int width_px = 0;
-  double scale = 1.0;  ///< of the resampling, new pixels per old pixel
-  GreyImage image;     ///< upright and resampled
+  std::optional<PhotoPart> opaque;  ///< of a transparent one, that part alone is used
+  double scale = 1.0;               ///< of the resampling, new pixels per old pixel
+  GreyImage image;                  ///< upright and resampled; its opaque part
 };
 
-/// \throws FileError if the file's name is not UTF-8, or it cannot be read, does not state its resolution although the options
-///   ask for it, or needs scaling beyond 1/64 to 4
+/// \throws FileError if the file cannot be read, does not state its resolution although the options
+///   ask for it, has no opaque pixel, or needs scaling beyond 1/64 to 4
 [[nodiscard]] Photograph read_photograph(const std::filesystem::path& path,
                                          const ImportOptions& options);
 

@@ -85,8 +85,6 @@ TEST_CASE("key check names the station whose file does not hold") {
   CHECK(other.exit_code == 3);
 }
 
-}
-
 TEST_CASE("a protected key opens with its passphrase alone, and stays protected") {
   const StudyFolder unprepared;
   replace_file(unprepared.path() / "open.txt", kSecret + "\n");

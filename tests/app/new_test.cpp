@@ -143,8 +143,12 @@ TEST_CASE("photographs are tried when they are named, and what they lack is aske
   }
   // 120 pixels are too few for a crop of 200.
   const std::vector<std::string> size = {"--size", "200", "--crops", "1"};
-  check_refused(desk.type("new @deep/mine --yes --pictures @album", size), 1,
-                {"too few for a crop of 200 x 200", "--size 120"});
+  const ProgramResult small = desk.type("new @deep/mine --yes --pictures @album", size);
+  CHECK(small.exit_code == 1);
+  for (const char* line : {"cloth2.png: has 120 x 120 pixels, too few for a crop of 200 x 200",
+                           "album: has 3 faults; give --size 120, or more or larger"}) {
+    CHECK_THAT(small.errors, holds_text(line));
+  }
   CHECK_FALSE(is_there(desk.in("deep")));
 
   // Name, protocol, pictures twice, size and crops, device, people, worth, language, consent,

@@ -337,6 +337,17 @@ TEST_CASE(
   const Bytes inverted = Tiff(2, 1, numbers({4095, 0}, 2)).with(258, {16}).with(262, {0}).bytes();
   CHECK_THROWS_AS(level(inverted, 0), FileError);
   CHECK(level(inverted, 12) == 255);
+  // One hot pixel in a thousand says nothing of the bits.
+  const auto hot = [&](std::size_t count) {
+    Bytes pgm = text("P5 1000 1 65535\n");
+    for (std::size_t i = 0; i < 1000; ++i) append(pgm, number(i < count ? 65535 : 4095, 2, true));
+    return pgm;
+  };
+  CHECK_THROWS_AS(level(hot(1), 0), FileError);
+  CHECK(level(hot(1), 12) == 255);
+  CHECK(decode_picture(hot(1), "picture", {.bits = 12, .heights = {}}).notes.cut_share == 0.001);
+  CHECK(level(hot(2), 0) == 255);
+  CHECK_THROWS_AS(level(hot(2), 12), FileError);
   for (const Bytes& file : files(kMinMaxWideSample)) CHECK(level(file, 0) == 64);
   for (const Bytes& file : files(0)) CHECK(level(file, 0) == 0);
   CHECK(level(text("P5 2 1 4095\n\x00\x00\x0f\xff"sv), 0) == 255);
@@ -366,9 +377,24 @@ TEST_CASE(
   const Picture cut = decode_picture(file, "picture", {.bits = 0, .heights = std::pair(0.0, 9.0)});
   CHECK(cut.notes.cut_share == Approx(1.0 / 3));
   CHECK(remarks_on(cut.notes).size() == 1);
-  const Bytes gap =
-      Tiff(2, 1, numbers({bits_of(NAN), 0}, 4)).with(258, {32}).with(339, {3}).bytes();
-  CHECK_THROWS_AS(decode_picture(gap, "picture"), FileError);
+  // GDAL_NODATA is a text of four characters here.
+  const auto with_gap = [&](float height) {
+    const std::uint32_t minus_99 = 0x0039392d;
+    Bytes bytes = Tiff(2, 1, numbers({bits_of(height), 0}, 4))
+                      .with(258, {32})
+                      .with(339, {3})
+                      .with(42113, {minus_99})
+                      .bytes();
+    const Bytes entry = numbers({42113, 4, 1}, 2);
+    const auto at = std::ranges::search(bytes, entry).begin();
+    at[2] = 2;
+    at[4] = 4;
+    return bytes;
+  };
+  for (const float height : {NAN, INFINITY, -3.4e38F, -99.0F}) {
+    CHECK_THROWS_WITH(decode_picture(with_gap(height), "picture"), holds_text("has 1 gap, with"));
+  }
+  CHECK_NOTHROW(decode_picture(with_gap(-98.0F), "picture"));
   const Bytes flat = Tiff(2, 1, numbers({0, 0}, 4)).with(258, {32}).with(339, {3}).bytes();
   CHECK(decode_picture(flat, "picture").grey.at(0, 1) == 0);
 }
@@ -429,6 +455,18 @@ TEST_CASE("a JPEG without its end marker is read, unless a block may be missing"
   CHECK(remarks_on(picture.notes).size() == 1);
   file.pop_back();
   CHECK_THROWS_AS(decode_picture(file, "picture"), FileError);
+}
+
+TEST_CASE("the pixels that are opaque are known in every kind of picture") {
+  const auto opaque = [](const Bytes& file) {
+    const GreyImage image = opacity_of(file, "picture");
+    return Row(image.samples().begin(), image.samples().end());
+  };
+  CHECK(opaque(gif_file(3, 2)) == Row{255, 0, 255, 255});
+  CHECK(opaque(Png{3, 1, 8, Png::kGreyAlpha, hex("000aff64fec800")}.bytes()) == Row{255, 0, 0});
+  CHECK(opaque(Tiff(2, 1, {10, 255, 100, 128}).with(258, {8, 8}).with(277, {2}).bytes()) ==
+        Row{255, 0});
+  CHECK(opaque(text("P5 1 1 255\n\x01")) == Row{255});
 }
 
 TEST_CASE("transparent pixels are counted in every kind of picture that has some") {

@@ -2,7 +2,9 @@
 
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 using namespace touchtrial;
 using namespace touchtrial::stimuli;
@@ -77,4 +79,34 @@ TEST_CASE("photographs share the crops evenly, and separate crops come first") {
   CHECK(shared_out(photos, 20, 8) == std::vector<int>{1, 4, 3});
   CHECK(shared_out(photos, 20, 9) == std::vector<int>{1, 5, 3});
   CHECK(shared_out(photos, 20, 21).empty());
+}
+
+TEST_CASE(
+    "the opaque part is the largest of the wanted size, or else the largest square, by search") {
+  RandomStream random(3, "opaque part test");
+  for (int round = 0; round < 300; ++round) {
+    GreyImage opacity(1 + static_cast<int>(random.below(7)), 1 + static_cast<int>(random.below(7)));
+    for (std::uint8_t& sample : opacity.samples()) sample = random.below(4) > 0 ? 255 : 0;
+    const int least_px = 1 + static_cast<int>(random.below(5));
+    const auto value = [&](PhotoSize size) {
+      return std::pair(std::min({size.height_px, size.width_px, least_px}),
+                       size.height_px * size.width_px);
+    };
+    std::pair most(0, 0);
+    for (int top = 0; top < opacity.height(); ++top) {
+      for (int left = 0; left < opacity.width(); ++left) {
+        for (int height = 1; top + height <= opacity.height(); ++height) {
+          for (int width = 1; left + width <= opacity.width(); ++width) {
+            const GreyImage part = cut(opacity, {left, top, {height, width}});
+            if (std::ranges::count(part.samples(), 0) == 0) {
+              most = std::max(most, value({height, width}));
+            }
+          }
+        }
+      }
+    }
+    const PhotoPart found = opaque_part(opacity, least_px);
+    CHECK(value(found.size_px) == most);
+    CHECK(std::ranges::count(cut(opacity, found).samples(), 0) == 0);
+  }
 }

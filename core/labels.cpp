@@ -1,0 +1,90 @@
+#include "core/labels.hpp"
+
+#include "core/text.hpp"
+
+#include <array>
+
+#include <utf8proc.h>
+
+namespace touchtrial {
+namespace {
+
+/// Takes the first character off a text.
+/// \return its code point; negative if it is not UTF-8, and the text is then empty
+utf8proc_int32_t take_character(std::string_view& text) {
+  utf8proc_int32_t character = -1;
+  const utf8proc_ssize_t size =
+      utf8proc_iterate(reinterpret_cast<const utf8proc_uint8_t*>(text.data()),
+                       static_cast<utf8proc_ssize_t>(text.size()), &character);
+  text.remove_prefix(size > 0 ? static_cast<std::size_t>(size) : text.size());
+  return character;
+}
+
+/// A letter without its accents, and without a capital.
+utf8proc_int32_t plain(utf8proc_int32_t letter) {
+  std::array<utf8proc_int32_t, 8> parts{letter};
+  static_cast<void>(
+      utf8proc_decompose_char(letter, parts.data(), parts.size(), UTF8PROC_DECOMPOSE, nullptr));
+  return utf8proc_tolower(parts[0]);
+}
+
+}  // namespace
+
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    if (take_character(text) < 0) return false;
+  }
+  return true;
+}
+
+Alphabets alphabets_of(std::string_view text) {
+  constexpr utf8proc_int32_t kFirstAfterLatin = 0x250;  // where the blocks of Latin letters end
+  Alphabets all;
+  Alphabets word;
+  while (!text.empty()) {
+    const utf8proc_int32_t character = take_character(text);
+    const utf8proc_category_t kind = utf8proc_category(character);
+    if (kind == UTF8PROC_CATEGORY_MN) continue;  // an accent
+    if (kind != UTF8PROC_CATEGORY_LU && kind != UTF8PROC_CATEGORY_LL) {
+      word = {};
+      continue;
+    }
+    (plain(character) < kFirstAfterLatin ? word.latin : word.other) = true;
+    all.latin |= word.latin;
+    all.other |= word.other;
+    all.one_word_has_both |= word.latin && word.other;
+  }
+  return all;
+}
+
+bool has_control_character(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if (c < 0x20 || c == 0x7f) return true;
+    // C1 is 0xC2 0x80 .. 0xC2 0x9F in UTF-8.
+    const bool c1 =
+        c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+    if (c1) return true;
+  }
+  return false;
+}
+
+std::string fault_of_label(const std::string& label) {
+  constexpr std::size_t kLongest = 64;
+  if (label.empty()) return "is empty";
+  if (!is_utf8(label)) return "is not UTF-8";
+  if (label.size() > kLongest) {
+    return "has " + std::to_string(label.size()) + " bytes, must have at most " +
+           std::to_string(kLongest);
+  }
+  if (has_control_character(label)) return "has a control character";
+  if (label.front() == ' ' || label.back() == ' ') return "begins or ends with a blank";
+  if (is_read_as_missing(label)) return "is what other programs take for a missing or truth value";
+  if (begins_like_formula(label)) return "begins like a formula";
+  if (alphabets_of(label).one_word_has_both) {
+    return "mixes Latin letters with those of another alphabet in one word";
+  }
+  return "";
+}
+
+}  // namespace touchtrial
