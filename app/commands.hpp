@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,6 +26,23 @@ using Action = std::function<int()>;
 
 /// The exit code of data that fail verification.
 inline constexpr int kNotVerified = 3;
+
+/// A command, and its arguments, which live as long as it.
+template <typename Arguments>
+struct Command {
+  CLI::App& command;
+  Arguments& arguments;
+};
+
+/// Adds a command below another, whose work begins when parsing succeeds.
+template <typename Arguments>
+Command<Arguments> add_command(CLI::App& above, Action& action, const std::string& name,
+                               const std::string& meaning, int (*work)(const Arguments&)) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const command = above.add_subcommand(name, meaning);
+  command->callback([=, &action] { action = [=] { return work(*arguments); }; });
+  return {*command, *arguments};
+}
 
 /// All commands of the program.
 void add_commands(CLI::App& program, Action& action);

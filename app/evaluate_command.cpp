@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -57,15 +56,14 @@ int evaluate(const EvaluateArguments& arguments) {
 }  // namespace
 
 void add_evaluate_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<EvaluateArguments>();
-  CLI::App* command = program.add_subcommand(
-      "evaluate", "Co-occurrence statistics of images and their textures; the order sweep");
-  command->add_option("IMAGE", arguments->images, "PNG, JPEG, TIFF, BMP, GIF or PGM")->required();
-  add_sample_options(*command, arguments->scale);
-  command->add_flag("--sweep", arguments->sweep,
-                    "Compare the adaptive texture with fixed orders, 0.05 to 0.95, by MS-SSIM");
-  add_json_flag(*command, arguments->json);
-  command->callback([=, &action] { action = [=] { return evaluate(*arguments); }; });
+  const auto [command, arguments] = add_command(
+      program, action, "evaluate",
+      "Co-occurrence statistics of images and their textures; the order sweep", evaluate);
+  command.add_option("IMAGE", arguments.images, "PNG, JPEG, TIFF, BMP, GIF or PGM")->required();
+  add_sample_options(command, arguments.scale);
+  command.add_flag("--sweep", arguments.sweep,
+                   "Compare the adaptive texture with fixed orders, 0.05 to 0.95, by MS-SSIM");
+  add_json_flag(command, arguments.json);
 }
 
 }  // namespace touchtrial::app

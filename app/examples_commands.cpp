@@ -5,7 +5,6 @@
 #include "app/shipped_files.hpp"
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,12 +18,17 @@ namespace fs = std::filesystem;
 /// The studies themselves name no device, and would be simulated on an ideal one.
 constexpr const char* kDemoDevice = "touch";
 
+struct ExamplesArguments {
+  fs::path folder = "touchtrial-examples";
+};
+
 struct DemoArguments {
   fs::path folder = "touchtrial-demo";
   int participants = 20;
 };
 
-int write_examples(const fs::path& given) {
+int write_examples(const ExamplesArguments& arguments) {
+  const fs::path& given = arguments.folder;
   // A shell would take "-x" for an option.
   const fs::path folder = given.string().starts_with('-') ? "." / given : given;
   copy_examples(folder);
@@ -72,21 +76,20 @@ int run_demo(const DemoArguments& arguments) {
 }  // namespace
 
 void add_examples_commands(CLI::App& program, Action& action) {
-  auto folder = std::make_shared<fs::path>("touchtrial-examples");
-  CLI::App* examples = program.add_subcommand(
-      "examples",
-      "Copy the ready studies, with their pictures and subject files, into a folder of your own");
-  examples->add_option("FOLDER", *folder, "New folder")->capture_default_str();
-  examples->callback([=, &action] { action = [=] { return write_examples(*folder); }; });
+  const auto [examples, copied] = add_command(
+      program, action, "examples",
+      "Copy the ready studies, with their pictures and subject files, into a folder of your own",
+      write_examples);
+  examples.add_option("FOLDER", copied.folder, "New folder")->capture_default_str();
 
-  auto arguments = std::make_shared<DemoArguments>();
-  CLI::App* demo = program.add_subcommand(
-      "demo", "Run both experiments with simulated people on a modelled Touch, and write reports");
-  demo->add_option("FOLDER", arguments->folder, "New folder for studies, databases and reports")
+  const auto [demo, arguments] = add_command(
+      program, action, "demo",
+      "Run both experiments with simulated people on a modelled Touch, and write reports",
+      run_demo);
+  demo.add_option("FOLDER", arguments.folder, "New folder for studies, databases and reports")
       ->capture_default_str();
-  add_count_option(*demo, "--participants", arguments->participants,
+  add_count_option(demo, "--participants", arguments.participants,
                    "Simulated participants of each experiment", 1, 1000);
-  demo->callback([=, &action] { action = [=] { return run_demo(*arguments); }; });
 }
 
 }  // namespace touchtrial::app

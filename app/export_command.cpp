@@ -14,7 +14,6 @@
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -185,35 +184,32 @@ void add_dataset_options(CLI::App& command, ExportArguments& arguments) {
 }  // namespace
 
 void add_export_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = program.add_subcommand("export", "Write a study's data for other programs");
-  add_database_argument(*command, arguments->database);
-  CLI::Option* format = command->add_option("--format", arguments->format, "What to write");
+  const auto [command, arguments] = add_command(
+      program, action, "export", "Write a study's data for other programs", export_study);
+  add_database_argument(command, arguments.database);
+  CLI::Option* format = command.add_option("--format", arguments.format, "What to write");
   format->check(CLI::IsMember({"csv", "json", "bids", "psych-ds", "r", "events"}))
       ->capture_default_str();
-  command->add_option("-o,--out", arguments->folder, "Folder to write into")
+  command.add_option("-o,--out", arguments.folder, "Folder to write into")
       ->check(place_validator())
       ->required();
-  add_force_flag(*command);
-  add_key_option(*command, arguments->key);
-  CLI::Option* participant = command->add_option(
-      "--participant", arguments->participant,
+  add_force_flag(command);
+  add_key_option(command, arguments.key);
+  CLI::Option* participant = command.add_option(
+      "--participant", arguments.participant,
       "Everything about one participant, as CSV; outcomes only with --key, after `unblind "
       "--participant`");
   command
-      ->add_flag(
-          "--safety", arguments->safety,
-          "Stops, faults, largest forces, reasons and deviations of everybody, as CSV, never "
-          "an outcome; with --key also what was typed")
+      .add_flag("--safety", arguments.safety,
+                "Stops, faults, largest forces, reasons and deviations of everybody, as CSV, never "
+                "an outcome; with --key also what was typed")
       ->excludes(participant)
       ->excludes(format);
   participant->excludes(format);
-  command->add_flag(
-      "--for-excel", arguments->for_excel,
-      "csv: begin each file with a byte order mark, without which Excel takes letters "
-      "beyond ASCII for others");
-  add_dataset_options(*command, *arguments);
-  command->callback([=, &action] { action = [=] { return export_study(*arguments); }; });
+  command.add_flag("--for-excel", arguments.for_excel,
+                   "csv: begin each file with a byte order mark, without which Excel takes letters "
+                   "beyond ASCII for others");
+  add_dataset_options(command, arguments);
 }
 
 }  // namespace touchtrial::app

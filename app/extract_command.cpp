@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -187,11 +186,11 @@ void check_output(const fs::path& image, const fs::path& output, const std::stri
   require_output_place(output);
 }
 
-int extract(const CLI::App& command, const ExtractArguments& arguments) {
+int extract(const ExtractArguments& arguments) {
   check_output(arguments.image, arguments.output, "-o");
   check_output(arguments.image, arguments.arrows, "--arrows");
   if (!arguments.dump.empty()) require_dump_places(arguments.dump);
-  const engine::ExtractionOptions options = extraction_options(command, arguments.method);
+  const engine::ExtractionOptions options = extraction_options(arguments.method);
   if (!arguments.arrows.empty() &&
       arguments.arrows.lexically_normal() == arguments.output.lexically_normal()) {
     throw UsageError("extract: --output and --arrows name one file; give two");
@@ -206,26 +205,24 @@ int extract(const CLI::App& command, const ExtractArguments& arguments) {
 }  // namespace
 
 void add_extract_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<ExtractArguments>();
-  CLI::App* command = program.add_subcommand("extract", "Extract the texture of one image");
-  command->add_option("IMAGE", arguments->image, "PNG, JPEG, TIFF, BMP, GIF or PGM")->required();
-  add_sample_options(*command, arguments->scale);
-  add_method_options(*command, arguments->method);
-  command->add_option("--mapping", arguments->mapping, "Mapping of the texture to a picture")
+  const auto [command, arguments] =
+      add_command(program, action, "extract", "Extract the texture of one image", extract);
+  command.add_option("IMAGE", arguments.image, "PNG, JPEG, TIFF, BMP, GIF or PGM")->required();
+  add_sample_options(command, arguments.scale);
+  add_method_options(command, arguments.method);
+  command.add_option("--mapping", arguments.mapping, "Mapping of the texture to a picture")
       ->check(CLI::IsMember(words_of(engine::kMappingNames)))
       ->capture_default_str();
-  add_count_option(*command, "--neighbourhood", arguments->neighbourhood,
+  add_count_option(command, "--neighbourhood", arguments.neighbourhood,
                    "Side n of the force's neighbourhood, odd", 3, 1001);
-  command->add_option("-o,--output", arguments->output, "Write the texture as an 8-bit PNG");
-  command->add_option("--arrows", arguments->arrows,
-                      "Draw the force field over an enlarged patch, as PNG");
-  command->add_option("--dump", arguments->dump,
-                      "Write every stage as .npy files into this folder");
-  add_force_flag(*command);
-  command->add_option("--precision", arguments->precision, "Precision of the extraction")
+  command.add_option("-o,--output", arguments.output, "Write the texture as an 8-bit PNG");
+  command.add_option("--arrows", arguments.arrows,
+                     "Draw the force field over an enlarged patch, as PNG");
+  command.add_option("--dump", arguments.dump, "Write every stage as .npy files into this folder");
+  add_force_flag(command);
+  command.add_option("--precision", arguments.precision, "Precision of the extraction")
       ->check(CLI::IsMember({"float", "double"}))
       ->capture_default_str();
-  command->callback([=, &action] { action = [=] { return extract(*command, *arguments); }; });
 }
 
 }  // namespace touchtrial::app

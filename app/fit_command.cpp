@@ -22,7 +22,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -230,59 +229,58 @@ int fit_published(const FitArguments& arguments) {
   return 0;
 }
 
+int fit_subject(const FitArguments& arguments) {
+  refuse_to_replace(arguments);
+  return arguments.accuracies.empty() ? fit_study(arguments) : fit_published(arguments);
+}
+
 }  // namespace
 
 void add_fit_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<FitArguments>();
-  CLI::App* command = program.add_subcommand(
-      "fit", "Estimate noise, lapses, biases and label swaps of a subject model from answers");
-  add_database_argument(*command, arguments->source,
+  const auto [command, arguments] = add_command(
+      program, action, "fit",
+      "Estimate noise, lapses, biases and label swaps of a subject model from answers", fit_subject);
+  add_database_argument(command, arguments.source,
                         "Database of an unblinded study; with --accuracies a study file");
-  command->add_option("--subject", arguments->subject,
-                      "Subject model with the fixed parameters and the starting values (default: "
-                      "built in)");
-  add_on_option(*command, arguments->on);
-  CLI::Option* key = add_key_option(*command, arguments->key);
-  CLI::Option* pack = command->add_option("--pack", arguments->pack, "Pack of the study");
-  command->add_option("-o,--out", arguments->out, "Subject file to write");
-  add_force_flag(*command);
+  command.add_option("--subject", arguments.subject,
+                     "Subject model with the fixed parameters and the starting values (default: "
+                     "built in)");
+  add_on_option(command, arguments.on);
+  CLI::Option* key = add_key_option(command, arguments.key);
+  CLI::Option* pack = command.add_option("--pack", arguments.pack, "Pack of the study");
+  command.add_option("-o,--out", arguments.out, "Subject file to write");
+  add_force_flag(command);
   command
-      ->add_option("--fix", arguments->fixed,
-                   "Parameters that keep the subject model's values: feature_noise, lapse, "
-                   "position, classes, "
-                   "swaps, spread")
+      .add_option("--fix", arguments.fixed,
+                  "Parameters that keep the subject model's values: feature_noise, lapse, "
+                  "position, classes, "
+                  "swaps, spread")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"feature_noise", "lapse", "position", "classes", "swaps", "spread"}));
   CLI::Option* accuracies =
       command
-          ->add_option("--accuracies", arguments->accuracies,
-                       "Fit to published accuracies instead: CLASS=SHARE for each class")
+          .add_option("--accuracies", arguments.accuracies,
+                      "Fit to published accuracies instead: CLASS=SHARE for each class")
           ->delimiter(',')
           ->allow_extra_args(false)
           ->excludes(key)
           ->excludes(pack);
   command
-      ->add_option(
-          "--participants", arguments->participants,
+      .add_option(
+          "--participants", arguments.participants,
           "Number of participants whose orders of pictures the published accuracies average")
       ->check(CLI::Range(1, 1000))
       ->needs(accuracies)
       ->capture_default_str();
-  add_count_option(*command, "--explorations", arguments->felt.explorations,
+  add_count_option(command, "--explorations", arguments.felt.explorations,
                    "Explorations of each stimulus from which answers are predicted", 8, 20000);
-  add_count_option(*command, "--bootstraps", arguments->bootstraps,
+  add_count_option(command, "--bootstraps", arguments.bootstraps,
                    "Studies simulated from the fit, for p and intervals", 0, 100000);
-  add_seed_option(*command, arguments->felt.seed,
+  add_seed_option(command, arguments.felt.seed,
                   "Seed of training (as in simulate), explorations and bootstrap");
-  add_jobs_option(*command, arguments->felt.jobs);
-  add_json_flag(*command, arguments->json);
-  command->callback([=, &action] {
-    action = [=] {
-      refuse_to_replace(*arguments);
-      return arguments->accuracies.empty() ? fit_study(*arguments) : fit_published(*arguments);
-    };
-  });
+  add_jobs_option(command, arguments.felt.jobs);
+  add_json_flag(command, arguments.json);
 }
 
 }  // namespace touchtrial::app

@@ -14,7 +14,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -159,58 +158,46 @@ CLI::Option* add_new_passphrase_option(CLI::App& command, KeyArguments& argument
       ->expected(1);
 }
 
-/// A command of "key" with the argument FILE.
-CLI::App* key_subcommand(CLI::App& keys, Action& action, const std::string& name,
-                         const std::string& meaning, const std::shared_ptr<KeyArguments>& arguments,
-                         int (*work)(const KeyArguments&)) {
-  CLI::App* command = keys.add_subcommand(name, meaning);
-  command->callback([=, &action] { action = [=] { return work(*arguments); }; });
-  return command;
-}
-
 void add_sheet(CLI::App& keys, Action& action) {
-  auto arguments = std::make_shared<KeyArguments>();
-  CLI::App* sheet =
-      key_subcommand(keys, action, "sheet", "Write the recovery sheet of a key, to be printed",
-                     arguments, write_key_sheet);
-  sheet->add_option("KEY", arguments->file, "The investigator's key")->required();
-  sheet->add_option("-o,--out", arguments->output, "HTML or text file to write")->required();
-  add_passphrase_option(*sheet);
+  const auto [command, arguments] = add_command(
+      keys, action, "sheet", "Write the recovery sheet of a key, to be printed", write_key_sheet);
+  command.add_option("KEY", arguments.file, "The investigator's key")->required();
+  command.add_option("-o,--out", arguments.output, "HTML or text file to write")->required();
+  add_passphrase_option(command);
 }
 
 void add_restore(CLI::App& keys, Action& action) {
-  auto arguments = std::make_shared<KeyArguments>();
-  CLI::App* restore = key_subcommand(keys, action, "restore",
-                                     "Make a key again from its recovery sheet, which is typed or "
-                                     "read from standard input",
-                                     arguments, restore_key);
-  add_study_argument(*restore, arguments->file);
-  restore->add_option("-o,--out", arguments->output, "Key to write")->required();
-  add_pack_option(*restore, arguments->pack);
+  const auto [command, arguments] =
+      add_command(keys, action, "restore",
+                  "Make a key again from its recovery sheet, which is typed or "
+                  "read from standard input",
+                  restore_key);
+  add_study_argument(command, arguments.file);
+  command.add_option("-o,--out", arguments.output, "Key to write")->required();
+  add_pack_option(command, arguments.pack);
 }
 
 void add_copy(CLI::App& keys, Action& action) {
-  auto arguments = std::make_shared<KeyArguments>();
-  CLI::App* copy = key_subcommand(keys, action, "copy",
-                                  "Copy a key, for a colleague or another medium, under a "
-                                  "passphrase of its own",
-                                  arguments, copy_key);
-  copy->add_option("KEY", arguments->file, "The investigator's key")->required();
-  copy->add_option("-o,--out", arguments->output, "Key to write")->required();
-  copy->add_flag("--passphrase", arguments->passphrase, "Protect the copy by a new passphrase");
-  add_new_passphrase_option(*copy, *arguments);
-  add_passphrase_option(*copy);
+  const auto [command, arguments] =
+      add_command(keys, action, "copy",
+                  "Copy a key, for a colleague or another medium, under a "
+                  "passphrase of its own",
+                  copy_key);
+  command.add_option("KEY", arguments.file, "The investigator's key")->required();
+  command.add_option("-o,--out", arguments.output, "Key to write")->required();
+  command.add_flag("--passphrase", arguments.passphrase, "Protect the copy by a new passphrase");
+  add_new_passphrase_option(command, arguments);
+  add_passphrase_option(command);
 }
 
 void add_protect(CLI::App& keys, Action& action) {
-  auto arguments = std::make_shared<KeyArguments>();
-  CLI::App* command = key_subcommand(
-      keys, action, "protect", "Give a key or a station's file a passphrase, another one, or none",
-      arguments, protect_key);
-  command->add_option("FILE", arguments->file, "Key or station's file")->required();
-  CLI::Option* given = add_new_passphrase_option(*command, *arguments);
-  command->add_flag("--remove", arguments->remove, "Take the passphrase away")->excludes(given);
-  add_passphrase_option(*command);
+  const auto [command, arguments] =
+      add_command(keys, action, "protect",
+                  "Give a key or a station's file a passphrase, another one, or none", protect_key);
+  command.add_option("FILE", arguments.file, "Key or station's file")->required();
+  CLI::Option* given = add_new_passphrase_option(command, arguments);
+  command.add_flag("--remove", arguments.remove, "Take the passphrase away")->excludes(given);
+  add_passphrase_option(command);
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -163,20 +162,19 @@ int merge(const MergeArguments& arguments) {
 }  // namespace
 
 void add_merge_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<MergeArguments>();
-  CLI::App* command = program.add_subcommand(
-      "merge", "Make one database from several stations' databases of one study");
+  const auto [command, arguments] =
+      add_command(program, action, "merge",
+                  "Make one database from several stations' databases of one study", merge);
   command
-      ->add_option("DB", arguments->databases,
-                   "Databases of the stations, or the postgresql:// address of a study")
+      .add_option("DB", arguments.databases,
+                  "Databases of the stations, or the postgresql:// address of a study")
       ->required();
   command
-      ->add_option("-o,--out", arguments->target,
-                   "Database to make; the order of the stations does not matter")
+      .add_option("-o,--out", arguments.target,
+                  "Database to make; the order of the stations does not matter")
       ->check(place_validator())
       ->required();
-  add_json_flag(*command, arguments->json);
-  command->callback([=, &action] { action = [=] { return merge(*arguments); }; });
+  add_json_flag(command, arguments.json);
 }
 
 }  // namespace touchtrial::app

@@ -154,12 +154,13 @@ void add_numbers(CLI::App& command, engine::ExtractionOptions& numbers) {
 }  // namespace
 
 void add_method_options(CLI::App& command, MethodArguments& arguments) {
+  arguments.command = &command;
   add_words(command, arguments);
   add_numbers(command, arguments.numbers);
 }
 
-engine::ExtractionOptions extraction_options(const CLI::App& command,
-                                             const MethodArguments& arguments) {
+engine::ExtractionOptions extraction_options(const MethodArguments& arguments) {
+  const CLI::App& command = *arguments.command;
   engine::ExtractionOptions options = arguments.numbers;
   options.method = *engine::method_from_name(arguments.method);
   refuse_unused(command, options.method);

@@ -21,6 +21,7 @@ struct MethodArguments {
   std::string components;  ///< "auto", "f,theta;f,theta", or empty for the default
   std::string control = "none";
   engine::ExtractionOptions numbers;
+  const CLI::App* command = nullptr;  ///< whose options they are
 };
 
 /// Adds --method and one option for each parameter of the methods.
@@ -29,8 +30,7 @@ void add_method_options(CLI::App& command, MethodArguments& arguments);
 
 /// The options as the engine takes them.
 /// \throws UsageError for an option that the method does not have, and for a value out of range
-[[nodiscard]] engine::ExtractionOptions extraction_options(const CLI::App& command,
-                                                           const MethodArguments& arguments);
+[[nodiscard]] engine::ExtractionOptions extraction_options(const MethodArguments& arguments);
 
 /// The words of a table as a list for the parser.
 template <typename Value, std::size_t size>

@@ -24,7 +24,6 @@
 #include <functional>
 #include <iostream>
 #include <map>
-#include <memory>
 #include <set>
 #include <sstream>
 #include <string>
@@ -407,7 +406,8 @@ std::string next_steps(const NewArguments& arguments, const NewStudy& study) {
       shell_word((study.file.parent_path() / "rehearsal.db").string()));
 }
 
-int write_new_study(NewArguments arguments) {
+int write_new_study(const NewArguments& given) {
+  NewArguments arguments = given;
   if (!arguments.folder.empty()) require_free(arguments.folder);
   interview(arguments);
   const std::string& name = arguments.answers.at("--name");
@@ -432,27 +432,26 @@ int write_new_study(NewArguments arguments) {
 }  // namespace
 
 void add_new_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<NewArguments>();
-  CLI::App* command = program.add_subcommand(
-      "new", "Ask a few questions, and write a study that runs, with its pictures and comments");
-  command->add_option("FOLDER", arguments->folder, "Folder to make (default: the study's name)");
+  const auto [command, arguments] = add_command(
+      program, action, "new",
+      "Ask a few questions, and write a study that runs, with its pictures and comments",
+      write_new_study);
+  command.add_option("FOLDER", arguments.folder, "Folder to make (default: the study's name)");
   for (const NewQuestion& question : new_questions()) {
     command
-        ->add_option_function<std::string>(
+        .add_option_function<std::string>(
             question.option,
-            [arguments, option = question.option](const std::string& answer) {
-              arguments->answers[option] = answer;
+            [&answers = arguments.answers, option = question.option](const std::string& answer) {
+              answers[option] = answer;
             },
             question.text)
         ->check(question.allowed);
   }
-  add_count_option(*command, "--size", arguments->size_px,
-                   "Side of a picture, pixels; one is 0.2 mm", stimuli::kMinCropSizePx,
-                   stimuli::kMaxCropSizePx);
-  add_count_option(*command, "--crops", arguments->crops,
-                   "Crops of the photographs of each texture", 1, stimuli::kMaxCropsOfClass);
-  command->add_flag("--yes", arguments->yes, "Take the usual answers, and ask nothing");
-  command->callback([=, &action] { action = [=] { return write_new_study(*arguments); }; });
+  add_count_option(command, "--size", arguments.size_px, "Side of a picture, pixels; one is 0.2 mm",
+                   stimuli::kMinCropSizePx, stimuli::kMaxCropSizePx);
+  add_count_option(command, "--crops", arguments.crops, "Crops of the photographs of each texture",
+                   1, stimuli::kMaxCropsOfClass);
+  command.add_flag("--yes", arguments.yes, "Take the usual answers, and ask nothing");
 }
 
 }  // namespace touchtrial::app

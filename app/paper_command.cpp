@@ -15,7 +15,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -138,19 +137,18 @@ int make_paper(const PaperArguments& arguments) {
 }  // namespace
 
 void add_paper_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<PaperArguments>();
-  CLI::App* command = program.add_subcommand(
-      "paper", "The source paper's figures and tables beside those of pictures");
-  command->add_option(
-      "IMAGE", arguments->images,
+  const auto [command, arguments] =
+      add_command(program, action, "paper",
+                  "The source paper's figures and tables beside those of pictures", make_paper);
+  command.add_option(
+      "IMAGE", arguments.images,
       "PNG, JPEG, TIFF, BMP, GIF or PGM (default: the program's own textures, and its "
       "objects for the comparison with TV-Gabor)");
   command
-      ->add_option("-o,--out", arguments->folder,
-                   "Folder for paper.html, paper.md, the pictures and paper.json")
+      .add_option("-o,--out", arguments.folder,
+                  "Folder for paper.html, paper.md, the pictures and paper.json")
       ->required();
-  add_force_flag(*command);
-  command->callback([=, &action] { action = [=] { return make_paper(*arguments); }; });
+  add_force_flag(command);
 }
 
 }  // namespace touchtrial::app

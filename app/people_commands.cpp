@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -282,19 +281,14 @@ int withdraw(const PeopleArguments& arguments) {
   return arguments.erase ? erase(arguments) : keep_data(arguments);
 }
 
-struct PeopleCommand {
-  CLI::App* command;
-  std::shared_ptr<PeopleArguments> arguments;
-};
+using PeopleCommand = Command<PeopleArguments>;
 
 PeopleCommand people_command(CLI::App& program, Action& action, const char* name,
                              const char* meaning, int (*work)(const PeopleArguments&)) {
-  auto arguments = std::make_shared<PeopleArguments>();
-  CLI::App* command = program.add_subcommand(name, meaning);
-  add_database_argument(*command, arguments->database);
-  add_signing_options(*command, arguments->files);
-  command->add_option("--participant", arguments->participant, "Participant id")->required();
-  command->callback([=, &action] { action = [=] { return work(*arguments); }; });
+  const auto [command, arguments] = add_command(program, action, name, meaning, work);
+  add_database_argument(command, arguments.database);
+  add_signing_options(command, arguments.files);
+  command.add_option("--participant", arguments.participant, "Participant id")->required();
   return {command, arguments};
 }
 
@@ -307,40 +301,39 @@ void add_reason(CLI::App& command, std::string& reason) {
 void add_people_commands(CLI::App& program, Action& action) {
   const PeopleCommand excluded = people_command(program, action, "exclude",
                                                 "Leave a participant out of the outcomes", exclude);
-  add_reason(*excluded.command, excluded.arguments->reason);
-  excluded.command->add_flag("--after-outcomes", excluded.arguments->after_outcomes,
-                             "Although this participant's outcomes have been seen; recorded");
+  add_reason(excluded.command, excluded.arguments.reason);
+  excluded.command.add_flag("--after-outcomes", excluded.arguments.after_outcomes,
+                            "Although this participant's outcomes have been seen; recorded");
   const PeopleCommand replaced = people_command(
       program, action, "replace", "Give a participant's place to somebody new", replace);
-  replaced.command->add_option("--with", replaced.arguments->with, "Who takes the place")
-      ->required();
-  add_reason(*replaced.command, replaced.arguments->reason);
+  replaced.command.add_option("--with", replaced.arguments.with, "Who takes the place")->required();
+  add_reason(replaced.command, replaced.arguments.reason);
   const PeopleCommand withdrawn =
       people_command(program, action, "withdraw",
                      "A participant takes no further part; keep the data or erase them", withdraw);
   CLI::Option* reason =
-      withdrawn.command->add_option("--reason", withdrawn.arguments->reason, "Why; recorded");
+      withdrawn.command.add_option("--reason", withdrawn.arguments.reason, "Why; recorded");
   withdrawn.command
-      ->add_flag("--keep-data", withdrawn.arguments->keep_data,
-                 "The data stay, and are analysed as the study says")
+      .add_flag("--keep-data", withdrawn.arguments.keep_data,
+                "The data stay, and are analysed as the study says")
       ->needs(reason);
   withdrawn.command
-      ->add_flag("--erase", withdrawn.arguments->erase,
-                 "Make the sealed data unreadable for ever, and remove the personal data; the "
-                 "safety record stays")
+      .add_flag("--erase", withdrawn.arguments.erase,
+                "Make the sealed data unreadable for ever, and remove the personal data; the "
+                "safety record stays")
       ->needs(reason);
-  withdrawn.command->add_flag("--erase-safety", withdrawn.arguments->erase_safety,
-                              "Make the safety record of an erased person unreadable too, when the "
-                              "study's years have passed");
-  add_yes_flag(*withdrawn.command, withdrawn.arguments->yes);
+  withdrawn.command.add_flag("--erase-safety", withdrawn.arguments.erase_safety,
+                             "Make the safety record of an erased person unreadable too, when the "
+                             "study's years have passed");
+  add_yes_flag(withdrawn.command, withdrawn.arguments.yes);
   const PeopleCommand noted = people_command(
       program, action, "note", "Record a remark or a deviation from the protocol", note);
-  noted.command->add_option(
-      "--deviation", noted.arguments->deviation,
+  noted.command.add_option(
+      "--deviation", noted.arguments.deviation,
       "Code of the deviation: " + listed(design::kDeviationCodes) + ", no-day-sheet-NUMBER");
-  noted.command->add_flag("--own-code", noted.arguments->own_code,
-                          "The deviation's code is the study's own");
-  noted.command->add_option("TEXT", noted.arguments->text, "What happened")->required();
+  noted.command.add_flag("--own-code", noted.arguments.own_code,
+                         "The deviation's code is the study's own");
+  noted.command.add_option("TEXT", noted.arguments.text, "What happened")->required();
 }
 
 }  // namespace touchtrial::app

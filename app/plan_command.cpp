@@ -10,7 +10,6 @@
 #include "protocols/design/study_key.hpp"
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -173,37 +172,36 @@ int plan_enrolment(const PlanArguments& arguments) {
 }  // namespace
 
 void add_plan_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<PlanArguments>();
-  CLI::App* command = program.add_subcommand(
-      "plan", "Divide a prepared study between stations, before the first participant comes");
-  add_study_argument(*command, arguments->study);
-  command->add_option("--participants", arguments->participants, "Number of participants in all")
+  const auto [command, arguments] =
+      add_command(program, action, "plan",
+                  "Divide a prepared study between stations, before the first participant comes",
+                  plan_enrolment);
+  add_study_argument(command, arguments.study);
+  command.add_option("--participants", arguments.participants, "Number of participants in all")
       ->check(CLI::Range(1, design::kMostEnrolments))
       ->required();
   auto* stations = command
-                       ->add_option("--stations", arguments->stations,
-                                    "Number of stations, which are named 1, 2, and so on")
+                       .add_option("--stations", arguments.stations,
+                                   "Number of stations, which are named 1, 2, and so on")
                        ->check(CLI::Range(1, static_cast<int>(design::kMostStations)));
   auto* names =
       command
-          ->add_option("--names", arguments->names, "Names of the stations, instead of --stations")
+          .add_option("--names", arguments.names, "Names of the stations, instead of --stations")
           ->delimiter(',')
           ->excludes(stations);
   command
-      ->add_flag("--extend", arguments->extend,
-                 "Add numbers to the existing plan, and keep its own")
+      .add_flag("--extend", arguments.extend, "Add numbers to the existing plan, and keep its own")
       ->excludes(stations)
       ->excludes(names);
   command
-      ->add_flag("--groups", arguments->groups,
-                 "Show which number is in which group, instead of dividing the study")
+      .add_flag("--groups", arguments.groups,
+                "Show which number is in which group, instead of dividing the study")
       ->excludes(stations)
       ->excludes(names)
       ->excludes("--extend");
-  add_pack_option(*command, arguments->pack);
-  add_passphrase_option(*command);
-  add_json_flag(*command, arguments->json);
-  command->callback([=, &action] { action = [=] { return plan_enrolment(*arguments); }; });
+  add_pack_option(command, arguments.pack);
+  add_passphrase_option(command);
+  add_json_flag(command, arguments.json);
 }
 
 }  // namespace touchtrial::app

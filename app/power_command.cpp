@@ -49,7 +49,7 @@ struct PowerArguments {
   std::optional<double> accuracy;
   planning::PowerPlan plan;
   ThresholdPowerArguments of_thresholds;
-  std::vector<std::string> given;  ///< the options that were given, by name
+  const CLI::App* command = nullptr;
   int jobs = 1;
   bool json = false;
 };
@@ -184,10 +184,11 @@ constexpr std::array<std::string_view, 8> kOfAllProtocols = {
 /// \throws UsageError if an option was given that the study's protocol does not know
 void refuse_options_of_others(const design::Study& study, const PowerArguments& arguments) {
   const bool has_thresholds = study.protocol_name() == "threshold";
-  for (const std::string& option : arguments.given) {
+  for (const CLI::Option* given : arguments.command->get_options()) {
+    const std::string option = given->get_name();
     const bool is_own = std::ranges::find(kOfThresholds, option) != kOfThresholds.end();
     const bool is_shared = std::ranges::find(kOfAllProtocols, option) != kOfAllProtocols.end();
-    if (is_shared || is_own == has_thresholds) continue;
+    if (given->count() == 0 || is_shared || is_own == has_thresholds) continue;
     throw UsageError(
         one_line(fmt::format("{}: {}; leave it out", option,
                              is_own ? "is for studies of the protocol threshold"
@@ -195,7 +196,20 @@ void refuse_options_of_others(const design::Study& study, const PowerArguments& 
   }
 }
 
-int power(PowerArguments arguments) {
+/// Refuses a value that is empty, as an unset variable of a shell makes it: it would count as left
+/// out, and the numbers be those of another question.
+void refuse_empty_values(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    const auto& values = option->results();
+    const bool takes_value = option->get_items_expected_max() > 0;
+    if (takes_value && std::ranges::find(values, "") != values.end()) {
+      throw UsageError(option->get_name() + ": is empty; give a value, or leave the option out");
+    }
+  }
+}
+
+int power(const PowerArguments& arguments) {
+  refuse_empty_values(*arguments.command);
   planning::PowerPlan plan = arguments.plan;
   plan.participants = numbers_named(arguments.sizes, "--participants", "a number of participants");
   if (arguments.effect) plan.effect = require_effect(*arguments.effect);
@@ -314,36 +328,18 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
   }
 }
 
-/// Refuses a value that is empty, as an unset variable of a shell makes it: it would count as left
-/// out, and the numbers be those of another question.
-void refuse_empty_values(const CLI::App& command) {
-  for (const CLI::Option* option : command.get_options()) {
-    const auto& values = option->results();
-    const bool takes_value = option->get_items_expected_max() > 0;
-    if (takes_value && std::ranges::find(values, "") != values.end()) {
-      throw UsageError(option->get_name() + ": is empty; give a value, or leave the option out");
-    }
-  }
-}
-
 }  // namespace
 
 void add_power_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<PowerArguments>();
-  CLI::App* command = program.add_subcommand(
-      "power",
-      "Estimate a study's power, type-I error and interval widths by simulating it many times");
-  add_study_argument(*command, arguments->study);
-  add_plan_options(*command, *arguments);
-  add_jobs_option(*command, arguments->jobs);
-  add_json_flag(*command, arguments->json);
-  command->callback([=, &action] {
-    refuse_empty_values(*command);
-    for (const CLI::Option* option : command->get_options()) {
-      if (option->count() > 0) arguments->given.push_back(option->get_name());
-    }
-    action = [=] { return power(*arguments); };
-  });
+  const auto [command, arguments] = add_command(
+      program, action, "power",
+      "Estimate a study's power, type-I error and interval widths by simulating it many times",
+      power);
+  arguments.command = &command;
+  add_study_argument(command, arguments.study);
+  add_plan_options(command, arguments);
+  add_jobs_option(command, arguments.jobs);
+  add_json_flag(command, arguments.json);
 }
 
 }  // namespace touchtrial::app

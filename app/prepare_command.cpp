@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -241,18 +240,17 @@ int prepare(const PrepareArguments& arguments) {
 }  // namespace
 
 void add_prepare_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<PrepareArguments>();
-  CLI::App* command = program.add_subcommand(
-      "prepare", "Make a study's force fields and its key, as far as they are missing or changed");
-  add_study_argument(*command, arguments->study);
-  command->add_option("--pack", arguments->pack,
-                      "Folder of the pack; the key is beside it (default: <study>.pack)");
-  command->add_flag("--passphrase", arguments->passphrase,
-                    "Protect the key by a passphrase, which is asked for, or is the first line of "
-                    "--passphrase-file");
-  add_passphrase_option(*command);
-  add_json_flag(*command, arguments->json);
-  command->callback([=, &action] { action = [=] { return prepare(*arguments); }; });
+  const auto [command, arguments] = add_command(
+      program, action, "prepare",
+      "Make a study's force fields and its key, as far as they are missing or changed", prepare);
+  add_study_argument(command, arguments.study);
+  command.add_option("--pack", arguments.pack,
+                     "Folder of the pack; the key is beside it (default: <study>.pack)");
+  command.add_flag("--passphrase", arguments.passphrase,
+                   "Protect the key by a passphrase, which is asked for, or is the first line of "
+                   "--passphrase-file");
+  add_passphrase_option(command);
+  add_json_flag(command, arguments.json);
 }
 
 }  // namespace touchtrial::app

@@ -10,7 +10,6 @@
 #include "protocols/session/commitment.hpp"
 
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include <spdlog/spdlog.h>
@@ -63,15 +62,14 @@ int preregister(const PreregArguments& arguments) {
 }  // namespace
 
 void add_prereg_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<PreregArguments>();
-  CLI::App* command = program.add_subcommand(
-      "prereg", "Write the page to deposit before the first participant comes");
-  add_study_argument(*command, arguments->study);
-  add_pack_option(*command, arguments->pack);
-  add_key_option(*command, arguments->key, "Key of the study (default: beside the pack)");
-  command->add_option("-o,--output", arguments->output,
-                      "Markdown file to write (default: standard output)");
-  command->callback([=, &action] { action = [=] { return preregister(*arguments); }; });
+  const auto [command, arguments] =
+      add_command(program, action, "prereg",
+                  "Write the page to deposit before the first participant comes", preregister);
+  add_study_argument(command, arguments.study);
+  add_pack_option(command, arguments.pack);
+  add_key_option(command, arguments.key, "Key of the study (default: beside the pack)");
+  command.add_option("-o,--output", arguments.output,
+                     "Markdown file to write (default: standard output)");
 }
 
 }  // namespace touchtrial::app

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,19 +48,18 @@ int show_procedure(const ProcedureArguments& arguments) {
 }  // namespace
 
 void add_procedure_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<ProcedureArguments>();
-  CLI::App* command = program.add_subcommand(
-      "procedure",
-      "Replay answers through one adaptive track; print its levels and posterior as JSON");
-  add_study_argument(*command, arguments->study);
+  const auto [command, arguments] = add_command(
+      program, action, "procedure",
+      "Replay answers through one adaptive track; print its levels and posterior as JSON",
+      show_procedure);
+  add_study_argument(command, arguments.study);
   command
-      ->add_option("--answers", arguments->answers,
-                   "1 for right, 0 for wrong; empty: the first level alone")
+      .add_option("--answers", arguments.answers,
+                  "1 for right, 0 for wrong; empty: the first level alone")
       ->type_name("1,0,1..")
       ->required();
-  command->add_option("--track", arguments->track, "Number of the track")->capture_default_str();
-  command->add_flag("--json", arguments->json, "Implied");
-  command->callback([=, &action] { action = [=] { return show_procedure(*arguments); }; });
+  command.add_option("--track", arguments.track, "Number of the track")->capture_default_str();
+  command.add_flag("--json", arguments.json, "Implied");
 }
 
 }  // namespace touchtrial::app

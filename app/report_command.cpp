@@ -167,7 +167,8 @@ std::unique_ptr<const analysis::Results> with_levels_if_any(
   return planning::with_levels_elsewhere(std::move(results));
 }
 
-int report(ReportArguments arguments) {
+int report(const ReportArguments& given) {
+  ReportArguments arguments = given;
   const store::StudyStore store =
       store::StudyStore::open(arguments.database, store::StudyStore::Access::read_only);
   arguments.heads = heads_for(store, arguments);
@@ -194,41 +195,39 @@ int report(ReportArguments arguments) {
 }  // namespace
 
 void add_report_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<ReportArguments>();
-  CLI::App* command = program.add_subcommand(
-      "report", "Accuracy tables; before unblinding, only the quality of the data");
-  add_database_argument(*command, arguments->database);
-  add_key_option(*command, arguments->key);
-  CLI::Option* json = add_json_flag(*command, arguments->json);
-  CLI::Option* folder = command->add_option("-o,--out", arguments->folder,
-                                            "Folder for a page with all tables and figures, the "
-                                            "tables as Markdown and LaTeX, the figures "
-                                            "as SVG and PDF, and results.json");
+  const auto [command, arguments] =
+      add_command(program, action, "report",
+                  "Accuracy tables; before unblinding, only the quality of the data", report);
+  add_database_argument(command, arguments.database);
+  add_key_option(command, arguments.key);
+  CLI::Option* json = add_json_flag(command, arguments.json);
+  CLI::Option* folder = command.add_option("-o,--out", arguments.folder,
+                                           "Folder for a page with all tables and figures, the "
+                                           "tables as Markdown and LaTeX, the figures "
+                                           "as SVG and PDF, and results.json");
   folder->check(place_validator())->excludes(json);
-  add_force_flag(*command);
+  add_force_flag(command);
   command
-      ->add_option(
-          "--cues", arguments->cues,
+      .add_option(
+          "--cues", arguments.cues,
           "Read all traces for ideal observers; auto: with --out, if there are at most 2,500")
       ->check(CLI::IsMember({"auto", "yes", "no"}))
       ->capture_default_str();
-  CLI::Option* is_public = command->add_flag("--public", arguments->is_public,
-                                             "Leave out participants' ids, serial numbers, times "
-                                             "of day, and every reason, note and remark");
+  CLI::Option* is_public = command.add_flag("--public", arguments.is_public,
+                                            "Leave out participants' ids, serial numbers, times "
+                                            "of day, and every reason, note and remark");
   command
-      ->add_option(
-          "--trial", arguments->trial,
-          "Trial whose exploration is drawn over its texture, as P01:3 (default: if traces "
-          "are read, the first counted trial of each method)")
+      .add_option("--trial", arguments.trial,
+                  "Trial whose exploration is drawn over its texture, as P01:3 (default: if traces "
+                  "are read, the first counted trial of each method)")
       ->type_name("PARTICIPANT:N")
       ->excludes(is_public)
       ->needs(folder);
   command
-      ->add_flag("--paper-values", arguments->paper_values,
-                 "Mark the source paper's accuracies, of other images and another device, in the "
-                 "figure by class")
+      .add_flag("--paper-values", arguments.paper_values,
+                "Mark the source paper's accuracies, of other images and another device, in the "
+                "figure by class")
       ->needs(folder);
-  command->callback([=, &action] { action = [=] { return report(*arguments); }; });
 }
 
 }  // namespace touchtrial::app

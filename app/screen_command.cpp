@@ -39,11 +39,11 @@ int calibrate_screen(const ParticipantWindowOptions& options) {
 void add_screen_command(CLI::App& program, Action& action) {
   CLI::App* screen = program.add_subcommand("screen", "The size of what a monitor shows");
   screen->require_subcommand(1);
-  auto options = std::make_shared<ParticipantWindowOptions>();
-  CLI::App* command = screen->add_subcommand(
-      "calibrate", "Measure a monitor with a bank card, so that pictures have their true size");
-  add_window_options(*command, options->monitor, options->size_px);
-  command->callback([=, &action] { action = [=] { return calibrate_screen(*options); }; });
+  const auto [command, options] =
+      add_command(*screen, action, "calibrate",
+                  "Measure a monitor with a bank card, so that pictures have their true size",
+                  calibrate_screen);
+  add_window_options(command, options.monitor, options.size_px);
 }
 
 }  // namespace touchtrial::app

@@ -5,7 +5,6 @@
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 
-#include <memory>
 #include <string>
 
 #include <fmt/format.h>
@@ -39,29 +38,28 @@ int simulate(const SimulateArguments& arguments) {
 }  // namespace
 
 void add_simulate_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<SimulateArguments>();
-  simulation::SimulationOptions& options = arguments->study.options;
-  CLI::App* command = program.add_subcommand(
-      "simulate", "Run a whole study with simulated participants, in virtual time");
-  add_study_argument(*command, arguments->study.study);
+  const auto [command, arguments] =
+      add_command(program, action, "simulate",
+                  "Run a whole study with simulated participants, in virtual time", simulate);
+  simulation::SimulationOptions& options = arguments.study.options;
+  add_study_argument(command, arguments.study.study);
   command
-      ->add_option("--db", arguments->study.database,
-                   "Database to make; its key is written to DB.key")
+      .add_option("--db", arguments.study.database,
+                  "Database to make; its key is written to DB.key")
       ->check(place_validator())
       ->required();
-  add_count_option(*command, "--participants", options.participants, "Number of participants", 1,
+  add_count_option(command, "--participants", options.participants, "Number of participants", 1,
                    100000);
-  add_count_option(*command, "--first-participant", options.first_participant,
+  add_count_option(command, "--first-participant", options.first_participant,
                    "Number of the first participant, for a station whose database will be merged",
                    1, 1'000'000);
-  add_seed_option(*command, options.seed, "Seed of everything random in participants");
-  add_subject_option(*command, arguments->study.subject);
-  add_on_option(*command, arguments->study.on);
-  add_jobs_option(*command, options.jobs);
-  command->add_flag("--keep-blind", arguments->study.keep_blind,
-                    "Do not close and unblind at the end");
-  add_json_flag(*command, arguments->json);
-  command->callback([=, &action] { action = [=] { return simulate(*arguments); }; });
+  add_seed_option(command, options.seed, "Seed of everything random in participants");
+  add_subject_option(command, arguments.study.subject);
+  add_on_option(command, arguments.study.on);
+  add_jobs_option(command, options.jobs);
+  command.add_flag("--keep-blind", arguments.study.keep_blind,
+                   "Do not close and unblind at the end");
+  add_json_flag(command, arguments.json);
 }
 
 }  // namespace touchtrial::app

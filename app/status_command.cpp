@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -335,15 +334,15 @@ int show_status(const StatusArguments& arguments) {
 }  // namespace
 
 void add_status_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<StatusArguments>();
-  CLI::App* command = program.add_subcommand(
-      "status", "Who is done, who is open, what is left to do, and the next participant's command");
-  add_database_argument(*command, arguments->database);
-  command->add_option("--study", arguments->study,
-                      "Study file (default: the one of the station's file beside the database or "
-                      "here)");
-  add_json_flag(*command, arguments->json);
-  command->callback([=, &action] { action = [=] { return show_status(*arguments); }; });
+  const auto [command, arguments] = add_command(
+      program, action, "status",
+      "Who is done, who is open, what is left to do, and the next participant's command",
+      show_status);
+  add_database_argument(command, arguments.database);
+  command.add_option("--study", arguments.study,
+                     "Study file (default: the one of the station's file beside the database or "
+                     "here)");
+  add_json_flag(command, arguments.json);
 }
 
 }  // namespace touchtrial::app

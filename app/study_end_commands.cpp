@@ -8,7 +8,6 @@
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -168,37 +167,35 @@ int unblind(const UnblindArguments& arguments) {
 }
 
 void add_close_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<CloseArguments>();
-  CLI::App* command = program.add_subcommand("close", "End collection: no session can be added");
-  add_database_argument(*command, arguments->database);
-  add_signing_options(*command, arguments->files);
-  add_yes_flag(*command, arguments->yes);
-  command->callback([=, &action] { action = [=] { return close(*arguments); }; });
+  const auto [command, arguments] =
+      add_command(program, action, "close", "End collection: no session can be added", close);
+  add_database_argument(command, arguments.database);
+  add_signing_options(command, arguments.files);
+  add_yes_flag(command, arguments.yes);
 }
 
 void add_unblind_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<UnblindArguments>();
-  CLI::App* command = program.add_subcommand(
-      "unblind", "Record that outcomes are looked at; report then shows them");
-  add_database_argument(*command, arguments->database);
-  command->add_option("--reason", arguments->reason, "Why; recorded")->required();
+  const auto [command, arguments] =
+      add_command(program, action, "unblind",
+                  "Record that outcomes are looked at; report then shows them", unblind);
+  add_database_argument(command, arguments.database);
+  command.add_option("--reason", arguments.reason, "Why; recorded")->required();
   CLI::Option* interim =
-      command->add_flag("--interim", arguments->interim,
-                        "Look at the sessions that have ended, before collection is closed; at a "
-                        "registered look, at the registered question alone");
+      command.add_flag("--interim", arguments.interim,
+                       "Look at the sessions that have ended, before collection is closed; at a "
+                       "registered look, at the registered question alone");
   command
-      ->add_flag("--unregistered", arguments->unregistered,
-                 "With --interim: look at everything, whatever looks were registered; the report "
-                 "lists it as a departure from the plan")
+      .add_flag("--unregistered", arguments.unregistered,
+                "With --interim: look at everything, whatever looks were registered; the report "
+                "lists it as a departure from the plan")
       ->needs(interim);
   command
-      ->add_option("--participant", arguments->participant,
-                   "Look at this participant's outcomes alone, at any time")
+      .add_option("--participant", arguments.participant,
+                  "Look at this participant's outcomes alone, at any time")
       ->excludes(interim);
-  add_key_option(*command, arguments->files.key);
-  add_accept_loss_option(*command, arguments->files.accept_loss);
-  add_yes_flag(*command, arguments->yes);
-  command->callback([=, &action] { action = [=] { return unblind(*arguments); }; });
+  add_key_option(command, arguments.files.key);
+  add_accept_loss_option(command, arguments.files.accept_loss);
+  add_yes_flag(command, arguments.yes);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include "protocols/collect/bundle_table.hpp"
 
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include <fmt/format.h>
@@ -71,15 +70,13 @@ int sync(const SyncArguments& arguments) {
 }  // namespace
 
 void add_sync_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<SyncArguments>();
-  CLI::App* command =
-      program.add_subcommand("sync", "Send finished sessions to a PostgreSQL database");
-  add_database_argument(*command, arguments->database, "Database of the station");
+  const auto [command, arguments] =
+      add_command(program, action, "sync", "Send finished sessions to a PostgreSQL database", sync);
+  add_database_argument(command, arguments.database, "Database of the station");
   const std::string meaning = "postgresql://USER@HOST/DATABASE; ~/.pgpass has the password";
-  command->add_option("SERVER", arguments->server, meaning)->required();
-  command->add_flag("--dry-run", arguments->dry_run, "Show what would be sent, and change nothing");
-  add_json_flag(*command, arguments->json);
-  command->callback([=, &action] { action = [=] { return sync(*arguments); }; });
+  command.add_option("SERVER", arguments.server, meaning)->required();
+  command.add_flag("--dry-run", arguments.dry_run, "Show what would be sent, and change nothing");
+  add_json_flag(command, arguments.json);
 }
 
 }  // namespace touchtrial::app

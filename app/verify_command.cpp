@@ -8,7 +8,6 @@
 #include <cctype>
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,23 +58,22 @@ int verify(const VerifyArguments& arguments) {
 }  // namespace
 
 void add_verify_command(CLI::App& program, Action& action) {
-  auto arguments = std::make_shared<VerifyArguments>();
-  CLI::App* command = program.add_subcommand(
-      "verify", "Check chain, seal, schedule, payloads and pack against each other");
-  add_database_argument(*command, arguments->database);
-  add_key_option(*command, arguments->key, "Key of the study (default: DB.key, if it exists)");
-  command->add_option("--pack", arguments->pack,
-                      "Pack of the study (default: the one that the key names, or one of that "
-                      "name beside the database or here)");
-  command->add_option(
-      "--head", arguments->head,
+  const auto [command, arguments] =
+      add_command(program, action, "verify",
+                  "Check chain, seal, schedule, payloads and pack against each other", verify);
+  add_database_argument(command, arguments.database);
+  add_key_option(command, arguments.key, "Key of the study (default: DB.key, if it exists)");
+  command.add_option("--pack", arguments.pack,
+                     "Pack of the study (default: the one that the key names, or one of that "
+                     "name beside the database or here)");
+  command.add_option(
+      "--head", arguments.head,
       "A former head of the file's chain, of a day sheet for instance, which the chain must still "
       "contain");
-  command->add_option("--head-file", arguments->heads,
-                      "A further head file, whose knowledge the database must have; of a merged "
-                      "database, a station's");
-  add_json_flag(*command, arguments->json);
-  command->callback([=, &action] { action = [=] { return verify(*arguments); }; });
+  command.add_option("--head-file", arguments.heads,
+                     "A further head file, whose knowledge the database must have; of a merged "
+                     "database, a station's");
+  add_json_flag(command, arguments.json);
 }
 
 }  // namespace touchtrial::app
