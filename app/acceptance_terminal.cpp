@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/text.hpp"
+#include "device/registry.hpp"
 
 #include <algorithm>
 #include <array>
@@ -105,15 +106,15 @@ AcceptanceTerminal::AcceptanceTerminal(const std::string& driver,
                                        const device::DeviceSettings& settings,
                                        device::Accelerometer* accelerometer)
     : accelerometer_(accelerometer),
-      opened_(driver, settings),
-      limits_(limits_of(opened_.device(), settings.use_of(driver))),
-      run_(opened_, with_motors(opened_.device()), limits_, device::kServoRateHz, false) {
+      device_(device::open_device(driver, settings)),
+      limits_(limits_of(*device_, settings.use_of(driver))),
+      run_(with_motors(*device_), limits_, device::kServoRateHz, false) {
   tell(
       "Before each step this program says what it will do. Enter goes on, s leaves the step out, "
       "q ends.\nCtrl-C switches the force off at once, at any time.\n");
   run_.wait_until_ready(kReadyLimitS);
   require_going_on();
-  info_ = opened_.device().info();
+  info_ = device_->info();
 }
 
 device::SafetyLimits AcceptanceTerminal::limits() const {
@@ -130,8 +131,8 @@ void AcceptanceTerminal::limit_force(double most_n) {
 device::ServoReport AcceptanceTerminal::run(const std::string& name,
                                             device::Measurement& measurement) {
   const auto report =
-      run_.run([&](std::int64_t) { return name; }, measurement, measurement.seconds() + kMoreTimeS,
-               [&] { return measurement.done(); }, &measurement);
+      run_.run([&](std::int64_t) { return name; }, measurement, measurement,
+               measurement.seconds() + kMoreTimeS, [&] { return measurement.done(); });
   if (!report) throw AcceptanceStopped{};
   require_going_on();
   return *report;
@@ -148,7 +149,7 @@ device::Consent AcceptanceTerminal::ready(const device::Prompt& prompt) {
   while (true) {
     const std::string answer = answer_to("\n" + prompt.text + "\n[Enter, s, q] ");
     if (answer.empty()) {
-      opened_.device().rearm();  // a fault of the run before halted it
+      device_->rearm();  // a fault of the run before halted it
       return device::Consent::go;
     }
     if (answer == "s") return device::Consent::skip;

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -20,8 +21,8 @@ class AcceptanceTerminal final : public device::AcceptanceBench, public device::
  public:
   /// Opens the device and waits until it is ready.
   /// \param accelerometer  null: none
-  /// \throws AcceptanceStopped; DeviceError if it has no motors; as OpenedDevice and
-  ///   AttendedRun::wait_until_ready
+  /// \throws AcceptanceStopped; DeviceError if it has no motors; as
+  ///   device::open_device and AttendedRun::wait_until_ready
   AcceptanceTerminal(const std::string& driver, const device::DeviceSettings& settings,
                      device::Accelerometer* accelerometer = nullptr);
 
@@ -49,7 +50,7 @@ class AcceptanceTerminal final : public device::AcceptanceBench, public device::
   void require_going_on() const;
 
   device::Accelerometer* accelerometer_;
-  OpenedDevice opened_;
+  std::unique_ptr<device::HapticDevice> device_;
   device::SafetyLimits limits_;
   double most_n_ = std::numeric_limits<double>::infinity();  ///< of limit_force
   AttendedRun run_;

@@ -2,10 +2,9 @@
 
 #include "app/device_words.hpp"
 #include "core/errors.hpp"
-#include "device/registry.hpp"
+#include "device/servo/servo_clock.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -26,50 +25,14 @@ using namespace std::chrono_literals;
 constexpr std::chrono::nanoseconds kOnTerminal = 250ms;
 constexpr std::chrono::nanoseconds kOnPipe = 1s;
 
+/// Time between two looks at keys, signals and the servo.
+constexpr auto kBetweenLooks = 16ms;
+
 /// How long a signal waits at most for an answer that is being typed.
 constexpr int kAnswerPollMs = 100;
 
 /// A key that is held repeats sooner than this, even for the first time (660 ms by default in X).
 constexpr std::chrono::nanoseconds kFreshPress = 1s;
-
-/// A window that is blocked for two seconds loses no sample.
-constexpr double kRingS = 2.0;
-
-/// For the window's history, and for whoever else wants the samples.
-class SharedSink final : public device::SampleSink {
- public:
-  SharedSink(device::SampleRing& ring, device::SampleSink* other) : ring_(ring), other_(other) {}
-  void record(const device::ServoSample& sample) noexcept override {
-    ring_.record(sample);
-    if (other_ != nullptr) other_->record(sample);
-  }
-
- private:
-  device::RingSink ring_;
-  device::SampleSink* other_;
-};
-
-/// Keeps the worst lateness.
-class WatchedClock final : public device::ServoClock {
- public:
-  WatchedClock(device::ServoClock& clock, std::atomic<std::int64_t>& worst_ns) noexcept
-      : clock_(clock), worst_ns_(worst_ns) {}
-
-  [[nodiscard]] Time now() noexcept override { return clock_.now(); }
-  void wait_until(Time time) noexcept override {
-    clock_.wait_until(time);
-    const std::int64_t late_ns = (clock_.now() - time).count();
-    // The reader may take the worst value at any moment; this one then counts for the next picture.
-    std::int64_t worst_ns = worst_ns_.load(std::memory_order_relaxed);
-    while (late_ns > worst_ns &&
-           !worst_ns_.compare_exchange_weak(worst_ns, late_ns, std::memory_order_relaxed)) {
-    }
-  }
-
- private:
-  device::ServoClock& clock_;
-  std::atomic<std::int64_t>& worst_ns_;
-};
 
 device::ServoOptions options_for(const device::SafetyLimits& limits, double rate_hz) {
   device::ServoOptions options;
@@ -118,44 +81,15 @@ std::optional<std::string> attended_answer(const std::string& question) {
   return std::nullopt;
 }
 
-OpenedDevice::OpenedDevice(const std::string& driver, const device::DeviceSettings& settings,
-                           bool with_window) {
-  if (with_window) window_ = std::make_unique<ReadingsWindow>(exchange_);
-  if (with_window && driver == device::kMouseDriver) {
-    device_ = std::make_unique<device::MouseDevice>(exchange_, clock_);
-  } else {
-    device_ = device::open_device(driver, settings);
-  }
-}
-
-OpenedDevice::~OpenedDevice() = default;
-
-void OpenedDevice::attend(const LiveReadings& now, const ReadingsHistory& history) {
-  if (window_) {
-    window_->draw(now, history);
-  } else {
-    std::this_thread::sleep_for(std::chrono::milliseconds(16));
-  }
-}
-
-bool OpenedDevice::stop_asked() const {
-  return window_ && window_->stop_asked();
-}
-
-AttendedRun::AttendedRun(OpenedDevice& opened, device::HapticDevice& device,
-                         const device::SafetyLimits& limits, double rate_hz, bool keys)
-    : opened_(opened),
-      device_(device),
+AttendedRun::AttendedRun(device::HapticDevice& device, const device::SafetyLimits& limits,
+                         double rate_hz, bool keys)
+    : device_(device),
       options_(options_for(limits, rate_hz)),
       max_force_n_(limits.max_force_n),
       recorder_(kRecordedS, rate_hz),
-      ring_(static_cast<std::size_t>(kRingS * rate_hz)),
-      history_(rate_hz),
-      shown_info_(device.info()),
       watchdog_(device, control_, heartbeat_, device::Watchdog::silence_for(device.info())),
       signals_(device, control_),
       on_terminal_(::isatty(STDERR_FILENO) != 0) {
-  if (&device != &opened.device()) shown_info_.workspace.reset();
   if (!keys) return;
   device::StopOnSignals::before_dying(TerminalKeys::restore);
   keys_.emplace();
@@ -167,9 +101,9 @@ AttendedRun::~AttendedRun() {
 }
 
 std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
-                                                    device::ForceSource& force, double seconds,
-                                                    const std::function<bool()>& is_done,
-                                                    device::SampleSink* sink) {
+                                                    device::ForceSource& force,
+                                                    device::SampleSink& sink, double seconds,
+                                                    const std::function<bool()>& is_done) {
   if (device::StopOnSignals::asked()) stop_ = AttendedStop::signal;
   if (stop_ != AttendedStop::none) return std::nullopt;
   options_.limit_ticks = std::llround(seconds * options_.rate_hz);
@@ -184,14 +118,12 @@ std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
                                  .recorder = &recorder_,
                                  .heat = &heat_,
                                  .parameters = &parameters_};
-  SharedSink samples(ring_, sink);
   device::RunningServo running(thread_, control_, [&] {
-    device::PacedClock paced(device::PacedClock::usual_spin(thread_.scheduling().policy));
-    WatchedClock clock(paced, worst_late_ns_);
-    report = device::run_servo(device_, force, samples, options_, clock, hooks);
+    device::PacedClock clock(device::PacedClock::usual_spin(thread_.scheduling().policy));
+    report = device::run_servo(device_, force, sink, options_, clock, hooks);
   });
   while (running.runs()) {
-    opened_.attend(collect(phase), history_);
+    std::this_thread::sleep_for(kBetweenLooks);
     take_keys();
     if (is_done && is_done()) control_.finish();
     show(phase);
@@ -215,7 +147,7 @@ void AttendedRun::wait_until_ready(double limit_s) {
     std::fprintf(stderr, "%s: %s%s\n", name.c_str(), advice.c_str(), asks ? "; then press h" : "");
   }
   NoForce nothing;
-  const auto report = run([](std::int64_t) { return "homing"; }, nothing, limit_s,
+  const auto report = run([](std::int64_t) { return "homing"; }, nothing, nothing, limit_s,
                           [&] { return device_.readiness() == device::DeviceReadiness::ready; });
   if (stop_ != AttendedStop::none) return;
   if (report && report->end == device::ServoEnd::fault) {
@@ -237,10 +169,6 @@ std::string AttendedRun::flight_record() const {
 
 void AttendedRun::take_keys() {
   if (device::StopOnSignals::asked()) stop_ = AttendedStop::signal;
-  if (opened_.stop_asked() && stop_ == AttendedStop::none) {
-    stop_ = AttendedStop::comfort;
-    control_.comfort_stop();
-  }
   if (!keys_) return;
   for (auto key = keys_->next(); key; key = keys_->next()) {
     if (stop_ != AttendedStop::none) continue;
@@ -284,17 +212,6 @@ void AttendedRun::show(const PhaseName& phase) {
   std::fflush(stderr);
   shown_at_ = now;
   shown_tick_ = newest.tick;
-}
-
-LiveReadings AttendedRun::collect(const PhaseName& phase) {
-  std::array<device::ServoSample, 256> samples;
-  while (const std::size_t count = ring_.pop(samples)) {
-    for (std::size_t i = 0; i < count; ++i) history_.add(samples[i]);
-  }
-  const device::ServoState& newest = state_.get();
-  const std::int64_t late_ns = worst_late_ns_.exchange(0, std::memory_order_relaxed);
-  history_.add_lateness(1e-3 * static_cast<double>(late_ns));
-  return {shown_info_, phase(newest.tick), newest, options_.rate_hz};
 }
 
 void AttendedRun::end_line() {

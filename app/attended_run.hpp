@@ -1,63 +1,29 @@
-/// \file A device that a person opens by its name, and runs of its servo that the person attends at
-/// a terminal: live numbers, keys, watchdog, signals.
+/// \file Runs of a device's servo that a person attends at a terminal: live numbers, keys, watchdog,
+/// signals.
 #pragma once
 
-#include "app/readings/history.hpp"
-#include "app/readings/readings_window.hpp"
 #include "app/terminal_keys.hpp"
-#include "device/device_settings.hpp"
 #include "device/haptic_device.hpp"
-#include "device/mouse/mouse_device.hpp"
 #include "device/platform/stop_signals.hpp"
 #include "device/safety/watchdog.hpp"
 #include "device/servo/flight_recorder.hpp"
-#include "device/servo/sample_ring.hpp"
 #include "device/servo/servo.hpp"
-#include "device/servo/servo_clock.hpp"
 #include "device/servo/servo_thread.hpp"
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 
 namespace touchtrial::app {
 
-/// A device of any driver of the registry, with a window of its readings or without. Belongs to the
-/// main thread, which must call `attend` repeatedly while a servo runs the device on another
-/// thread: a window that is not attended to counts as a hand that lets go.
-class OpenedDevice {
- public:
-  /// \param with_window  whether to show one, which the device "mouse" needs
-  /// \throws as open_device; DeviceError if no window can be opened
-  OpenedDevice(const std::string& driver, const device::DeviceSettings& settings,
-               bool with_window = false);
-  ~OpenedDevice();
-  OpenedDevice(const OpenedDevice&) = delete;
-  OpenedDevice& operator=(const OpenedDevice&) = delete;
-
-  [[nodiscard]] device::HapticDevice& device() noexcept { return *device_; }
-  /// Draws one picture of the window. Takes about 16 ms, with or without a window.
-  void attend(const LiveReadings& now, const ReadingsHistory& history);
-  /// Null: there is none.
-  [[nodiscard]] ReadingsWindow* window() noexcept { return window_.get(); }
-  /// Whether the person pressed the space bar in the window, or closed it.
-  [[nodiscard]] bool stop_asked() const;
-
- private:
-  device::PointerExchange exchange_;
-  device::PacedClock clock_{device::PacedClock::Time{}};
-  std::unique_ptr<ReadingsWindow> window_;
-  std::unique_ptr<device::HapticDevice> device_;
-};
-
 /// Why a person or a signal stopped a run.
 enum class AttendedStop {
   none,
   quit,     ///< q
-  comfort,  ///< the space bar, or closing the window
+  comfort,  ///< the space bar
   signal,   ///< Ctrl-C, or another signal that ends the program
 };
 
@@ -69,11 +35,13 @@ enum class AttendedStop {
 /// \throws UsageError at the end of the input
 [[nodiscard]] std::optional<std::string> attended_answer(const std::string& question);
 
-class NoForce final : public device::ForceSource {
+/// Exerts no force and keeps no sample.
+class NoForce final : public device::ForceSource, public device::SampleSink {
  public:
   [[nodiscard]] Vec3 force_n(const device::DeviceSample& /*sample*/) noexcept override {
     return {};
   }
+  void record(const device::ServoSample& /*sample*/) noexcept override {}
 };
 
 /// The time within which a person can home a device.
@@ -86,24 +54,22 @@ class AttendedRun {
   /// The name, at most 8 letters, of the phase that a tick belongs to, for the live line.
   using PhaseName = std::function<std::string(std::int64_t tick)>;
 
-  /// \param opened  the device to attend to; must outlive this
-  /// \param device  the device of `opened`, or a PlacedDevice around it; must outlive this
+  /// \param device  must outlive this
   /// \param limits,rate_hz  as ServoOptions
   /// \param keys  whether q and the space bar are read from standard input
-  AttendedRun(OpenedDevice& opened, device::HapticDevice& device,
-              const device::SafetyLimits& limits, double rate_hz, bool keys = true);
+  AttendedRun(device::HapticDevice& device, const device::SafetyLimits& limits, double rate_hz,
+              bool keys = true);
   ~AttendedRun();
   AttendedRun(const AttendedRun&) = delete;
   AttendedRun& operator=(const AttendedRun&) = delete;
 
-  /// Runs the servo in real time until it ends. Attends to window and keys, and shows a live line
-  /// on standard error. No run begins after a stop.
+  /// Runs the servo in real time until it ends. Attends to keys, and shows a live line on standard
+  /// error. No run begins after a stop.
   /// \param is_done  called repeatedly; once it returns true, the force fades and the run ends
-  /// \param sink  receives the samples; may be null
   /// \return nothing if there was a stop before
   std::optional<device::ServoReport> run(const PhaseName& phase, device::ForceSource& force,
-                                         double seconds, const std::function<bool()>& is_done = {},
-                                         device::SampleSink* sink = nullptr);
+                                         device::SampleSink& sink, double seconds,
+                                         const std::function<bool()>& is_done = {});
 
   /// Tells the person what to do and runs without force until the device is ready. Returns at once
   /// if it is ready already. A person who has put the arm at its reset position says so by the key
@@ -129,11 +95,8 @@ class AttendedRun {
   void take_keys();
   void take_strength(char key);
   void show(const PhaseName& phase);
-  /// \return what the window shows now
-  [[nodiscard]] LiveReadings collect(const PhaseName& phase);
   void end_line();
 
-  OpenedDevice& opened_;
   device::HapticDevice& device_;
   device::ServoOptions options_;
   double max_force_n_;  ///< of the limits that this was made with
@@ -143,10 +106,6 @@ class AttendedRun {
   device::MotorHeat heat_;
   std::atomic<std::int64_t> heartbeat_{0};
   device::FlightRecorder recorder_;
-  device::SampleRing ring_;  ///< from the servo to the history
-  ReadingsHistory history_;
-  std::atomic<std::int64_t> worst_late_ns_{0};  ///< since the last picture
-  device::DeviceInfo shown_info_;               ///< without a workspace where `device_` is placed
   device::ServoThread thread_;
   device::Watchdog watchdog_;
   device::StopOnSignals signals_;

@@ -120,8 +120,9 @@ device::ConformanceOptions options_of(const ConformArguments& arguments) {
 void expect_checkable(const ConformArguments& arguments, bool is_plugin) {
   if (arguments.target == device::kMouseDriver) {
     throw UsageError(
-        "conform: the mouse needs a window and a hand, and has no motors; try `touchtrial device "
-        "test mouse`");
+        "conform: the mouse needs a window and a hand, and has no motors; try it in a session, "
+        "with "
+        "`touchtrial run STUDY --db pilot.db --device mouse --pilot`");
   }
   if (arguments.force && !is_plugin) {
     throw UsageError("conform: what the motors of '" + one_line(arguments.target) +

@@ -9,13 +9,11 @@
 #include "core/errors.hpp"
 #include "core/outputs.hpp"
 #include "device/haptic_device.hpp"
-#include "device/mouse/mouse_device.hpp"
 #include "device/platform/realtime.hpp"
 #include "device/registry.hpp"
 #include "device/servo/force_sequence.hpp"
 #include "device/servo/servo.hpp"
 #include "device/workspace_fit.hpp"
-#include "engine/pictures/colour_image.hpp"
 #include "protocols/session/exploration.hpp"
 
 #include <cmath>
@@ -178,8 +176,6 @@ struct TestArguments {
   double rate_hz = device::kServoRateHz;
   bool watch = false;
   bool wall_only = false;
-  bool window = false;
-  fs::path screenshot;
   bool json = false;
   fs::path fault_record;
 };
@@ -189,20 +185,16 @@ class DeviceForTest {
  public:
   DeviceForTest(const TestArguments& arguments, const device::DeviceSettings& settings)
       : use_(settings.use_of(arguments.driver)),
-        opened_(arguments.driver, settings,
-                arguments.window || arguments.driver == device::kMouseDriver) {
-    ReadingsWindow* const window = opened_.window();
-    if (window != nullptr && !arguments.screenshot.empty()) window->window().keep_pictures();
+        opened_(device::open_device(arguments.driver, settings)) {
     if (arguments.watch) return;
-    const device::DeviceInfo info = opened_.device().info();
+    const device::DeviceInfo info = opened_->info();
     texture_.emplace(info.workspace ? kPlacedSidePx : kFreeSidePx, info.max_stiffness_n_per_mm);
     const device::WorkspaceFit fit = device::fit_plane(texture_->plane(), info.workspace, use_);
-    if (fit.placement) placed_.emplace(opened_.device(), *fit.placement);
+    if (fit.placement) placed_.emplace(*opened_, *fit.placement);
   }
 
-  [[nodiscard]] OpenedDevice& opened() noexcept { return opened_; }
   [[nodiscard]] device::HapticDevice& device() noexcept {
-    return placed_ ? static_cast<device::HapticDevice&>(*placed_) : opened_.device();
+    return placed_ ? static_cast<device::HapticDevice&>(*placed_) : *opened_;
   }
   [[nodiscard]] const TestTexture& texture() const { return texture_.value(); }
   [[nodiscard]] device::SafetyLimits limits() const noexcept {
@@ -211,7 +203,7 @@ class DeviceForTest {
 
  private:
   device::DeviceUse use_;
-  OpenedDevice opened_;
+  std::unique_ptr<device::HapticDevice> opened_;
   std::optional<TestTexture> texture_;
   std::optional<device::PlacedDevice> placed_;
 };
@@ -234,7 +226,7 @@ void watch(const TestArguments& arguments, device::HapticDevice& device, Attende
   NoForce none;
   device::ForceSequence counted(none, none, std::numeric_limits<std::int64_t>::max(), 1);
   const double seconds = arguments.seconds > 0.0 ? arguments.seconds : kWatchS;
-  test.run = run.run([](std::int64_t) { return "watch"; }, counted, seconds, {}, &counted);
+  test.run = run.run([](std::int64_t) { return "watch"; }, counted, counted, seconds);
   if (test.run) test.phases.push_back({"watch", counted.first()});
 }
 
@@ -255,7 +247,7 @@ void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun&
   std::fputs(
       (fmt::format(kKeys, "right, down, off the plane") + "- and + change the strength\n").c_str(),
       stderr);
-  test.run = run.run(phase, sequence, seconds, {}, &sequence);
+  test.run = run.run(phase, sequence, sequence, seconds);
   if (!test.run) return;
   test.phases.push_back({"wall", sequence.first()});
   if (sequence.second().ticks > 0) test.phases.push_back({"texture", sequence.second()});
@@ -277,10 +269,9 @@ int outcome_of(const DeviceTest& test, const AttendedRun& run) {
 
 int test_device(const TestArguments& arguments) {
   require_output_place(record_path(arguments));
-  if (!arguments.screenshot.empty()) require_output_place(arguments.screenshot);
   const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   DeviceForTest tested(arguments, settings);
-  AttendedRun run(tested.opened(), tested.device(), tested.limits(), arguments.rate_hz);
+  AttendedRun run(tested.device(), tested.limits(), arguments.rate_hz);
   DeviceTest test;
   if (arguments.watch) {
     test.device = tested.device().info();
@@ -296,10 +287,6 @@ int test_device(const TestArguments& arguments) {
   if (test.run && test.run->end == device::ServoEnd::fault && run.stop() != AttendedStop::signal) {
     test.fault_record = record_path(arguments);
     write_output(test.fault_record, run.flight_record());
-  }
-  if (ReadingsWindow* const window = tested.opened().window();
-      window != nullptr && test.run && !arguments.screenshot.empty()) {
-    write_output(arguments.screenshot, engine::png_bytes(window->window().picture()));
   }
   print(arguments.json ? test_json(test) : test_text(test));
   return outcome_of(test, run);
@@ -323,11 +310,6 @@ void add_device_test_command(CLI::App& device, Action& action) {
       command->add_flag("--watch", arguments->watch, "Readings alone, in the device's own frame");
   add_rate_option(*command, arguments->rate_hz);
   command->add_flag("--wall-only", arguments->wall_only, "No texture")->excludes(watch);
-  CLI::Option* window = command->add_flag("--window", arguments->window,
-                                          "Graphs in a window, which the device mouse always has");
-  command
-      ->add_option("--screenshot", arguments->screenshot, "Write the window's last picture as PNG")
-      ->needs(window);
   add_force_flag(*command);
   add_json_flag(*command, arguments->json);
   command->add_option("--fault-record", arguments->fault_record,

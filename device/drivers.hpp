@@ -28,8 +28,7 @@ namespace touchtrial::device {
 [[nodiscard]] DeviceDriver plugin_driver();
 
 /// `list` finds a mouse where the environment names a display (DISPLAY, WAYLAND_DISPLAY). `open`
-/// throws DeviceError, as a window belongs to the application: its OpenedDevice (app) makes
-/// the window and the MouseDevice, and opens every other driver too.
+/// throws DeviceError, as a window belongs to the application, which makes the MouseDevice too.
 [[nodiscard]] DeviceDriver mouse_driver();
 
 /// `open` makes a hand that strokes a square plane of 100 mm for eight hours, always along the same

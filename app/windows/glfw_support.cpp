@@ -206,17 +206,6 @@ bool is_made_up(int size_mm, int width) noexcept {
   return std::abs(width * kMmPerInch / 96.0 - size_mm) < 1.0;
 }
 
-float primary_density() {
-  float density = 1.0F;
-#ifndef __APPLE__
-  // On macOS window units hide the density.
-  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) {
-    glfwGetMonitorContentScale(monitor, &density, nullptr);
-  }
-#endif
-  return std::clamp(density, 1.0F, 4.0F);
-}
-
 double stated_mm_per_unit(int size_mm, int width) noexcept {
   if (size_mm <= 0 || width <= 0) return 0.0;
   const double mm_per_unit = static_cast<double>(size_mm) / width;

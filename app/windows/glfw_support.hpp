@@ -46,9 +46,6 @@ struct ScreenScale {
 /// Call it on the main thread while GLFW is running.
 [[nodiscard]] ScreenScale screen_scale(GLFWwindow* window);
 
-/// The density of the primary monitor, for a window that does not exist yet.
-[[nodiscard]] float primary_density();
-
 /// \param size_mm  as the monitor states it: many projectors and emulators state 0 or nonsense
 /// \param width  window units of the same monitor
 /// \return millimetres for one window unit, or 0 where the statement cannot be true: outside 40 to

@@ -170,8 +170,8 @@ std::mutex& imgui_turn() {
   return turn;
 }
 
-void draw_stylus(Vec2 at, bool pressed, bool is_live, float density) {
-  const ImU32 colour = is_live ? IM_COL32(0, 70, 130, 255) : IM_COL32(130, 130, 130, 255);
+void draw_stylus(Vec2 at, bool pressed, float density) {
+  constexpr ImU32 colour = IM_COL32(0, 70, 130, 255);
   const ImVec2 centre = imgui_vec(at);
   const float radius = 8.0F * density;
   ImDrawList& list = *ImGui::GetWindowDrawList();

@@ -24,8 +24,6 @@ using PackedColour = std::uint32_t;
 ///@{
 inline constexpr PackedColour kBlue = 0xFFB27200;        ///< 0 114 178
 inline constexpr PackedColour kVermillion = 0xFF005ED5;  ///< 213 94 0
-inline constexpr PackedColour kGreen = 0xFF739E00;       ///< 0 158 115
-inline constexpr PackedColour kBlack = 0xFF202020;
 inline constexpr PackedColour kWhite = 0xFFFFFFFF;
 inline constexpr PackedColour kGrey = 0xFF6E6E6E;
 inline constexpr PackedColour kPale = 0xFFE4E4E4;
@@ -34,7 +32,7 @@ inline constexpr PackedColour kPale = 0xFFE4E4E4;
 /// Loads two sizes of one typeface into ImGui's current context: text, then large text that is read
 /// from a distance. The typeface is DejaVu Sans or a similar one that is installed, else ImGui's
 /// own, enlarged.
-/// \param density  as GlfwWindow::density, >= 1
+/// \param density  as ScreenScale::density, >= 1
 void load_fonts(float density);
 
 /// The index of the large text in ImGui's list of fonts; that of the text is 0.
@@ -62,11 +60,10 @@ std::vector<ImFont*> load_letters(std::span<const FontSize> sizes,
 /// \throws DeviceError with the letters and the remedy if no installed typeface has some of them
 void require_letters(const std::set<char32_t>& letters);
 
-/// Draws the stylus into ImGui's current window: a ring, which is filled while the stylus is
-/// pressed, and grey where nobody moves it.
+/// Draws the stylus into ImGui's current window: a ring, which is filled while it is pressed.
 /// \param at  window units
-/// \param density  as GlfwWindow::density
-void draw_stylus(Vec2 at, bool pressed, bool is_live, float density);
+/// \param density  as ScreenScale::density
+void draw_stylus(Vec2 at, bool pressed, float density);
 
 [[nodiscard]] ImVec2 imgui_vec(Vec2 point) noexcept;
 

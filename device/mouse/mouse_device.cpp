@@ -67,8 +67,8 @@ std::vector<DeviceListing> list_mouse(const DeviceSettings&) {
 
 std::unique_ptr<HapticDevice> refuse_without_window(const DeviceSettings&) {
   throw DeviceError(
-      "mouse: it needs a window, which this command does not open; use touchtrial device test "
-      "mouse");
+      "mouse: it moves in a participant's window, which this command does not open; try it in a "
+      "session, with touchtrial run STUDY --db pilot.db --device mouse --pilot");
 }
 
 }  // namespace

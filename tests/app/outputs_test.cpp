@@ -38,16 +38,13 @@ const std::vector<Output> kReplaced = {
     {"report", "--out", "@cloths.db --cues no --out @r", "r/report.html"},
     {"device accept", "--certificate", "--emulate touch --certificate @c.json", "c.html"},
     {"device test", "--fault-record", "falcon --fault-record @o.csv", "o.csv", Runs::to_refusal},
-    {"device test", "--screenshot", "falcon --window --screenshot @o.png", "o.png",
-     Runs::to_refusal},
 };
 
 /// Never replaced, and without --force.
 const std::vector<Output> kNeverReplaced = {
     {"prereg", "--output", "@cloths.json --output @o.md", "o.md"},
     {"simulate", "--db", "@cloths.json --participants 1 --db @o.db", "o.db"},
-    {"run", "--db", "@cloths.json --participant P01 --subject @quick.json --headless --db @o.db",
-     "o.db"},
+    {"run", "--db", "@cloths.json --participant P01 --subject @quick.json --db @o.db", "o.db"},
     {"merge", "--out", "@cloths.db --out @o.db", "o.db"},
     {"key sheet", "--out", "@cloths.key --out @o.html", "o.html"},
     {"key restore", "--out", "@cloths.json --out @o.key", "o.key"},
@@ -337,8 +334,7 @@ TEST_CASE("a run that is refused leaves nothing: no database, no pack, no head")
         "--subject @quick.json --db @nowhere/s.db"}) {
     INFO(refused);
     const std::string db = refused.find("--db") == std::string::npos ? " --db @s.db " : " ";
-    const ProgramResult result =
-        study.type("run @cloths.json --participant P01 --headless" + db + refused);
+    const ProgramResult result = study.type("run @cloths.json --participant P01" + db + refused);
     CHECK(result.exit_code > 0);
     CHECK(names_below(study.path()) == before);
   }

@@ -1,13 +1,12 @@
 // The participant's window on a virtual screen, driven by real key and mouse events.
 #include "app/participant/participant_window.hpp"
 
-#include "app/participant/window_subject.hpp"
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_control.hpp"
 #include "engine/pictures/colour_image.hpp"
-#include "protocols/simulation/simulated_participant.hpp"
 #include "stimuli/generator.hpp"
 #include "support/catch.hpp"
+#include "support/environment.hpp"
 #include "windows/virtual_screen.hpp"
 
 #include <algorithm>
@@ -15,7 +14,6 @@
 #include <chrono>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -524,79 +522,6 @@ TEST_CASE("a force above 2 N sounds a tone once, until it has been lower") {
   CHECK(cues.too_hard == 2);
 }
 
-/// A participant who chooses the pictures in turn.
-class Chooser final : public simulation::PromptParticipant {
- public:
-  void see_pictures(const std::vector<std::string>& /*labels*/) override {}
-  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& /*plane*/) override {
-    throw std::logic_error("not asked for");
-  }
-  void feel(const device::ServoSample& /*sample*/) noexcept override {}
-  [[nodiscard]] simulation::ParticipantAnswer answer() override {
-    return {next_++ % 5, std::chrono::seconds(3)};
-  }
-
- private:
-  int next_ = 0;
-};
-
-TEST_CASE("a simulated participant answers with the window's keys") {
-  Sitting sitting;
-  Chooser chooser;
-  sitting.run([&] {
-    app::WindowSubject subject(sitting.window, chooser, false);
-    subject.see_pictures(kLabels);
-    const auto reply_to = [&](const session::Step& step) {
-      const auto give_up = steady_clock::now() + kPatience;
-      while (steady_clock::now() < give_up) {
-        if (auto reply = subject.attend(step)) return *reply;
-      }
-      throw std::runtime_error("no reply");
-    };
-    CHECK_FALSE(reply_to(session::InstructionStep{{"one", "two", "three"}}).at);
-    design::Questionnaire questions{"closing", {}};
-    questions.questions.push_back({"a", design::QuestionKind::text, {{"en", "Text"}}, {}, false});
-    questions.questions.push_back(
-        {"b", design::QuestionKind::choice, {{"en", "One"}}, {{{"en", "x"}}, {{"en", "y"}}}, true});
-    questions.questions.push_back({"c", design::QuestionKind::number, {{"en", "Age"}}, {}, true});
-    questions.questions.push_back({"d", design::QuestionKind::text, {{"en", "Text"}}, {}, true});
-    CHECK(reply_to(session::QuestionStep{&questions}).answers ==
-          std::vector<std::string>{"", "0", "1", "1"});
-    const session::NoticeStep stopped{session::NoticeStep::What::stopped, 1, false};
-    for (int i = 0; i < 5; ++i) CHECK_FALSE(subject.attend(stopped));
-    static_cast<void>(reply_to(session::NoticeStep{session::NoticeStep::What::stopped, 1}));
-    for (int trial = 0; trial < 7; ++trial) {
-      static_cast<void>(reply_to(session::ReadyStep{trial + 1, 7, false}));
-      session::AnswerStep step = answer_step(trial + 1);
-      step.confidence_levels = trial % 2 == 0 ? 0 : 4;
-      const session::StepReply reply = reply_to(step);
-      CHECK(reply.position == trial % 5);
-      CHECK(reply.took == std::chrono::seconds(3));
-      CHECK(reply.confidence.has_value() == (trial % 2 == 1));
-    }
-    static_cast<void>(reply_to(session::EndStep{}));
-  });
-}
-
-TEST_CASE("a simulated participant waits between planes in real time only") {
-  app::ParticipantWindowOptions wanted = with_intervals();
-  const bool real_time = GENERATE(false, true);
-  wanted.interval_pause = real_time ? milliseconds(200) : kPatience;
-  Sitting sitting(wanted);
-  Chooser chooser;
-  sitting.run([&] {
-    app::WindowSubject subject(sitting.window, chooser, real_time);
-    const auto begun = steady_clock::now();
-    std::optional<session::StepReply> reply;
-    while (!reply && steady_clock::now() < begun + kPatience) {
-      reply = subject.attend(interval_step(1));
-    }
-    REQUIRE(reply);
-    if (real_time) CHECK(steady_clock::now() - begun >= milliseconds(200));
-    if (!real_time) CHECK(reply->took > std::chrono::nanoseconds(0));
-  });
-}
-
 TEST_CASE("where textures are made by several methods, the question is which picture fits best") {
   const auto asked_with = [](bool several, const std::string& title) {
     app::ParticipantWindowOptions wanted = options();
@@ -613,6 +538,27 @@ TEST_CASE("where textures are made by several methods, the question is which pic
   const engine::ColourImage fits = asked_with(true, "");
   CHECK(fits == asked_with(false, "Which picture fits best?"));
   CHECK(fits != asked_with(false, ""));
+}
+
+TEST_CASE("without a display the window says what to do about it") {
+  const EnvironmentVariable display("DISPLAY", nullptr);
+  const EnvironmentVariable wayland("WAYLAND_DISPLAY", nullptr);
+  CHECK_THROWS_WITH(app::ParticipantWindow(options()), holds_text("graphical session"));
+}
+
+TEST_CASE("a monitor's stated size is used only if it can be true") {
+  CHECK(app::stated_mm_per_unit(508, 1920) == Approx(0.26458).epsilon(1e-4));
+  CHECK(app::stated_mm_per_unit(160, 1920) == Approx(0.0833).epsilon(1e-3));
+  for (const auto& [size_mm, width] : {std::pair(0, 1920), {16, 1920}, {1600, 800}}) {
+    CHECK(app::stated_mm_per_unit(size_mm, width) == 0.0);
+  }
+}
+
+TEST_CASE("a size that the system made up for a monitor that states none is known as such") {
+  CHECK(app::is_made_up(508, 1920));
+  CHECK(app::is_made_up(339, 1280));
+  CHECK_FALSE(app::is_made_up(509, 1920));  // 23 inches
+  CHECK_FALSE(app::is_made_up(598, 3840));  // 27 inches
 }
 
 TEST_CASE("an error names a missing monitor, and how many there are") {
