@@ -4,7 +4,6 @@
 #include "core/errors.hpp"
 #include "protocols/design/station.hpp"
 
-#include <memory>
 #include <string>
 
 namespace touchtrial::app {
@@ -18,14 +17,10 @@ OnExisting policy_of(const std::string& text) {
                              "'" + text + "' is unknown; give refuse, resume or restart");
 }
 
-void check(const RunOptions& options) {
+int run(const RunOptions& options) {
   if (options.database.empty()) throw UsageError("run: --db is empty; give it a file name");
-  if (!options.is_simulated() && options.headless) {
-    throw UsageError(
-        "run: --headless is for simulated participants; add --subject, or omit --headless");
-  }
-  if (options.headless && options.device != RunOptions{}.device) {
-    throw UsageError("run: --device is for people; omit it with --headless");
+  if (options.is_simulated() && !options.device.empty()) {
+    throw UsageError("run: --device is for people; omit it with --subject");
   }
   if (!options.on.empty() && !options.is_simulated() && options.device != "simulated") {
     throw UsageError(
@@ -36,6 +31,7 @@ void check(const RunOptions& options) {
         "run: nobody can be asked for a simulated participant's id; give --participant, for "
         "instance S01");
   }
+  return run_study_session(options);
 }
 
 void add_session_options(CLI::App& command, RunOptions& options) {
@@ -109,27 +105,21 @@ void add_device_options(CLI::App& command, RunOptions& options) {
 void add_simulation_options(CLI::App& command, RunOptions& options) {
   command.add_option(
       "--subject", options.subject,
-      "Simulate the participant by this subject model, or by the built-in one if empty");
+      "Simulate the participant by this subject model, or by the built-in one if empty; without a "
+      "window");
   add_on_option(command, options.on);
   add_seed_option(command, options.seed, "Seed of the simulated participant");
-  command.add_flag("--headless", options.headless, "Open no window; for simulated participants");
   command.add_flag("--real-time", options.real_time, "Simulate the participant in real time");
 }
 
 }  // namespace
 
 void add_run_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<RunOptions>();
-  CLI::App* command = program.add_subcommand("run", "Run one session with one participant");
-  add_session_options(*command, *options);
-  add_device_options(*command, *options);
-  add_simulation_options(*command, *options);
-  command->callback([=, &action] {
-    action = [=] {
-      check(*options);
-      return run_study_session(*options);
-    };
-  });
+  const auto [command, options] =
+      add_command(program, action, "run", "Run one session with one participant", run);
+  add_session_options(command, options);
+  add_device_options(command, options);
+  add_simulation_options(command, options);
 }
 
 }  // namespace touchtrial::app

@@ -92,7 +92,7 @@ void ExploringScreen::paint_plane(Canvas& canvas) {
   const device::StylusState stylus = view_.pointer->stylus();
   if (stylus.sequence == 0) return;
   draw_stylus(placed.corner + (1.0 / placed.mm_per_unit) * stylus.position_mm,
-              view_.pressed->load(), true, static_cast<float>(unit));
+              view_.pressed->load(), static_cast<float>(unit));
 }
 
 const std::string& ExploringScreen::below_plane() const {

@@ -5,7 +5,6 @@
 #include "app/experimenter/terminal_face.hpp"
 #include "app/participant/page_layout.hpp"
 #include "app/participant/participant_window.hpp"
-#include "app/participant/window_subject.hpp"
 #include "app/participant_ids.hpp"
 #include "app/run/database_watch.hpp"
 #include "app/run/participant_dialogue.hpp"
@@ -94,12 +93,6 @@ std::string why_gone(const ParticipantWindow& window) {
   if (!gone || *gone == WindowGone::signal) return "";
   return *gone == WindowGone::closed ? "the participant's window was closed"
                                      : "the participant's monitor was unplugged";
-}
-
-/// Why the program is to end, apart from signals; empty: it is not to end.
-std::string why_ended(DatabaseWatch& watch, const ParticipantWindow* window) {
-  std::string why = watch.trouble();
-  return why.empty() && window != nullptr ? why_gone(*window) : why;
 }
 
 /// While another program has the database locked: shows why the session waits.
@@ -379,7 +372,11 @@ class PersonsSession {
     DatabaseWatch watch(options_.database);
     FocusWatch focus(window);
     RunExperimenter experimenter(
-        desk_, [&] { return why_ended(watch, &window); },
+        desk_,
+        [&] {
+          const std::string trouble = watch.trouble();
+          return trouble.empty() ? why_gone(window) : trouble;
+        },
         [&] { return recorded_by_itself(*entered.sink, focus); }, [&] { return focus.alert(); });
     entered.sink->set_waiting([&](const std::string& why) {
       return waits(why, [&] { static_cast<void>(spoken.attend(session::PauseStep{})); });
@@ -471,16 +468,6 @@ class SimulatedSession {
              static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))})) {}
 
   int run() {
-    if (options_.headless) return run_before(nullptr);
-    ParticipantWindow window(window_options(options_, study_.key.study));
-    int code = 1;
-    run_beside(window, [&] { code = run_before(&window); });
-    return code;
-  }
-
- private:
-  /// \param window  null: the participant answers directly
-  int run_before(ParticipantWindow* window) {
     const std::unique_ptr<session::Explorer> explorer = explorer_for(options_);
     const EnteredSession entered =
         enter_session(options_, study_, database_, [&](store::SessionOpening& opening) {
@@ -492,31 +479,29 @@ class SimulatedSession {
     mind->come_to(options_.visit,
                   simulation::course_of(study_.key.study,
                                         design::make_schedule(study_.key.study, entered.draw)));
-    std::optional<WindowSubject> before_window;
-    if (window != nullptr) before_window.emplace(*window, *mind, options_.real_time);
     session::AlwaysReady devices;
     DatabaseWatch watch(options_.database);
     RunExperimenter experimenter(
-        session::no_experimenter(), [&] { return why_ended(watch, window); },
+        session::no_experimenter(), [&] { return watch.trouble(); },
         [&] { return wait_to_record(*entered.sink); });
     entered.sink->set_waiting([](const std::string& why) { return waits(why, [] {}); });
     const session::SessionTexts texts = session_texts(study_.key.study);
-    const session::SessionTally tally = session::run_session(
-        *entered.session,
-        {.key = study_.key,
-         .source = source_,
-         .participant = before_window ? static_cast<session::Participant&>(*before_window) : *mind,
-         .clock = *clock,
-         .explorer = *explorer,
-         .devices = devices,
-         .experimenter = experimenter,
-         .texts = texts,
-         .participant_name = options_.participant,
-         .device_name = "simulated",
-         .instruments = instruments_.get()});
+    const session::SessionTally tally =
+        session::run_session(*entered.session, {.key = study_.key,
+                                                .source = source_,
+                                                .participant = *mind,
+                                                .clock = *clock,
+                                                .explorer = *explorer,
+                                                .devices = devices,
+                                                .experimenter = experimenter,
+                                                .texts = texts,
+                                                .participant_name = options_.participant,
+                                                .device_name = "simulated",
+                                                .instruments = instruments_.get()});
     return conclude_session(options_, entered.number, tally, database_.made(), watch.trouble());
   }
 
+ private:
   const RunOptions& options_;
   const RunStudy& study_;
   RunDatabase database_;

@@ -25,7 +25,7 @@ struct RunOptions {
   std::filesystem::path database;
   std::filesystem::path pack;          ///< empty: where `prepare` puts it
   std::filesystem::path station_file;  ///< empty: beside the pack
-  std::string device;                  ///< driver; empty: the simulated device for a subject
+  std::string device;                  ///< driver; empty: the one that is plugged in
   std::filesystem::path settings;
   std::filesystem::path certificate;  ///< empty: NAME-certificate.json
   bool allow_unverified = false;      ///< run a device with force without a valid certificate
@@ -40,9 +40,8 @@ struct RunOptions {
   std::string station{};       ///< of a study with several; empty: its only one
   /// A simulated participant instead of a person: a model file, or "default".
   std::optional<std::filesystem::path> subject;
-  std::string on;          ///< model of the device that a simulated hand holds; empty: ideal
-  std::uint64_t seed = 1;  ///< of the simulated participant
-  bool headless = false;
+  std::string on;           ///< model of the device that a simulated hand holds; empty: ideal
+  std::uint64_t seed = 1;   ///< of the simulated participant
   bool real_time = false;   ///< run a simulated participant in real time
   bool console = false;     ///< open a window for the experimenter
   int console_monitor = 0;  ///< monitor of that window, from 1; 0: the system decides
@@ -61,8 +60,8 @@ struct RunOptions {
 [[nodiscard]] ParticipantWindowOptions window_options(const RunOptions& options,
                                                       const design::Study& study);
 
-/// Runs the session of a person with a device or of a simulated participant, before a window unless
-/// it is headless. A window belongs to the calling thread, which must be the program's main thread;
+/// Runs the session of a person with a device before a window, or of a simulated participant
+/// without one. A window belongs to the calling thread, which must be the program's main thread;
 /// the session then runs on another thread.
 /// \return the exit code: 0 if the session is complete, 1 if it was stopped or left open, 128 plus
 ///   the signal's number if a signal ended the program

@@ -54,8 +54,8 @@ struct OddStudy : StudyFolder {
   }
   [[nodiscard]] std::vector<std::string> session(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {
-        "run",    in("cloths.json"), "--participant",  "P01",       "--db",
-        in("db"), "--subject",       in("quick.json"), "--headless"};
+        "run",  in("cloths.json"), "--participant", "P01",
+        "--db", in("db"),          "--subject",     in("quick.json")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }

@@ -68,7 +68,7 @@ TEST_CASE("a session is not put into another study's database") {
   const std::string before = content(study.path() / "study.db");
   const ProgramResult refused = study.type(
       "run @others.json --participant P009 --db @study.db --station-file @others.station --pack "
-      "@others.pack --subject @quick.json --headless");
+      "@others.pack --subject @quick.json");
   check_refused(refused, 1, {"study.db: ", "is the database of another study", "another --db"});
   CHECK(content(study.path() / "study.db") == before);
 }

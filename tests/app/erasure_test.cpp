@@ -49,9 +49,8 @@ struct ErasedFolder : StudyFolder {
 
   [[nodiscard]] std::vector<std::string> run_words(const std::string& participant, int visit,
                                                    const std::vector<std::string>& more) const {
-    std::vector<std::string> words = {
-        "run",    in("cloths.json"), "--participant",  participant, "--db",
-        in("db"), "--subject",       in("quick.json"), "--headless"};
+    std::vector<std::string> words = {"run",  in("cloths.json"), "--participant", participant,
+                                      "--db", in("db"),          "--subject",     in("quick.json")};
     if (has_visits) words.insert(words.end(), {"--visit", std::to_string(visit)});
     words.insert(words.end(), more.begin(), more.end());
     return words;

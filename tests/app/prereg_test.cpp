@@ -73,7 +73,7 @@ TEST_CASE("a key of another study is named as such, and nobody is told to prepar
   for (const std::string line :
        {"prereg @cloths.json --key @carpets.key", "key check @cloths.json --key @carpets.key",
         "stimuli sheet @cloths.json -o @sheet.html --key @carpets.key",
-        "run @cloths.json --participant P01 --db @study.db --subject @quick.json --headless "
+        "run @cloths.json --participant P01 --db @study.db --subject @quick.json "
         "--station-file @carpets.station"}) {
     const ProgramResult refused = study.type(line);
     INFO(line << ": " << refused.errors);

@@ -14,9 +14,8 @@ namespace {
 
 struct RunningSession : StudyFolder {
   [[nodiscard]] std::vector<std::string> command() const {
-    return {
-        TOUCHTRIAL_PROGRAM, "run",       in("cloths.json"), "--participant", "P01",        "--db",
-        in("study.db"),     "--subject", in("quick.json"),  "--headless",    "--real-time"};
+    return {TOUCHTRIAL_PROGRAM, "run",       in("cloths.json"), "--participant", "P01", "--db",
+            in("study.db"),     "--subject", in("quick.json"),  "--real-time"};
   }
 };
 

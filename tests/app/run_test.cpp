@@ -16,8 +16,8 @@ namespace {
 std::vector<std::string> run_arguments(const StudyFolder& study, const std::string& participant,
                                        const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments = {
-      "run",       study.in("cloths.json"), "--participant", participant, "--db", study.in("db"),
-      "--subject", study.in("quick.json"),  "--headless"};
+      "run",  study.in("cloths.json"), "--participant", participant,
+      "--db", study.in("db"),          "--subject",     study.in("quick.json")};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -135,7 +135,7 @@ TEST_CASE("a run that is refused leaves nothing, and the corrected command runs"
     CHECK_THAT(result.errors, holds_text(part));
     CHECK(files() == before);
   };
-  refused({"--subject", study.in("nobody.json"), "--headless"}, "nobody.json");
+  refused({"--subject", study.in("nobody.json")}, "nobody.json");
   if (is_prepared) {
     refused({"--device", "mouse"}, "give --pilot");
     // There are never so many monitors, nor any where there is no display.
@@ -175,8 +175,8 @@ TEST_CASE("a session on a device with force needs an acceptance of that very dev
 
 TEST_CASE("a database in a folder that is not there is refused before anything else") {
   const StudyFolder study;
-  const ProgramResult refused = study.type(
-      "run @cloths.json --participant P01 --db @nowhere/db --subject @quick.json --headless");
+  const ProgramResult refused =
+      study.type("run @cloths.json --participant P01 --db @nowhere/db --subject @quick.json");
   CHECK(refused.exit_code != 0);
   CHECK_THAT(refused.errors, holds_text("there is no folder for it"));
 }

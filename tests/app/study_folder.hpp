@@ -105,7 +105,7 @@ struct StudyFolder : ProgramFolder {
                                       const std::vector<std::string>& more = {},
                                       const std::string& db = "study.db") const {
     return type("run @cloths.json --participant '" + participant + "' --db @" + db +
-                    " --subject @quick.json --headless",
+                    " --subject @quick.json",
                 more);
   }
   ProgramResult simulate(const std::string& db, const std::vector<std::string>& more = {},

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The default study of 25 trials, without questions and practice, and a quick subject.
+/// The default study of 25 trials, without questions and practice.
 struct Laboratory {
   Laboratory() {
     const fs::path source = TOUCHTRIAL_SOURCE_DIR;
@@ -35,7 +35,6 @@ struct Laboratory {
     study.erase("practice");
     study["session"] = {{"handedness", false}, {"closing", false}};
     replace_file(in("config/study.json"), study.dump());
-    replace_file(in("quick.json"), R"({"explore_s": 1.0, "training_passes": 2})");
     succeeded(run_touchtrial(folder.path(), {"prepare", in("config/study.json")}));
   }
 
@@ -57,39 +56,16 @@ struct Laboratory {
   TempFolder folder;
 };
 
-std::vector<store::TrialRow> trials_in(const Laboratory& lab, const std::string& database) {
+/// The positions that were chosen, in the order of the answers.
+std::vector<int> positions_as_answered(const Laboratory& lab, const std::string& database) {
   const auto store =
       store::StudyStore::open(lab.in(database), store::StudyStore::Access::read_only);
-  return analysis::open_trials(
+  std::vector<store::TrialRow> trials = analysis::open_trials(
       store, analysis::person_keys(store, design::load_study_key(lab.in("config/study.key"))));
-}
-
-std::vector<int> positions_of(const std::vector<store::TrialRow>& trials) {
+  std::ranges::sort(trials, {}, &store::TrialRow::answered_at);
   std::vector<int> positions;
   for (const store::TrialRow& trial : trials) positions.push_back(trial.position.value_or(-1));
   return positions;
-}
-
-std::vector<int> positions_as_answered(const Laboratory& lab, const std::string& database) {
-  std::vector<store::TrialRow> trials = trials_in(lab, database);
-  std::ranges::sort(trials, {}, &store::TrialRow::answered_at);
-  return positions_of(trials);
-}
-
-TEST_CASE("a simulated participant answers with the window's keys as without a window") {
-  const auto screen = VirtualScreen::open("1280x720");
-  const Laboratory lab;
-  const std::vector<std::string> subject = {"--subject", lab.in("quick.json"), "--seed", "4"};
-  std::vector<std::string> headless = subject;
-  headless.push_back("--headless");
-  succeeded(run_touchtrial(lab.folder.path(), lab.run_arguments("a.db", headless)));
-  const ProgramResult seen =
-      succeeded(run_touchtrial(lab.folder.path(), lab.run_arguments("b.db", subject)));
-  CHECK(seen.output.find("trial 25 acknowledged\n") != std::string::npos);
-  const std::vector<int> answers = positions_of(trials_in(lab, "b.db"));
-  CHECK(answers.size() == 25);
-  CHECK(answers == positions_of(trials_in(lab, "a.db")));
-  lab.verify("b.db");
 }
 
 /// A person with a keyboard, who reads the experimenter's status. Its "trial" counts presentations:
@@ -201,33 +177,6 @@ TEST_CASE(
   CHECK_FALSE(fs::exists(lab.in("played.raw")));
 }
 
-TEST_CASE("a simulated participant gets past required questions of every kind before a window") {
-  const auto screen = VirtualScreen::open("1280x720");
-  const Laboratory lab;
-  json study = json::parse(text_of(read_file(lab.in("config/study.json"), 1U << 20U)));
-  study["study"] = "asking";
-  study["trials"]["repeats"] = 1;
-  json questions = json::array();
-  for (const char* kind : {"choice", "number", "text"}) {
-    for (const bool required : {true, false}) {
-      json question = {{"id", kind + std::string(required ? "-must" : "-may")},
-                       {"kind", kind},
-                       {"text", {{"en", "?"}}},
-                       {"required", required}};
-      if (std::string(kind) == "choice") {
-        question["options"] = {{{"en", "one"}}, {{"en", "two"}}};
-      }
-      questions.push_back(question);
-    }
-  }
-  study["session"] = {{"closing_questions", questions}};
-  replace_file(lab.in("config/asking.json"), study.dump());
-  succeeded(run_touchtrial(
-      lab.folder.path(),
-      {"run", lab.in("config/asking.json"), "--participant", "P01", "--db", lab.in("asking.db"),
-       "--subject", lab.in("quick.json"), "--no-sound", "--window", "1280x720"}));
-}
-
 /// A study of six trials with two short planes each, of which the last two are only heard.
 std::string study_with_intervals() {
   json study = json::parse(
@@ -246,37 +195,6 @@ std::string study_with_intervals() {
 void prepare_intervals(const Laboratory& lab) {
   replace_file(lab.in("config/intervals.json"), study_with_intervals());
   succeeded(run_touchtrial(lab.folder.path(), {"prepare", lab.in("config/intervals.json")}));
-}
-
-TEST_CASE("a simulated participant answers trials with several planes before a window") {
-  const auto screen = VirtualScreen::open("1280x720");
-  const Laboratory lab;
-  prepare_intervals(lab);
-  std::vector<std::string> arguments = {"run",
-                                        lab.in("config/intervals.json"),
-                                        "--participant",
-                                        "P01",
-                                        "--no-sound",
-                                        "--subject",
-                                        lab.in("quick.json"),
-                                        "--seed",
-                                        "4",
-                                        "--db",
-                                        lab.in("seen.db")};
-  const ProgramResult seen = succeeded(run_touchtrial(lab.folder.path(), arguments));
-  CHECK(seen.output.find("trial 6 acknowledged\n") != std::string::npos);
-  arguments.back() = lab.in("headless.db");
-  arguments.push_back("--headless");
-  succeeded(run_touchtrial(lab.folder.path(), arguments));
-  const auto answers = [&](const char* database) {
-    const auto store =
-        store::StudyStore::open(lab.in(database), store::StudyStore::Access::read_only);
-    return positions_of(analysis::open_trials(
-        store,
-        analysis::person_keys(store, design::load_study_key(lab.in("config/intervals.key")))));
-  };
-  CHECK(answers("seen.db").size() == 6);
-  CHECK(answers("seen.db") == answers("headless.db"));
 }
 
 /// A person with a mouse, who strokes whatever plane is on: lifts off, then holds the button.

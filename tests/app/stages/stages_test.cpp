@@ -190,7 +190,6 @@ class Laboratory {
     options.participant = participant;
     options.database = study_.path() / database;
     options.subject = "default";
-    options.headless = true;
     options.yes = true;
     options.on_existing = policy;
     run_scripted(options, deed, log_of(database, participant));
