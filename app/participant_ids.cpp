@@ -79,28 +79,23 @@ std::optional<std::string> perhaps_meant(const std::string& id,
   return *found;
 }
 
-std::vector<std::string> participants_of(const std::filesystem::path& database) {
+std::vector<std::string> known_ids(const std::filesystem::path& database) {
   std::vector<std::string> ids;
-  if (!is_there(database)) return ids;
+  const auto add = [&ids](const std::string& id) {
+    if (!id.empty() && std::ranges::count(ids, id) == 0) ids.push_back(id);
+  };
   try {
-    const auto store = store::StudyStore::open(database, store::StudyStore::Access::read_only);
-    for (const store::SessionRow& row : store.sessions()) {
-      for (const std::string& id : {row.participant, row.replaced_by}) {
-        if (!id.empty() && std::ranges::count(ids, id) == 0) ids.push_back(id);
+    if (is_there(database)) {
+      const auto store = store::StudyStore::open(database, store::StudyStore::Access::read_only);
+      for (const store::SessionRow& row : store.sessions()) {
+        for (const std::string& id : {row.participant, row.replaced_by}) add(id);
       }
     }
   } catch (const StoreError&) {
     // Whoever records in the database is told; a consent is recorded whatever became of it.
   }
-  return ids;
-}
-
-std::vector<std::string> known_ids(const std::filesystem::path& database) {
-  std::vector<std::string> ids = participants_of(database);
   try {
-    for (const store::PersonalRecord& one : consents_beside(database)) {
-      if (std::ranges::count(ids, one.participant) == 0) ids.push_back(one.participant);
-    }
+    for (const store::PersonalRecord& one : consents_beside(database)) add(one.participant);
   } catch (const Error&) {
     // Whoever records a consent is told.
   }

@@ -21,12 +21,9 @@ namespace touchtrial::app {
 [[nodiscard]] std::optional<std::string> perhaps_meant(const std::string& id,
                                                        const std::vector<std::string>& known);
 
-/// The ids of a study's sessions, in their order, and of those who take somebody's place.
-/// \return none if the database is missing or cannot be read
-[[nodiscard]] std::vector<std::string> participants_of(const std::filesystem::path& database);
-
-/// The same, then those who have consented and have no session. A file of personal data that cannot
-/// be read adds nobody.
+/// The ids of a study's sessions, in their order, and of those who take somebody's place; then
+/// those who have consented and have no session. A database or file of personal data that is
+/// missing or cannot be read adds nobody.
 [[nodiscard]] std::vector<std::string> known_ids(const std::filesystem::path& database);
 
 /// Asks at the terminal about an id that nobody has and that perhaps_meant takes for another's.
