@@ -1,6 +1,4 @@
-// key check: proves that the investigator's key opens what stations seal, or have sealed.
-#include "analysis/sealed_sessions.hpp"
-#include "analysis/text_figures.hpp"
+// key check: proves that the investigator's key opens what stations seal.
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
@@ -14,7 +12,6 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct KeyCheckArguments {
-  fs::path subject;  ///< study file, key or database
+  fs::path subject;  ///< study file or key
   fs::path key;
   fs::path pack;
   fs::path station_file;
@@ -44,10 +41,6 @@ std::string beginning_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   stream.read(bytes.data(), bytes.size());
   return {bytes.data(), static_cast<std::size_t>(stream.gcount())};
-}
-
-bool is_database(const fs::path& file) {
-  return beginning_of(file).starts_with("SQLite format 3");
 }
 
 /// A study file is neither protected nor called a key.
@@ -167,7 +160,7 @@ bool lies_beside_study(const CheckedStudy& study) {
   return fs::equivalent(beside, study.key_path, error);
 }
 
-int checked_stations(const KeyCheckArguments& arguments) {
+int check_key(const KeyCheckArguments& arguments) {
   const CheckedStudy study = checked_study(arguments);
   const std::vector<StationFinding> findings = station_findings(arguments, study);
   const bool beside = lies_beside_study(study);
@@ -205,89 +198,22 @@ int checked_stations(const KeyCheckArguments& arguments) {
                                                                                     : kNotVerified;
 }
 
-/// The sessions of a database, by what the key does with them.
-struct OpenedKeys {
-  int open = 0;
-  int withdrawn = 0;  ///< of those that open: the person withdrew, and the data are kept
-  int erased = 0;
-  int safety = 0;  ///< safety records that open
-  std::vector<std::string> faults;
-};
-
-OpenedKeys opened_keys(const store::StudyStore& store, const design::StudyKey& key) {
-  OpenedKeys counts;
-  for (const store::SessionRow& session : store.sessions()) {
-    try {
-      const store::PersonKeys own = analysis::person_keys(store, key, session);
-      ++(own.participant ? counts.open : counts.erased);
-      if (own.participant && session.withdrawn) ++counts.withdrawn;
-      if (own.safety) ++counts.safety;
-    } catch (const VerificationError& error) {
-      counts.faults.emplace_back(error.what());
-    }
-  }
-  return counts;
-}
-
-int checked_database(const KeyCheckArguments& arguments) {
-  if (!arguments.station.empty() || !arguments.station_file.empty() || !arguments.pack.empty()) {
-    throw UsageError(
-        "key check: --station, --station-file and --pack are for a study, not for a "
-        "database; omit them");
-  }
-  const store::StudyStore store =
-      store::StudyStore::open(arguments.subject, store::StudyStore::Access::read_only);
-  const design::StudyKey key = key_of_database(store, arguments.subject, arguments.key);
-  const OpenedKeys counts = opened_keys(store, key);
-  const fs::path key_path = key_in_use(arguments.subject, arguments.key);
-  if (arguments.json) {
-    print(json_text(nlohmann::ordered_json{{"study", key.study.name},
-                                           {"key", key_path.string()},
-                                           {"protected", design::is_protected(key_path)},
-                                           {"open", counts.open},
-                                           {"withdrawn", counts.withdrawn},
-                                           {"erased", counts.erased},
-                                           {"safety", counts.safety},
-                                           {"faults", counts.faults}}));
-  } else {
-    std::string text = fmt::format(
-        "key {}\nopens {} ({} of people who withdrew and left their data) and {}; {} "
-        "erased, which nothing opens\n",
-        key_path.string(), counted(counts.open, "session"), counts.withdrawn,
-        counted(counts.safety, "safety record"), counts.erased);
-    for (const std::string& fault : counts.faults) {
-      text += "DOES NOT HOLD: " + one_line(fault) + "\n";
-    }
-    print(text);
-  }
-  return counts.faults.empty() ? 0 : kNotVerified;
-}
-
-int check_keys(const KeyCheckArguments& arguments) {
-  return is_database(arguments.subject) ? checked_database(arguments) : checked_stations(arguments);
-}
-
 }  // namespace
 
 void add_key_check_command(CLI::App& keys, Action& action) {
-  auto arguments = std::make_shared<KeyCheckArguments>();
-  CLI::App* command = keys.add_subcommand(
-      "check", "Prove that the key opens what stations seal, before the first participant");
+  const auto [command, arguments] = add_command(
+      keys, action, "check",
+      "Prove that the key opens what stations seal, before the first participant", check_key);
+  command.add_option("STUDY", arguments.subject, "Study file, or its key")->required();
+  auto* station = command.add_option("--station", arguments.station,
+                                     "One station (default: all whose files are here)");
   command
-      ->add_option("STUDY", arguments->subject,
-                   "Study file, or its key; or a database, whose sessions the key must open")
-      ->required();
-  auto* station = command->add_option("--station", arguments->station,
-                                      "One station (default: all whose files are here)");
-  command
-      ->add_option("--station-file", arguments->station_file,
-                   "A station's file (default: <study>.station beside the pack)")
+      .add_option("--station-file", arguments.station_file,
+                  "A station's file (default: <study>.station beside the pack)")
       ->excludes(station);
-  add_pack_option(*command, arguments->pack);
-  add_key_option(*command, arguments->key,
-                 "Key of the study (default: beside the pack; for a database, DB.key)");
-  add_json_flag(*command, arguments->json);
-  command->callback([=, &action] { action = [=] { return check_keys(*arguments); }; });
+  add_pack_option(command, arguments.pack);
+  add_key_option(command, arguments.key, "Key of the study (default: beside the pack)");
+  add_json_flag(command, arguments.json);
 }
 
 }  // namespace touchtrial::app

@@ -3,8 +3,6 @@
 #include "protocols/design/key_protection.hpp"
 #include "support/catch.hpp"
 
-#include <SQLiteCpp/Database.h>
-
 using namespace touchtrial;
 
 namespace {
@@ -53,21 +51,20 @@ TEST_CASE(
   const fs::path memory = study.path() / ".config/touchtrial/keys.json";
   fs::create_directory(study.path() / "stick");
   fs::rename(study.path() / "cloths.key", study.path() / "stick/cloths.key");
-  check_refused(study.type("key check @study.db"), 1, {"there is no key beside"});
+  const std::string look = "unblind @study.db --interim --reason look --yes";
+  check_refused(study.type(look), 1, {"there is no key beside"});
   CHECK_FALSE(fs::exists(memory));
-  study.done("key check @study.db --key @stick/cloths.key");
+  study.done(look + " --key @stick/cloths.key");
   const json kept = json::parse(content(memory));
   CHECK(kept == json{{fs::canonical(study.path() / "study.db").string(),
                       fs::canonical(study.path() / "stick/cloths.key").string()}});
   CHECK(fs::status(memory).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
-  study.done("key check @study.db");
-  study.done("unblind @study.db --interim --reason look --yes");
   study.done("report @study.db");
   fs::rename(study.path() / "stick/cloths.key", study.path() / "elsewhere.key");
-  check_refused(study.type("key check @study.db"), 1,
+  check_refused(study.type("report @study.db"), 1,
                 {"there is no key beside", "none at", "stick/cloths.key as last time", "--key"});
   replace_file(memory, std::string("[damaged"));
-  check_refused(study.type("key check @study.db"), 1, {"there is no key beside"});
+  check_refused(study.type("report @study.db"), 1, {"there is no key beside"});
 }
 
 TEST_CASE("key check names the station whose file does not hold") {
@@ -87,26 +84,6 @@ TEST_CASE("key check names the station whose file does not hold") {
   CHECK(study.type("key check @cloths.json --station 1").exit_code == 3);
   const ProgramResult other = study.type("key check @cloths.json --station-file @older.station");
   CHECK(other.exit_code == 3);
-}
-
-TEST_CASE("key check counts the sessions of a database that the key opens") {
-  const KeyedStudy study;
-  succeeded(study.simulate("a.db", {"--keep-blind"}));
-  study.done("withdraw @a.db --participant P002 --reason asked --erase --yes");
-  study.done("withdraw @a.db --participant P003 --reason asked --keep-data --yes");
-  const ProgramResult checked = study.done("key check @a.db");
-  CHECK_THAT(checked.output,
-             holds_text("opens 3 sessions (1 of people who withdrew and left their data) and 4 "
-                        "safety records; 1 erased, which nothing opens"));
-  {
-    SQLite::Database database(study.in("a.db"), SQLite::OPEN_READWRITE);
-    database.exec("UPDATE safety_keys SET wrapped = zeroblob(length(wrapped)) WHERE session = 1");
-  }
-  const ProgramResult torn = study.type("key check @a.db --json");
-  CHECK(torn.exit_code == 3);
-  CHECK(json::parse(torn.output).at("safety") == 3);
-  CHECK_THAT(torn.output, holds_text("session 1: the safety key does not open"));
-  check_refused(study.type("key check @a.db --key @cloths.key"), 3, {"is not the key of"});
 }
 
 TEST_CASE("a key that was lost is made again from its printed sheet") {
@@ -144,8 +121,7 @@ TEST_CASE("a key that was lost is made again from its printed sheet") {
   CHECK(restored.errors.empty());
   CHECK(content(study.path() / "cloths.key") == key);
   check_refused(study.key(restore, sheet), 2, {"exists already"});
-  const ProgramResult opened = study.done("key check @study.db --key @cloths.key");
-  CHECK_THAT(opened.output, holds_text("opens 1 session ("));
+  study.done("verify @study.db --key @cloths.key");
   study.done("prepare @cloths.json");
   CHECK(content(study.path() / "cloths.station") == station);
 }
