@@ -4,6 +4,7 @@
 #include "app/passphrases.hpp"
 #include "app/reference/pages.hpp"
 #include "app/study_inputs.hpp"
+#include "core/outputs.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "device/registry.hpp"
@@ -15,6 +16,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
 namespace {
@@ -235,6 +237,16 @@ void add_jobs_option(CLI::App& command, int& jobs) {
 
 void add_yes_flag(CLI::App& command, bool& yes) {
   command.add_flag("--yes", yes, "Do not ask whether to go on; needed without a terminal");
+}
+
+CLI::Option* add_force_flag(CLI::App& command) {
+  const auto notice = [](const std::filesystem::path& file, const std::filesystem::path& kept) {
+    spdlog::warn("{}: is kept as {}", file.string(), kept.string());
+  };
+  return command.add_flag_callback(
+      "--force", [=] { keep_files_in_the_way(notice); },
+      "Write also where files are in the way that this program did not write, or that somebody "
+      "changed since; they are kept as NAME.1, NAME.2 and so on");
 }
 
 CLI::Option* add_json_flag(CLI::App& command, bool& json) {

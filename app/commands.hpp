@@ -162,6 +162,8 @@ CLI::Option* add_count_option(CLI::App& command, const std::string& name, int& c
 void add_jobs_option(CLI::App& command, int& jobs);
 /// --yes: does not ask; see confirm of app/console.hpp.
 void add_yes_flag(CLI::App& command, bool& yes);
+/// --force, for every command that writes where it is told to: see core/outputs.hpp.
+CLI::Option* add_force_flag(CLI::App& command);
 /// --json
 CLI::Option* add_json_flag(CLI::App& command, bool& json);
 

@@ -4,7 +4,6 @@
 #include "app/console.hpp"
 #include "app/device_accept_page.hpp"
 #include "app/device_words.hpp"
-#include "app/force_flag.hpp"
 #include "app/sound/sound_accelerometer.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"

@@ -4,7 +4,6 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/device_words.hpp"
-#include "app/force_flag.hpp"
 #include "app/test_texture.hpp"
 #include "core/errors.hpp"
 #include "core/outputs.hpp"

@@ -1,7 +1,6 @@
 // extract: the texture of one image, with every stage on request.
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/force_flag.hpp"
 #include "app/given_pictures.hpp"
 #include "app/method_arguments.hpp"
 #include "core/errors.hpp"

@@ -7,7 +7,6 @@
 #include "analysis/text_figures.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/force_flag.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/outputs.hpp"
@@ -237,9 +236,10 @@ int fit_subject(const FitArguments& arguments) {
 }  // namespace
 
 void add_fit_command(CLI::App& program, Action& action) {
-  const auto [command, arguments] = add_command(
-      program, action, "fit",
-      "Estimate noise, lapses, biases and label swaps of a subject model from answers", fit_subject);
+  const auto [command, arguments] =
+      add_command(program, action, "fit",
+                  "Estimate noise, lapses, biases and label swaps of a subject model from answers",
+                  fit_subject);
   add_database_argument(command, arguments.source,
                         "Database of an unblinded study; with --accuracies a study file");
   command.add_option("--subject", arguments.subject,

@@ -3,7 +3,6 @@
 #include "analysis/paper/paper_document.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/force_flag.hpp"
 #include "app/given_pictures.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"

@@ -2,7 +2,6 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/experimenter/experimenter_desk.hpp"
-#include "app/force_flag.hpp"
 #include "app/participant/preview_screens.hpp"
 #include "app/participant/screen.hpp"
 #include "app/run/run_session.hpp"

@@ -2,7 +2,6 @@
 // as --help.
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/force_flag.hpp"
 #include "app/reference/pages.hpp"
 #include "app/shipped_files.hpp"
 #include "core/files.hpp"

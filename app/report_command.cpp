@@ -8,7 +8,6 @@
 #include "analysis/verification/head_check.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/force_flag.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"

@@ -1,7 +1,6 @@
 // stimuli: pictures for studies, which the program generates or imports from photographs.
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/force_flag.hpp"
 #include "app/given_pictures.hpp"
 #include "core/errors.hpp"
 #include "core/text.hpp"

@@ -3,7 +3,6 @@
 #include "analysis/sheet/stimulus_sheet.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/force_flag.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
