@@ -59,7 +59,6 @@ PlaneOnScreen place_plane(Vec2 window, Vec2 plane_mm, double mm_per_unit) {
       std::max(plane_mm.x / std::max(room.x, 1.0), plane_mm.y / std::max(room.y, 1.0));
   PlaneOnScreen placed;
   placed.mm_per_unit = std::max(mm_per_unit, least);
-  placed.shown = mm_per_unit / placed.mm_per_unit;
   const Vec2 drawn = (1.0 / placed.mm_per_unit) * plane_mm;
   placed.corner = {std::round((window.x - drawn.x) / 2.0),
                    std::round((window.y - kBelow * unit - drawn.y) / 2.0)};

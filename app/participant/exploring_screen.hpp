@@ -21,7 +21,6 @@ struct FeltNow {
 struct PlaneOnScreen {
   Vec2 corner;
   double mm_per_unit = 1.0;
-  double shown = 1.0;  ///< scale: 1 is true size
 };
 [[nodiscard]] PlaneOnScreen place_plane(Vec2 window, Vec2 plane_mm, double mm_per_unit);
 
