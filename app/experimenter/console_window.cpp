@@ -291,8 +291,6 @@ struct ConsoleWindow::State final : ExperimenterFace {
   }
 
   void paint(const Surface& now) {
-    const std::lock_guard turn(imgui_turn());
-    ImGuiContext* const others = ImGui::GetCurrentContext();
     ImGui::SetCurrentContext(context);
     fit_fonts(now.density);
     ImGuiIO& io = ImGui::GetIO();
@@ -309,7 +307,6 @@ struct ConsoleWindow::State final : ExperimenterFace {
     ImGui::Render();
     glViewport(0, 0, now.width_px, now.height_px);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    ImGui::SetCurrentContext(others);
   }
 
   ExperimenterDesk& desk;
@@ -349,26 +346,18 @@ void ConsoleWindow::begin_drawing() {
   glfwMakeContextCurrent(state_->window);
   // No wait for this screen: it would delay the participant's.
   glfwSwapInterval(0);
-  const std::lock_guard turn(imgui_turn());
-  ImGuiContext* const others = ImGui::GetCurrentContext();
   state_->context = ImGui::CreateContext();
   ImGui::SetCurrentContext(state_->context);
   ImGui::GetIO().IniFilename = nullptr;
   name_keys(ImGui::GetIO());
   ImGui_ImplOpenGL3_Init("#version 150");
-  ImGui::SetCurrentContext(others);
 }
 
 void ConsoleWindow::end_drawing() {
   glfwMakeContextCurrent(state_->window);
-  {
-    const std::lock_guard turn(imgui_turn());
-    ImGuiContext* const others = ImGui::GetCurrentContext();
-    ImGui::SetCurrentContext(state_->context);
-    ImGui_ImplOpenGL3_Shutdown();
-    ImGui::SetCurrentContext(others == state_->context ? nullptr : others);
-    ImGui::DestroyContext(state_->context);
-  }
+  ImGui::SetCurrentContext(state_->context);
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui::DestroyContext(state_->context);
   glfwMakeContextCurrent(nullptr);
 }
 

@@ -215,24 +215,16 @@ class Drawing {
     if (console_ != nullptr) console_->begin_drawing();
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
-    const std::lock_guard turn(imgui_turn());
-    ImGuiContext* const others = ImGui::GetCurrentContext();
     context_ = ImGui::CreateContext();
     ImGui::SetCurrentContext(context_);
     ImGui::GetIO().IniFilename = nullptr;
     ImGui_ImplOpenGL3_Init("#version 150");
-    ImGui::SetCurrentContext(others);
   }
   ~Drawing() {
-    {
-      const std::lock_guard turn(imgui_turn());
-      ImGuiContext* const others = ImGui::GetCurrentContext();
-      ImGui::SetCurrentContext(context_);
-      shelf_.clear();
-      ImGui_ImplOpenGL3_Shutdown();
-      ImGui::SetCurrentContext(others == context_ ? nullptr : others);
-      ImGui::DestroyContext(context_);
-    }
+    ImGui::SetCurrentContext(context_);
+    shelf_.clear();
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui::DestroyContext(context_);
     glfwMakeContextCurrent(nullptr);
     if (console_ != nullptr) console_->end_drawing();
   }
@@ -315,8 +307,6 @@ class Drawing {
   }
 
   void draw(const WindowSurface& surface) {
-    const std::lock_guard turn(imgui_turn());
-    ImGuiContext* const others = ImGui::GetCurrentContext();
     ImGui::SetCurrentContext(context_);
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = imgui_vec(surface.size);
@@ -336,7 +326,6 @@ class Drawing {
     glClearColor(0.91F, 0.92F, 0.93F, 1.0F);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    ImGui::SetCurrentContext(others);
   }
 
   /// Renders the fonts for the size at which they are shown.

@@ -140,7 +140,6 @@ std::set<char32_t> letters_in(const std::vector<std::string>& texts) {
 void require_letters(const std::set<char32_t>& letters) {
   constexpr float kAnyHeight = 13.0F;
   constexpr int kMostNamed = 8;
-  const std::lock_guard turn(imgui_turn());
   ImFontAtlas atlas;
   const WantedLetters wanted = wanted_of(letters);
   const ImFont* const font = add_font(atlas, {kAnyHeight, FontWeight::regular}, wanted);
@@ -163,11 +162,6 @@ void require_letters(const std::set<char32_t>& letters) {
 
 ImVec2 imgui_vec(Vec2 point) noexcept {
   return {static_cast<float>(point.x), static_cast<float>(point.y)};
-}
-
-std::mutex& imgui_turn() {
-  static std::mutex turn;
-  return turn;
 }
 
 void draw_stylus(Vec2 at, bool pressed, float density) {

@@ -5,7 +5,6 @@
 #include "core/vec.hpp"
 
 #include <cstdint>
-#include <mutex>
 #include <set>
 #include <span>
 #include <string>
@@ -66,10 +65,5 @@ void require_letters(const std::set<char32_t>& letters);
 void draw_stylus(Vec2 at, bool pressed, float density);
 
 [[nodiscard]] ImVec2 imgui_vec(Vec2 point) noexcept;
-
-/// Where two threads draw, each holds this from setting ImGui's context until rendering ends,
-/// because ImGui keeps its current context in one variable of the program. Not held while a thread
-/// waits for its screen.
-[[nodiscard]] std::mutex& imgui_turn();
 
 }  // namespace touchtrial::app
