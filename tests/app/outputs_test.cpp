@@ -4,6 +4,7 @@
 #include "support/environment.hpp"
 
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <string>
@@ -58,98 +59,19 @@ const std::set<std::pair<std::string, std::string>> kElsewhere = {
 
 /// Options of this name are read, folders with rules of their own (--pack, --heads), or no places,
 /// in every command without a line above.
-const std::set<std::string> kNotWritten = {"--accelerometer",
-                                           "--accept-clock",
-                                           "--accept-loss",
-                                           "--accuracies",
-                                           "--accuracy",
-                                           "--answers",
-                                           "--author",
-                                           "--between",
-                                           "--bits",
-                                           "--bootstraps",
-                                           "--certificate",
-                                           "--components",
-                                           "--consent",
-                                           "--console-monitor",
-                                           "--crops",
-                                           "--db",
-                                           "--deviation",
-                                           "--device",
-                                           "--difference",
-                                           "--divisor",
-                                           "--effect",
-                                           "--emulate",
-                                           "--enrolment",
-                                           "--exemplars",
-                                           "--explorations",
-                                           "--first-participant",
-                                           "--fit",
-                                           "--full-scale",
-                                           "--groups",
-                                           "--head",
-                                           "--head-file",
-                                           "--heads",
-                                           "--heights",
-                                           "--institution",
-                                           "--jobs",
-                                           "--key",
-                                           "--lambda",
-                                           "--levels",
-                                           "--licence",
-                                           "--license",
-                                           "--margin",
-                                           "--mean",
-                                           "--monitor",
-                                           "--name",
-                                           "--names",
-                                           "--neighbourhood",
-                                           "--new-passphrase-file",
-                                           "--order",
-                                           "--pack",
-                                           "--participant",
-                                           "--participants",
-                                           "--passphrase-file",
-                                           "--people",
-                                           "--photographs",
-                                           "--pictures",
-                                           "--pitch-mm",
-                                           "--pixels-per-mm",
-                                           "--planes",
-                                           "--pool",
-                                           "--radius",
-                                           "--rate",
-                                           "--read",
-                                           "--reason",
-                                           "--runs",
-                                           "--screen",
-                                           "--sd-between",
-                                           "--seconds",
-                                           "--seed",
-                                           "--settings",
-                                           "--sigma",
-                                           "--size",
-                                           "--sound-input",
-                                           "--source",
-                                           "--station",
-                                           "--station-file",
-                                           "--stations",
-                                           "--study",
-                                           "--subject",
-                                           "--text-scale",
-                                           "--threshold",
-                                           "--track",
-                                           "--trainings",
-                                           "--trial",
-                                           "--trials",
-                                           "--version",
-                                           "--visit",
-                                           "--visits",
-                                           "--what-if",
-                                           "--width",
-                                           "--window",
-                                           "--with",
-                                           "--worth"};
+const std::string kNotWritten =
+    "--accelerometer --accept-clock --accept-loss --accuracies --accuracy --answers --author "
+    "--between --bits --bootstraps --certificate --components --consent --console-monitor "
+    "--crops --db --deviation --device --difference --divisor --effect --emulate --enrolment "
+    "--exemplars --explorations --first-participant --fit --full-scale --groups --head "
+    "--head-file --heads --heights --institution --jobs --key --lambda --levels --licence "
+    "--license --margin --mean --monitor --name --names --neighbourhood "
+    "--new-passphrase-file --order --pack --participant --participants --passphrase-file "
+    "--people --photographs --pictures --pitch-mm --pixels-per-mm --planes --pool --radius "
+    "--rate --read --reason --runs --screen --sd-between --seconds --seed --settings --sigma "
+    "--size --sound-input --source --station --station-file --stations --study --subject "
+    "--text-scale --threshold --track --trainings --trial --trials --version --visit "
+    "--visits --what-if --width --window --with --worth";
 
 /// The options of all commands that take any text: command and long name.
 std::set<std::pair<std::string, std::string>> options_with_text(const std::string& table) {
@@ -241,9 +163,11 @@ TEST_CASE("every option that takes text is known as an output, or as none") {
     INFO(output.first << " " << output.second);
     CHECK(options.contains(output));
   }
+  std::istringstream words(kNotWritten);
+  const std::set<std::string> not_written{std::istream_iterator<std::string>(words), {}};
   for (const auto& option : options) {
     INFO(option.first << " " << option.second);
-    CHECK((outputs.contains(option) || kNotWritten.contains(option.second)));
+    CHECK((outputs.contains(option) || not_written.contains(option.second)));
   }
 }
 

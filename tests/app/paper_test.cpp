@@ -143,8 +143,4 @@ TEST_CASE("paper refuses bad pictures and folders in one line, and writes nothin
   check_refused(folder.type("paper @good.png"), 2, {"--out"});
   CHECK_FALSE(fs::exists(folder.in("out")));
   check_refused(folder.type("paper @good.png --out @text.png"), 1, {"is no folder"});
-  make_folder(folder.path() / "mine");
-  replace_file(folder.path() / "mine/paper.md", "my own paper");
-  check_refused(folder.type("paper @good.png --out @mine"), 1, {"paper.md", "--force"});
-  CHECK(content(folder.in("mine/paper.md")) == "my own paper");
 }

@@ -8,9 +8,6 @@
 #include "windows/virtual_screen.hpp"
 
 #include <chrono>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <set>
@@ -209,34 +206,6 @@ TEST_CASE("the window answers the day sheet and spoken answers") {
   });
 }
 
-TEST_CASE("the console's buttons request what they say") {
-  Room room;
-  room.run([&] {
-    room.desk.show(status());
-    const engine::ColourImage picture = room.window.console_picture();
-    room.click(button_of(picture, What::pause));
-    CHECK(is(room.request(), Kind::pause));
-    room.type("d o o r Return");
-    CHECK(is(room.request(), Kind::note, "pause: door"));
-    room.desk.show(status("paused"));
-    room.settle();
-    room.click(button_of(picture, What::resume));
-    CHECK(is(room.request(), Kind::resume));
-    room.desk.show(status());
-    room.click(button_of(picture, What::comfort_stop));
-    CHECK(is(room.request(), Kind::comfort_stop));
-    room.click(button_of(picture, What::note));
-    room.type("h o t space 2 BackSpace 3 Return");
-    CHECK(is(room.request(), Kind::note, "hot 3"));
-    room.click(button_of(picture, What::deviation));
-    // Not in one go: GLFW takes one key pressed twice within a millisecond for one press.
-    room.type("n o minus c u r t a i n Return");
-    room.type("f e l l Return");
-    CHECK(is(room.request(), Kind::deviation, "fell", "no-curtain"));
-    CHECK_FALSE(room.desk.request());
-  });
-}
-
 TEST_CASE("the console lies below the participant's window where there is no room beside it") {
   Room room("1280x1200", {0, 720});
   room.run([&] {
@@ -364,51 +333,6 @@ TEST_CASE("a missing monitor of the console is named") {
   wanted.console_monitor = 2;
   CHECK_THROWS_WITH(app::ParticipantWindow(wanted),
                     holds_text("no monitor 2") && holds_text("has 1"));
-}
-
-void keep(const engine::ColourImage& picture, const std::string& name) {
-  const char* const folder = std::getenv("TOUCHTRIAL_SCREENSHOTS");
-  REQUIRE(folder != nullptr);
-  const Bytes png = engine::png_bytes(picture);
-  std::ofstream(std::filesystem::path(folder) / (name + ".png"), std::ios::binary)
-      .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
-}
-
-TEST_CASE("screenshots of every state of the console, for TOUCHTRIAL_SCREENSHOTS=FOLDER", "[.]") {
-  Room room;
-  room.run([&] {
-    keep(room.window.console_picture(), "console-empty");
-    room.desk.show(status());
-    keep(room.window.console_picture(), "console");
-    const engine::ColourImage picture = room.window.console_picture();
-    session::SessionStatus felt = status("exploring");
-    felt.hand = session::HandLevels{session::HandLevel::right, session::HandLevel::low};
-    room.desk.show(felt);
-    room.click(button_of(picture, What::note));
-    room.type("R o o m space i s space h o t");
-    keep(room.window.console_picture(), "console-note");
-    room.type("Return");
-    room.click(button_of(picture, What::deviation));
-    keep(room.window.console_picture(), "console-deviation");
-    room.click(button_of(picture, What::abort));
-    keep(room.window.console_picture(), "console-abort");
-    room.desk.discard();
-    static_cast<void>(room.desk.attend("put the arm at its place"));
-    keep(room.window.console_picture(), "console-waiting");
-    static_cast<void>(room.desk.day_sheet({{"no-curtain", "The curtain hides hand and device"}}));
-    keep(room.window.console_picture(), "console-day-sheet");
-    room.desk.show(stopped());
-    keep(room.window.console_picture(), "console-stopped");
-    room.window.show_exploring({0.2, 256, 256});
-    room.desk.show(felt);
-    keep(room.window.console_picture(), "console-exploring");
-    room.screen->resize_window(kConsoleTitle, 1280, 720);
-    room.settle();
-    keep(room.window.console_picture(), "console-1280x720");
-    room.screen->resize_window(kConsoleTitle, 1920, 1080);
-    room.settle();
-    keep(room.window.console_picture(), "console-1920x1080");
-  });
 }
 
 }  // namespace
