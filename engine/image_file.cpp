@@ -44,14 +44,15 @@ void check_range(const GreyScale& scale) {
   const int used = samples.bits();
   const std::string bits = std::to_string(used);
   if (scale.bits() != 0 && used > scale.bits()) {
-    throw ImageFault{"has samples of " + bits + " bits", "give --bits " + bits + " or more"};
+    throw ImageFault{"has samples of " + bits + " bits, more than --bits",
+                     "give --bits " + bits + ", or save this one as 8 bit if others have fewer"};
   }
   const std::uint32_t limit = 1U << static_cast<unsigned>(used);
   if (scale.bits() != 0 || used == 0 || limit > kMinMaxWideSample) return;
   const std::uint64_t above = samples.above(used);
   throw ImageFault{
       "uses only " + bits + " of its 16 bits (" +
-          (above == 0 ? "no sample" : "only " + std::to_string(above) + " of its samples") +
+          (above == 0 ? "no sample is" : "but for " + std::to_string(above) + " samples, none is") +
           " above " + std::to_string(limit - 1) + "), of which " +
           std::to_string(to_8_bit(static_cast<std::uint16_t>(limit - 1)) + 1) +
           " grey levels would be left",

@@ -70,7 +70,7 @@ struct SampleScale {
 [[nodiscard]] Picture decode_picture(ByteView file, const std::string& name,
                                      const SampleScale& scale = {});
 
-/// Where a picture is opaque: 255 there, and 0 elsewhere.
+/// Where a picture that has transparent pixels is opaque: 255 there, and 0 elsewhere.
 /// \throws as decode_picture
 [[nodiscard]] GreyImage opacity_of(ByteView file, const std::string& name);
 

@@ -1,6 +1,5 @@
 #include "engine/image_notes.hpp"
 
-#include "core/strict_json.hpp"
 #include "engine/image_formats/image_format.hpp"
 #include "engine/image_formats/tiff_directory.hpp"
 
@@ -185,8 +184,8 @@ std::vector<std::string> remarks_on(const ImageNotes& notes) {
         "can be felt; crop it to where it is opaque");
   }
   if (notes.heights && !notes.has_given_heights) {
-    remarks.push_back("holds heights from " + number_text(notes.heights->first) + " to " +
-                      number_text(notes.heights->second) +
+    remarks.push_back("holds heights from " + rounded(notes.heights->first) + " to " +
+                      rounded(notes.heights->second) +
                       "; import all pictures of a set with the same --heights");
   }
   if (notes.cut_share > 0.0 && !notes.heights) {
@@ -196,8 +195,8 @@ std::vector<std::string> remarks_on(const ImageNotes& notes) {
   } else if (notes.cut_share > 0.0) {
     remarks.push_back(rounded(100 * notes.cut_share) +
                       " % of its heights lie outside --heights and are cut off, down to " +
-                      number_text(notes.heights->first) + " and up to " +
-                      number_text(notes.heights->second));
+                      rounded(notes.heights->first) + " and up to " +
+                      rounded(notes.heights->second));
   }
   if (notes.lacks_end) {
     remarks.emplace_back(

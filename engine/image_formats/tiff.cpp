@@ -1,4 +1,3 @@
-#include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "engine/image_file.hpp"
 #include "engine/image_formats/image_format.hpp"
@@ -423,7 +422,7 @@ void refuse_gaps(std::span<const Real> heights, std::optional<double> gap) {
   const auto first = std::ranges::find_if(heights, is_gap);
   if (first == heights.end()) return;
   throw ImageFault{"has " + counted(std::ranges::count_if(heights, is_gap), "gap") + ", with " +
-                       number_text(*first) + " in place of a height",
+                       rounded(static_cast<double>(*first)) + " in place of a height",
                    "fill the gaps of the scan, or crop it to where there are none, and export it "
                    "again"};
 }

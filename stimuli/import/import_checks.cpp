@@ -167,9 +167,11 @@ void add_resolution_warnings(const ImportRecord& record, const ImportOptions& op
                        "pixels, or a larger --pitch-mm");
   }
   if (!of_camera.empty()) {
-    warnings.push_back(first_of(of_camera) +
-                       ": the resolution in the file is what cameras write, and says nothing of "
-                       "the object; for life-size, photograph a ruler, and give --pixels-per-mm");
+    warnings.push_back(
+        first_of(of_camera) +
+        ": the resolution in the file is what cameras write, and says nothing of "
+        "the object; for life-size, photograph a ruler, and give `touchtrial stimuli "
+        "import` --pixels-per-mm");
   }
   if (!unused.empty()) {
     warnings.push_back(first_of(unused) +
@@ -239,7 +241,8 @@ void check_classes(const PhotoFolder& folder, const ImportOptions& options) {
 std::string fault_of_size(const Photograph& photo, PhotoSize size, const ImportOptions& options) {
   if (std::min(size.height_px, size.width_px) >= options.size_px) return {};
   return one_line(photo.path.string()) + ": has " + std::to_string(size.width_px) + " x " +
-         std::to_string(size.height_px) + " pixels" + (photo.opaque ? " where it is opaque" : "") +
+         std::to_string(size.height_px) + " pixels" +
+         (photo.opaque ? " where it is opaque (or fill its background)" : "") +
          (photo.scale != 1.0 ? " after resampling" : "") + ", too few for a crop of " +
          times(options.size_px);
 }
