@@ -62,8 +62,7 @@ int protect_key(const KeyArguments& arguments) {
   // The old passphrase first: nobody should think of a new one for a file that does not open.
   static_cast<void>(design::read_secret_text(arguments.file));
   design::protect(arguments.file, new_passphrase(arguments.file, arguments.new_passphrase_files));
-  print(arguments.file.string() +
-        ": is protected; nobody can open it without the passphrase\n");
+  print(arguments.file.string() + ": is protected; nobody can open it without the passphrase\n");
   return 0;
 }
 
@@ -101,8 +100,7 @@ void add_protect(CLI::App& keys, Action& action) {
 }  // namespace
 
 void add_key_command(CLI::App& program, Action& action) {
-  CLI::App* keys =
-      program.add_subcommand("key", "Check, copy and protect the investigator's key");
+  CLI::App* keys = program.add_subcommand("key", "Check, copy and protect the investigator's key");
   keys->require_subcommand(1);
   add_key_check_command(*keys, action);
   add_copy(*keys, action);

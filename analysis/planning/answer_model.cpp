@@ -322,9 +322,8 @@ AnswerModel answer_model_of(const design::StudyKey& key, const engine::Pack& pac
   subject.check_labels(key.study);
   const session::StimulusSource source(pack, key.study.rendering);
   const simulation::LabelledFields fields(key, source);
-  const simulation::FeltKnowledge knowledge =
-      simulation::learn_by_feeling(fields, subject, key.study.rendering.max_force_n, options.seed,
-                                   options.jobs);
+  const simulation::FeltKnowledge knowledge = simulation::learn_by_feeling(
+      fields, subject, key.study.rendering.max_force_n, options.seed, options.jobs);
   const simulation::FeltBank bank(
       fields, key.study, subject,
       {.explorations = options.explorations, .seed = options.seed, .jobs = options.jobs}, progress);

@@ -269,12 +269,9 @@ ordered_json target_object(const TargetSize& target) {
 }
 
 ordered_json plan_object(const PowerPlan& plan) {
-  return {{"participants", plan.participants},
-          {"runs", plan.runs},
-          {"seed", plan.seed},
-          {"explorations", plan.explorations},
-          {"trainings", plan.trainings},
-          {"margin", plan.margin}};
+  return {
+      {"participants", plan.participants}, {"runs", plan.runs},           {"seed", plan.seed},
+      {"explorations", plan.explorations}, {"trainings", plan.trainings}, {"margin", plan.margin}};
 }
 
 ordered_json methods_object(const PowerReport& report) {

@@ -127,8 +127,8 @@ class RehearsedStudy final : public Rehearsal {
   const simulation::SubjectModel& subject_;
   PrimaryTest test_;
   const Feelings& feelings_;
-  int visits_;                 ///< of each participant
-  double margin_loss_ = 0.0;   ///< share of right answers missed with the first method, if worse
+  int visits_;                ///< of each participant
+  double margin_loss_ = 0.0;  ///< share of right answers missed with the first method, if worse
   std::vector<PlannedSchedule> schedules_;        ///< of each participant in turn, by visit
   std::vector<design::StimulusIndex> of_method_;  ///< every stimulus of the test's first method
   analysis::Outcomes empty_;

@@ -49,8 +49,8 @@ class IdentifyingParticipant final : public SimulatedParticipant {
   SeenPictures pictures_;
 };
 
-/// Teaches the study's labelled fields as the subject model says: to all alike, or to each by passes
-/// of their own.
+/// Teaches the study's labelled fields as the subject model says: to all alike, or to each by
+/// passes of their own.
 /// \throws StudyError if the subject names a class that the study does not have
 /// \throws FileError if the pack lacks a stimulus
 [[nodiscard]] std::unique_ptr<const Population> make_population(const PopulationSetting& setting);
