@@ -91,7 +91,7 @@ FinishedSession run_session(const Setting& setting, const Place& place) {
       setting.key.draw_of(place.number, design::Draws::rehearsal, place.visit);
   const design::Schedule schedule = design::make_schedule(setting.key.study, draw);
   session::Session session(schedule, setting.key.study.trials,
-                           store::SessionRecorder(place.session, key, finished.events),
+                           store::SessionRecorder(place.session, key, finished.events), {},
                            design::adaptive_order(setting.key.study, draw));
   session.open({}, opening_of(setting, place), design::schedule_to_json(schedule, setting.key));
   const std::unique_ptr<SimulatedParticipant> participant =
