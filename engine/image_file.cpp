@@ -67,9 +67,13 @@ Picture decode_file(ByteView file, const SampleScale& samples) {
   };
   Picture picture;
   GreyScale scale(samples);
-  picture.notes = notes_of_image(file);
   picture.grey = read_kind(file, scale, picture.notes);
   check_range(scale);
+  // Of a picture that could be read: what follows a damaged one's start may be long.
+  const ImageNotes stated = notes_of_image(file);
+  picture.notes.orientation = stated.orientation;
+  picture.notes.pixels_per_mm = stated.pixels_per_mm;
+  picture.notes.camera_dpi = stated.camera_dpi;
   const WideSamples& wide = scale.wide();
   if (samples.bits != 0 && wide.count() > 0) {
     picture.notes.cut_share = share(wide.above(samples.bits), wide.count());

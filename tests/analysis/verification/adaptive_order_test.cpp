@@ -109,7 +109,7 @@ class AdaptiveLaboratory {
   }
   [[nodiscard]] session::Session fresh(store::BufferedEvents& events) const {
     return session::Session(design::make_schedule(study_, draw_), study_.trials,
-                            store::SessionRecorder(1, SecretKey{}, events),
+                            store::SessionRecorder(1, SecretKey{}, events), {},
                             design::adaptive_order(study_, draw_));
   }
   /// \throws VerificationError at the first event that cannot follow
