@@ -3,7 +3,9 @@
 #include "core/text.hpp"
 
 #include <algorithm>
+#include <condition_variable>
 #include <cstdlib>
+#include <mutex>
 
 #include <fmt/format.h>
 #include <linux/tcp.h>
@@ -37,6 +39,14 @@ bool is_this_machine(const std::string& host, const std::string& number) {
   const bool is_socket = place.empty() || place.front() == '/' || place.front() == '@';
   const bool is_list = place.find(',') != std::string::npos;
   return !is_list && (is_socket || place == "localhost" || place == "127.0.0.1" || place == "::1");
+}
+
+/// The kernel counts them for TCP alone; a Unix socket's server is this machine's.
+std::uint64_t bytes_received(int socket) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return 0;
+  return info.tcpi_bytes_received;
 }
 
 }  // namespace
@@ -107,7 +117,7 @@ SqlRows ServerConnection::ask(const std::string& statement, const std::vector<By
     starts.push_back(value.empty() ? "" : reinterpret_cast<const char*>(value.data()));
     lengths.push_back(static_cast<int>(value.size()));
   }
-  first_byte_ = bytes_received();
+  const std::jthread guard = break_off_too_large();
   began_ = moved_ = Clock::now();
   PQsendQueryParams(connection_.get(), statement.c_str(), static_cast<int>(values.size()), nullptr,
                     starts.data(), lengths.data(), formats.data(), 1);
@@ -130,6 +140,7 @@ SqlRows ServerConnection::next_result() {
   while (true) {
     const int unsent = PQflush(connection_.get());
     if (unsent < 0 || PQconsumeInput(connection_.get()) != 1) {
+      require_within_limits();
       refuse("the connection was lost; run the same command again, which goes on from there",
              PQerrorMessage(connection_.get()));
     }
@@ -147,18 +158,27 @@ void ServerConnection::require_within_limits() const {
   const char* reason = nullptr;
   if (now - moved_ > limits_.silence) reason = "it has been silent for too long";
   if (now - began_ > limits_.whole) reason = "its answer does not come to an end";
-  if (bytes_received() > first_byte_ + limits_.bytes) reason = "its answer is absurdly large";
+  if (is_too_large_) reason = "its answer is absurdly large";
   if (reason == nullptr) return;
   refuse("the server's connection was broken off; check that the address is the right one", reason);
 }
 
-/// The kernel counts them for TCP alone; a Unix socket's server is this machine's.
-std::uint64_t ServerConnection::bytes_received() const {
-  tcp_info info{};
-  socklen_t size = sizeof info;
+/// On another thread: libpq reads a message that keeps arriving to its end, which may be 2 GB away.
+std::jthread ServerConnection::break_off_too_large() {
   const int socket = PQsocket(connection_.get());
-  if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return 0;
-  return info.tcpi_bytes_received;
+  const std::uint64_t limit = bytes_received(socket) + limits_.bytes;
+  return std::jthread([this, socket, limit](const std::stop_token& is_answered) {
+    constexpr std::chrono::milliseconds kBetweenLooks{5};
+    const auto is_over = [&] { return bytes_received(socket) > limit; };
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any answered;
+    while (!answered.wait_for(lock, is_answered, kBetweenLooks, is_over)) {
+      if (is_answered.stop_requested()) return;
+    }
+    is_too_large_ = true;
+    ::shutdown(socket, SHUT_RDWR);
+  });
 }
 
 void ServerConnection::refuse(const std::string& what, const char* reason) const {

@@ -6,11 +6,13 @@
 #include "core/bytes.hpp"
 #include "core/errors.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <libpq-fe.h>
@@ -56,14 +58,15 @@ class ServerConnection {
   using Clock = std::chrono::steady_clock;
   SqlRows next_result();
   void require_within_limits() const;
-  [[nodiscard]] std::uint64_t bytes_received() const;
+  /// Ends the connection once the answer is too large. It lasts as long as the result.
+  [[nodiscard]] std::jthread break_off_too_large();
   [[noreturn]] void refuse(const std::string& what, const char* reason) const;
 
   AnswerLimits limits_;
   std::unique_ptr<PGconn, decltype(&PQfinish)> connection_{nullptr, PQfinish};
   std::string shown_;
   // Of the question that is waited for.
-  std::uint64_t first_byte_ = 0;
+  std::atomic<bool> is_too_large_{false};
   Clock::time_point began_;
   Clock::time_point moved_;  ///< when the socket was last ready
 };
